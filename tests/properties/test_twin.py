@@ -115,8 +115,12 @@ def test_amplitude_friction_and_force_stay_where_physics_lets_them(seed: int) ->
     friction = truth.column("relative_friction")
     assert np.all(np.isnan(friction[~touched]))
     assert np.all((friction[touched] >= 0) & (friction[touched] <= 1))
-    base = display.surface().friction_coefficient * display.finger.friction_factor
-    most = base * truth.column("normal_force_N")
+    surface, force = display.surface(), truth.column("normal_force_N")
+    # The finger's µ does not depend on the force, unless a shear strength makes it.
+    assert display.finger.shear_strength is None
+    most = force * display.finger.friction_coefficient(
+        surface.friction_coefficient, surface.roughness, 0.5
+    )
     assert np.all(np.abs(truth.column("tangential_force_N")) <= most * (1 + 1e-9) + 1e-12)
     assert device.plant.counts.failed == device.plant.counts.beyond == 0
 

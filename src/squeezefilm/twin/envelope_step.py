@@ -25,11 +25,10 @@ _STILL = 1e-15  # m; below it the plate stands, and no number becomes subnormal
 
 
 class Fingers(NamedTuple):
-    """Relative friction and the load δ on the mode, shape (forces, points), under forces (N) and at
-    amplitudes (m) of highest·(j/(points − 1))²."""
+    """The load δ on the mode, shape (forces, points), under forces (N) and at amplitudes (m) of
+    highest·(j/(points − 1))²."""
 
     forces: si.Array
-    friction: si.Array
     load: si.Array
     highest: float
 
@@ -62,7 +61,7 @@ class Limits(NamedTuple):
 def table_place(force: float, amplitude: float, fingers: Fingers) -> Any:
     """Where a force (N) and an amplitude (m) stand in the tables: indices and shares of both, and
     whether the amplitude is beyond."""
-    forces, highest, points = fingers.forces, fingers.highest, fingers.friction.shape[1]
+    forces, highest, points = fingers.forces, fingers.highest, fingers.load.shape[1]
     i = 0
     while i < forces.size - 2 and force > forces[i + 1]:
         i += 1

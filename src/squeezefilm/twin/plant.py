@@ -17,12 +17,14 @@ from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.compiled import announce
-from squeezefilm.contact.sliding.march import substeps
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.contact.sliding.march import row_substeps, substeps
 from squeezefilm.errors import InputError
 from squeezefilm.plate.heat.thermal import driven_thickness, thermal_body
 from squeezefilm.plate.heat.warming import cooling_of, heat_capacity
 from squeezefilm.twin import plant_kernel as k
 from squeezefilm.twin.envelope_step import Fingers
+from squeezefilm.twin.friction_rows import FrictionTables
 from squeezefilm.twin.hand import Hand
 from squeezefilm.twin.settings import TwinSettings
 from squeezefilm.twin.working_point import WorkingPoint
@@ -110,6 +112,8 @@ class Plant:
     """Plate and finger. Not thread-safe. Advance it to a time; read what it does there.
 
     `hand` None leaves the plate alone. The truth is appended to `truth_file` where one is named.
+    Raises `InputError` for static friction that falls over a speed (`settings.dry`) on a display
+    whose law says itself what friction does with speed, as `slide` does.
     """
 
     def __init__(
@@ -121,7 +125,8 @@ class Plant:
     ) -> None:
         self.point, self.settings, self.hand = point, settings, hand
         self.truth = TruthRecord(settings.truth_rows, truth_file)
-        self._c = _constants(point, settings, hand)
+        friction = _friction(point)
+        self._c = _constants(point, settings, hand, friction)
         self._places, self._plan = _path(hand, settings.tick_us)
         self._s, self._n = np.zeros(k.STATE), np.zeros(k.COUNTS, dtype=np.int64)
         self._s[k.X] = self._s[k.SKIN_X] = self._places[0, 0]
@@ -136,8 +141,8 @@ class Plant:
         forces = np.ascontiguousarray(point.forces, dtype=float)
         highest = float(point.highest_amplitude)
         self._rest = (
-            k.State(self._s, self._n, self._c),
-            Fingers(forces, point.relative_friction, point.load, highest),
+            k.State(self._s, self._n, self._c, k.untouched(friction)),
+            Fingers(forces, point.load, highest),
             k.Path(self._places, self._plan),
             self._ring,
             self._buffer,
@@ -243,15 +248,45 @@ def _path(hand: Hand | None, tick: int) -> tuple[si.FloatArray, NDArray[np.int64
     return np.zeros((2, 2)), plan
 
 
-def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -> si.FloatArray:
-    display, mode, finger = point.display, point.mode, point.display.finger
+def _friction(point: WorkingPoint) -> FrictionTables:
+    """What the kernel reads of friction, the speeds side by side."""
+    display = point.display
+    surface, finger = display.surface(), display.finger
+    rest = [
+        finger.friction_coefficient(surface.friction_coefficient, surface.roughness, float(force))
+        for force in point.forces
+    ]
+    relative = np.ascontiguousarray(np.swapaxes(point.relative_friction, 1, 2), dtype=float)
+    return FrictionTables(np.array(point.speeds, dtype=float), relative, np.array(rest))
+
+
+def _parts(
+    friction: FrictionTables, settings: TwinSettings, pad: FingerpadDynamics, force: float
+) -> int:
+    """In how many parts the skin is marched over a step of the plant."""
+    step, dry = 1e-6 * (settings.tick_us // settings.steps_per_tick), settings.dry
+    strongest = float(dry.kinetic_force(friction.coefficient.max(), force))
+    if friction.speed.size == 1:
+        return substeps(step, pad, dry, strongest)
+    if dry.static_ratio > 1 and dry.stribeck_speed > 0:
+        raise InputError(
+            f"dry.stribeck_speed = {dry.stribeck_speed:g} m/s of the twin's settings cannot be "
+            "used: the display's law says all that friction does with speed; leave it at 0, where "
+            "static_ratio holds the skin that rests",
+            quantity="stribeck_speed",
+        )
+    fall = -float(np.min(np.diff(friction.relative, axis=2) / np.diff(friction.speed)))
+    return row_substeps(step, pad, strongest * max(fall, 0.0))
+
+
+def _constants(
+    point: WorkingPoint, settings: TwinSettings, hand: Hand | None, friction: FrictionTables
+) -> si.FloatArray:
+    display, mode = point.display, point.mode
     drift, amplifier, arm = settings.drift, settings.amplifier, settings.arm
-    sensor, dry, pad = settings.sensor, settings.dry, finger.fingerpad
+    sensor, dry, pad = settings.sensor, settings.dry, display.finger.fingerpad
     step = settings.tick_us // settings.steps_per_tick
-    surface = display.surface()
-    friction = finger.friction_coefficient(surface.friction_coefficient, surface.roughness)
     force = 0.0 if hand is None else hand.normal_force
-    strongest = float(dry.kinetic_force(friction, force))
     ratio = drift.quality_factor_ratio
     thermal, body = drift.on(display.thermal), thermal_body(display.actuator)
     thickness = driven_thickness(display.actuator)
@@ -287,9 +322,8 @@ def _constants(point: WorkingPoint, settings: TwinSettings, hand: Hand | None) -
     c[k.C_PAD_MASS] = pad.mass
     c[k.C_PAD_DAMPING] = pad.damping
     c[k.C_PAD_STIFFNESS] = pad.stiffness
-    c[k.C_MU] = friction
     c[k.C_FORCE] = force
-    c[k.C_SUBSTEPS] = substeps(step * 1e-6, pad, dry, strongest)
+    c[k.C_SUBSTEPS] = _parts(friction, settings, pad, force)
     c[k.C_STATIC] = dry.static_ratio
     c[k.C_STRIBECK] = dry.stribeck_speed
     c[k.C_EXPONENT] = dry.load_exponent

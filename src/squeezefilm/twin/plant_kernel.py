@@ -8,7 +8,9 @@ and the outcome does not depend on the pieces in which time is advanced. In each
    it, by the same functions as the prediction (`plate.heat.kernel`),
 3. the arm leads the finger, a mass on spring and damper, in closed form under the skin's pull,
    which is extrapolated to the middle of the step (second order),
-4. the skin follows by the compiled march of `contact.sliding`, under the friction of the law,
+4. the skin follows by the compiled marches of `contact.sliding`, under the friction of the law:
+   over its own sliding speed where the law depends on that, the rows at the start and the end of
+   the step between which it is a line,
 5. the sensor takes its samples, and the truth gets a row where one is due.
 
 Motion is along x for the skin; along y the arm leads without friction.
@@ -29,6 +31,7 @@ from squeezefilm import quantities as si
 from squeezefilm.compiled import compiled
 from squeezefilm.contact.sliding.kernel import Drive, Ground, Law, Track, slide_march
 from squeezefilm.contact.sliding.skin_motion import Forces, Skin, slide_by, transition
+from squeezefilm.contact.sliding.speed_kernel import Rows, rows_march
 from squeezefilm.plate.heat.kernel import Drifts, changed, warmed
 from squeezefilm.plate.heat.thermal import Cooling
 from squeezefilm.twin.envelope_step import (
@@ -39,12 +42,12 @@ from squeezefilm.twin.envelope_step import (
     Fingers,
     Limits,
     Resonance,
-    between,
     drawn_current,
     envelope_step,
     table_place,
     voltage_given,
 )
+from squeezefilm.twin.friction_rows import FrictionTables, at_speed, row_between
 from squeezefilm.twin.hand import wanted
 
 # The state, float64: plate; finger; skin and friction; output; what the sensor shows.
@@ -65,9 +68,9 @@ C_QUALITY_DRIFT, C_CHARGE_DRIFT, C_SOFTENING, C_FIELD_DRIFT, C_CAPACITY = range(
 C_COOLING, C_FACE, C_FACE_LENGTH, C_EMISSIVITY, C_ROOM = range(17, 22)  # fields of `Cooling`
 C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS = range(22, 28)
 C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS = range(28, 34)
-C_SUBSTEPS, C_MU, C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE = range(34, 41)
-C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(41, 47)
-CONSTANTS = 47
+C_SUBSTEPS, C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE = range(34, 40)
+C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(40, 46)
+CONSTANTS = 46
 COLUMNS = (
     "time_s", "x_m", "y_m", "speed_m_per_s", "level_V", "frequency_Hz", "amplitude_m",
     "relative_friction", "tangential_force_N", "normal_force_N", "voltage_V", "current_A",
@@ -109,19 +112,47 @@ def gaussian(seed: int, stream: int, number: int) -> float:
     return radius * math.cos(2.0 * math.pi * uniform(seed, 2 * stream + 1, number))
 
 
-class State(NamedTuple):
-    """State, counts and constants, at the places that are named above."""
-
-    state: si.Array
-    counts: si.Array
-    constants: si.Array
-
-
 class Path(NamedTuple):
     """The hand's places and its plan, as `hand.wanted` takes them."""
 
     places: si.Array
     plan: si.Array
+
+
+class Contact(NamedTuple):
+    """Where skin and surface meet, over one step: kept, so that no step allocates it.
+
+    `tables` are what its friction is read from. `limit` (2,) is the friction force (N) for each of
+    a row's units, at the start and the end of the step, and `rows` (2, k) µ′/µ over the skin's
+    speeds; with one speed the limit holds both.
+    """
+
+    tables: FrictionTables
+    bone: si.Array
+    speed_in: si.Array
+    speed_out: si.Array
+    limit: si.Array
+    rows: si.Array
+    track: Track
+
+
+class State(NamedTuple):
+    """State, counts and constants, at the places that are named above, and the skin's contact."""
+
+    state: si.Array
+    counts: si.Array
+    constants: si.Array
+    contact: Contact
+
+
+def untouched(tables: FrictionTables) -> Contact:
+    """The contact of a surface that nothing has touched yet, under friction of these tables."""
+    place, speed, friction, pull = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
+    stuck, work, account = np.zeros(2, dtype=np.bool_), np.zeros((3, 2)), np.zeros(3)
+    track = Track(place, speed, friction, pull, stuck, work, account)
+    bone, limit, speed_in, speed_out = np.zeros(2), np.zeros(2), np.zeros(1), np.zeros(1)
+    rows = np.zeros((2, tables.speed.size))
+    return Contact(tables, bone, speed_in, speed_out, limit, rows, track)
 
 
 @compiled()
@@ -138,7 +169,7 @@ def resonance(time: int, warmth: float, c: si.Array) -> float:
 def _sense(
     t0: int, h_us: int, x0: float, y0: float, plant: State, ring: si.Array, touching: bool
 ) -> None:
-    s, n, c = plant
+    s, n, c, _ = plant
     seed = int(c[C_SEED])
     while True:
         k = n[SAMPLE]
@@ -188,30 +219,44 @@ def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: si.Array, c
 
 
 @compiled()
-def _drag(
-    h: float, x0: float, v0: float, start: float, end: float, plant: State, ground: Ground
-) -> None:
-    """The skin under a bone that went from x0 with v0, friction limits `start` to `end` (N)."""
-    s, n, c = plant
+def _grip(force: float, amplitude: float, plant: State, fingers: Fingers) -> None:
+    """The friction at the end of a step; what was there becomes that at its start."""
+    _, n, c, (tables, _, _, _, limit, rows, _) = plant
+    i, p, j, q, beyond = table_place(force, amplitude, fingers)
+    n[BEYOND] += beyond
+    ref = c[C_REFERENCE]
+    limit[0] = limit[1]
+    rows[0] = rows[1]
+    rest = row_between(tables, i, p, j, q, rows[1])
+    if tables.speed.size == 1:
+        rest *= rows[1, 0]
+    limit[1] = rest * ref * (force / ref) ** c[C_EXPONENT]
+
+
+@compiled()
+def _drag(h: float, x0: float, v0: float, plant: State, ground: Ground) -> None:
+    """The skin under a bone that went from x0 with v0, under the friction of the contact."""
+    s, n, c, (tables, bone, speed_in, speed_out, limit, rows, track) = plant
+    speeds = tables.speed
     mean, bend = (s[X] - x0) / h, 0.5 * (s[VX] - v0)
-    bone, limit = np.array([x0, s[X]]), np.array([start, end])
-    v_in, v_out = np.array([mean - bend]), np.array([mean + bend])
-    place, speed = np.array([s[SKIN_X], 0.0]), np.array([s[SKIN_V], 0.0])
-    friction, pull, stuck = np.zeros(2), np.zeros(2), np.zeros(2, dtype=np.bool_)
-    done = slide_march(
-        Drive(bone, v_in, v_out, limit, h, int(c[C_SUBSTEPS])),
-        Skin(c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS]),
-        Law(c[C_STATIC], c[C_STRIBECK]),
-        ground,
-        Track(place, speed, friction, pull, stuck, np.zeros((3, 2)), np.zeros(3)),
-    )
+    bone[0], bone[1], speed_in[0], speed_out[0] = x0, s[X], mean - bend, mean + bend
+    track.position[0], track.speed[0] = s[SKIN_X], s[SKIN_V]
+    drive = Drive(bone, speed_in, speed_out, limit, h, int(c[C_SUBSTEPS]))
+    skin = Skin(c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS])
+    if speeds.size == 1:
+        done = slide_march(drive, skin, Law(c[C_STATIC], c[C_STRIBECK]), ground, track)
+    else:
+        strongest = max(limit[0], limit[1])
+        done = rows_march(drive, skin, Rows(speeds, rows), c[C_STATIC], strongest, ground, track)
     s[PULL_BEFORE], s[BEFORE] = s[PULL], h
     if done < 2:
         # Chattering without end: let the skin go with the bone, and say so in the counts.
         n[FAILED] += 1
         s[SKIN_X], s[SKIN_V], s[PULL], s[FRICTION] = s[X], 0.0, 0.0, 0.0
-        return
-    s[SKIN_X], s[SKIN_V], s[FRICTION], s[PULL] = place[1], speed[1], friction[1], pull[1]
+    else:
+        s[SKIN_X], s[SKIN_V] = track.position[1], track.speed[1]
+        s[FRICTION], s[PULL] = track.friction[1], track.bone_force[1]
+    s[RELATIVE] = at_speed(speeds, rows[1], abs(s[SKIN_V]))
 
 
 @compiled()
@@ -230,7 +275,7 @@ def advance(
     Returns the time reached; earlier than `until` where `truth` (rows, columns) is full, to be
     emptied by setting the count ROWS to 0. Allocates a few numbers a step, never raises.
     """
-    s, n, c = plant
+    s, n, c, rows = plant.state, plant.counts, plant.constants, plant.contact.rows
     places, plan = path
     step, row = np.int64(c[C_STEP]), np.int64(c[C_ROW])
     smooth = Ground(0.0, 1.0, np.ones(1))
@@ -278,17 +323,11 @@ def advance(
         _follow(h, here[0], there[0], here[1], there[1], s, c)
         s[FORCE] = force
         if force > 0.0 or began > 0.0:
-            i, p, j, q, beyond = table_place(force, amplitude, fingers)
-            n[BEYOND] += beyond
-            relative = between(fingers.friction, i, p, j, q)
+            _grip(force, amplitude, plant, fingers)
             if began <= 0.0:
                 # A relaxed skin, that lands with the bone's place and speed.
-                s[SKIN_X], s[SKIN_V], s[RELATIVE] = x0, v0, relative
-            ref = c[C_REFERENCE]
-            start = c[C_MU] * s[RELATIVE] * ref * (began / ref) ** c[C_EXPONENT]
-            end = c[C_MU] * relative * ref * (force / ref) ** c[C_EXPONENT]
-            s[RELATIVE] = relative
-            _drag(h, x0, v0, start, end, plant, smooth)
+                s[SKIN_X], s[SKIN_V], rows[0] = x0, v0, rows[1]
+            _drag(h, x0, v0, plant, smooth)
         if force <= 0.0:
             s[SKIN_X], s[SKIN_V] = s[X], s[VX]
             s[PULL], s[PULL_BEFORE], s[BEFORE], s[FRICTION] = 0.0, 0.0, 0.0, 0.0

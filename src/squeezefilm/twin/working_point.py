@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.chain.friction import TABLE_SPEEDS, FrictionLaw, friction_law
 from squeezefilm.chain.touch import load_ratios
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError
@@ -23,6 +23,7 @@ _log = logging.getLogger(__name__)
 FORCES: si.FloatArray = np.array([0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 5.0])
 """Normal forces (N) at which friction and load are tabulated; linear between, held beyond."""
 POINTS = 129
+_SOLVERS = 1e-7
 OTHER_CAPACITANCE: si.Farad = 20e-9
 """Where neither settings nor layout say (assumed)."""
 OTHER_COUPLING = 0.1
@@ -31,13 +32,16 @@ OTHER_COUPLING = 0.1
 
 @dataclass(frozen=True, eq=False)
 class WorkingPoint:
-    """A display's working mode and what finger and film do on it, over force and amplitude.
+    """A display's working mode and what finger and film do on it, over force, amplitude and the
+    skin's speed.
 
     Attributes:
         display, mode: what it is of.
         forces: of the tables' rows (N), shape (m,).
+        speeds: of the skin, for its friction (m/s), shape (k,), from 0 and held beyond the last;
+            one where the law does not depend on it.
         highest_amplitude: of the tables' last column (m); column j is at (j/(n−1))² of it.
-        relative_friction: µ′/µ, shape (m, n).
+        relative_friction: µ′/µ, shape (m, k, n).
         load: δ, the finger's modal stiffness over the mode's own, shape (m, n).
         capacitance: of the plate held still (F).
         force_factor: modal force per volt (N/V), which is charge per amplitude (C/m) by
@@ -48,6 +52,7 @@ class WorkingPoint:
     display: Display
     mode: WorkingMode
     forces: si.NewtonArray
+    speeds: si.MetrePerSecondArray
     highest_amplitude: si.Metre
     relative_friction: si.DimensionlessArray
     load: si.ComplexArray
@@ -92,7 +97,7 @@ def working_point(
             "needs a drive voltage above 0 and a mode that it moves"
         )
     highest = mode.amplitude_per_volt * display.drive.voltage * settings.highest_amplitude_ratio
-    highest, friction, load = _tables(display, mode, highest)
+    highest, speeds, friction, load = _tables(display, mode, highest)
     capacitance = settings.amplifier.capacitance
     if capacitance is None and isinstance(display.actuator, RectangularPlate):
         capacitance = patch_capacitance(display.actuator)
@@ -112,21 +117,25 @@ def working_point(
     for line in evidence:
         _log.info("twin of %s: %s", display.name, line)
     return WorkingPoint(
-        display, mode, FORCES, highest, friction, load, capacitance, factor, tuple(evidence)
+        display, mode, FORCES, speeds, highest, friction, load, capacitance, factor, tuple(evidence)
     )
 
 
 def _tables(
     display: Display, mode: WorkingMode, highest: si.Metre
-) -> tuple[si.Metre, si.DimensionlessArray, si.ComplexArray]:
-    """Friction and load up to the amplitude (m) that can be solved, at most `highest`."""
+) -> tuple[si.Metre, si.MetrePerSecondArray, si.DimensionlessArray, si.ComplexArray]:
+    """Speeds, friction over them, and load, up to the amplitude that can be solved, at most
+    `highest`; the amplitude first."""
     for _ in range(12):
         grid = highest * (np.arange(POINTS) / (POINTS - 1)) ** 2
         try:
             laws = [_law(display, mode, float(force)) for force in FORCES]
-            friction = np.stack([law.curve(grid) for law in laws])
+            speeds = TABLE_SPEEDS if laws[0].kind.shear else np.zeros(1)
+            friction = np.stack([law.over_speeds(grid, speeds) for law in laws])
+            # Where the law holds nothing at rest, nothing shall: not what its solver leaves.
+            friction = np.clip(np.where(friction < _SOLVERS, 0.0, friction), 0.0, 1.0)
             load = np.stack([load_ratios(mode, law, grid) for law in laws])
-            return highest, np.ascontiguousarray(friction), np.ascontiguousarray(load)
+            return highest, speeds, friction, np.ascontiguousarray(load)
         except OutOfRangeError as error:
             # So strong a vibration closes the gap somewhere; the table ends below it.
             _log.info("tables to %.3g m do not hold (%s); they end lower", highest, error)

@@ -33,7 +33,7 @@ AMPLITUDES = HIGHEST * (np.arange(6) / 5) ** 2
 _dice = np.random.default_rng(5)
 FRICTION = _dice.uniform(0.1, 1.0, (4, 6))
 LOAD = _dice.uniform(0.1, 1.0, (4, 6)) + 1j * _dice.uniform(0.1, 1.0, (4, 6))
-FINGERS = Fingers(FORCES, FRICTION, LOAD, HIGHEST)
+FINGERS = Fingers(FORCES, LOAD, HIGHEST)
 SOME_FORCES = (0.1, 0.15, 0.4, 0.45, 0.5, 0.9, 2.0)
 SOME_AMPLITUDES = (0.0, 0.01e-6, 0.12e-6, 0.3e-6, 1.0e-6, 1.92e-6, 2.5e-6, 2.999e-6, 3e-6)
 
@@ -80,9 +80,7 @@ def test_the_rate_is_the_one_of_the_module_s_equation() -> None:
 
 
 # In proportion to the amplitude, which the tables read exactly: no kinks to step over.
-SMOOTH = Fingers(
-    FORCES, FRICTION, np.tile((0.01 + 0.02j) * (1 + 3 * AMPLITUDES / HIGHEST), (4, 1)), HIGHEST
-)
+SMOOTH = Fingers(FORCES, np.tile((0.01 + 0.02j) * (1 + 3 * AMPLITUDES / HIGHEST), (4, 1)), HIGHEST)
 
 
 def loaded_march(z: complex, held: float, span: float, plate: Resonance, force: float) -> complex:

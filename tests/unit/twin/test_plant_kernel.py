@@ -13,6 +13,7 @@ from scipy.signal import lsim
 
 from squeezefilm.twin import plant_kernel as k
 from squeezefilm.twin.envelope_step import Fingers
+from squeezefilm.twin.friction_rows import FrictionTables
 from squeezefilm.twin.plant_kernel import gaussian, uniform
 
 STEP = 50  # us
@@ -48,7 +49,13 @@ class Bench:
         return dict(zip(k.COLUMNS, table.T, strict=True))
 
 
-def bench(waiting: int = 64, press: int = 1, **changes: float) -> Bench:
+# µ, and µ′/µ, whatever force, amplitude and speed.
+ALIKE = FrictionTables(np.zeros(1), np.full((2, 3, 1), 0.6), np.full(2, 0.4))
+
+
+def bench(
+    waiting: int = 64, press: int = 1, tables: FrictionTables = ALIKE, **changes: float
+) -> Bench:
     """A plant whose constants are these, any replaced by its name without the ``C_``."""
     named: dict[str, float] = {
         "STEP": STEP, "ROW": 100, "SEED": 9, "F0": 40e3, "Q": 60.0, "PER_VOLT": 2e-8,
@@ -58,7 +65,7 @@ def bench(waiting: int = 64, press: int = 1, **changes: float) -> Bench:
         "FACE_LENGTH": 15e-3, "EMISSIVITY": 0.5, "ROOM": 293.15, "GAIN": 1.0, "RAIL": 100.0,
         "CURRENT": 10.0, "SLEW": 1e9, "C0": 20e-9, "LOSS": 0.02, "MASS": 0.05,
         "STIFFNESS": 800.0, "DAMPING": 6.0, "PAD_MASS": 0.2e-3, "PAD_DAMPING": 1.0,
-        "PAD_STIFFNESS": 1000.0, "SUBSTEPS": 8, "MU": 0.4, "STATIC": 1.0, "STRIBECK": 0.01,
+        "PAD_STIFFNESS": 1000.0, "SUBSTEPS": 8, "STATIC": 1.0, "STRIBECK": 0.01,
         "EXPONENT": 1.0, "REFERENCE": 0.5, "FORCE": 0.0, "RATE": 3000.0, "LATENCY": 700.0,
         "JITTER": 0.0, "NOISE": 0.0, "QUANTUM": 0.0, "SHARE_LOST": 0.0,
     }  # fmt: skip
@@ -75,10 +82,9 @@ def bench(waiting: int = 64, press: int = 1, **changes: float) -> Bench:
     duration = 1_000_000
     places = np.array([[0.01, 0.01 + SPEED_X], [0.02, 0.02 + SPEED_Y]])
     plan = np.array([0, duration, 0, -1, press, duration, 1], dtype=np.int64)
-    friction = np.array([[0.6, 0.6, 0.6], [0.6, 0.6, 0.6]])
-    fingers = Fingers(np.array([0.1, 5.0]), friction, np.zeros((2, 3), dtype=complex), 1e-5)
+    fingers = Fingers(np.array([0.1, 5.0]), np.zeros((2, 3), dtype=complex), 1e-5)
     ring, truth = np.zeros((waiting, 5)), np.empty((ROWS, len(k.COLUMNS)))
-    plant = k.State(state, counts, constants)
+    plant = k.State(state, counts, constants, k.untouched(tables))
     arguments = (plant, fingers, k.Path(places, plan), ring, truth)
     return Bench(state, counts, arguments, truth, ring)
 
@@ -126,6 +132,43 @@ def test_sliding_steadily_the_spring_carries_the_friction_of_the_law(exponent: f
     # Nothing drags it sideways.
     assert found["y_m"][-1] == pytest.approx(0.02 + SPEED_Y * 0.35, abs=1e-6)
     assert plant.counts[k.FAILED] == plant.counts[k.BEYOND] == 0
+
+
+def test_friction_is_that_at_the_skins_own_speed_and_at_the_force() -> None:
+    # µ′/µ rises by 4 for each m/s up to 0.1 m/s, and µ with the force.
+    speed, coefficient = np.array([0.0, 0.1]), np.array([0.1, 4.9 + 0.1])
+    tables = FrictionTables(speed, np.tile([0.2, 0.6], (2, 3, 1)), coefficient)
+    plant = bench(FORCE=1.3, DAMPING=30.0, tables=tables)
+    found = plant.rows(350_000)
+    assert plant.state[k.SKIN_V] == pytest.approx(SPEED_X, rel=1e-3)
+    relative = 0.2 + 4.0 * plant.state[k.SKIN_V]
+    assert found["relative_friction"][-1] == pytest.approx(relative, rel=1e-9)
+    # µ is 1.3 at 1.3 N.
+    assert found["tangential_force_N"][-1] == pytest.approx(1.3 * 1.3 * relative, rel=1e-6)
+    # The same at all speeds, it is the law of no speed, by the other march.
+    flat = FrictionTables(speed, np.full((2, 3, 2), 0.6), np.full(2, 0.4))
+    for exponent in (1.0, 0.8):
+        mine, other = (
+            bench(FORCE=1.3, EXPONENT=exponent, STRIBECK=0.0, press=2_000, tables=one)
+            for one in (flat, ALIKE)
+        )
+        both = [one.rows(60_000, 20_000_000, 40_000_000) for one in (mine, other)]
+        for name, values in both[0].items():
+            np.testing.assert_allclose(values, both[1][name], rtol=1e-9, atol=1e-12, err_msg=name)
+
+
+def test_a_skin_that_rests_is_held_by_the_friction_at_rest_and_its_static_ratio() -> None:
+    rests = FrictionTables(np.array([0.0, 1e-3]), np.tile([0.5, 0.2], (2, 3, 1)), np.full(2, 0.4))
+    for ratio in (1.0, 1.5):
+        plant = bench(FORCE=1.0, STATIC=ratio, tables=rests)
+        found = plant.rows(20_000)
+        # The pad is pulled along until it slips, and what held it is friction at rest.
+        held = found["tangential_force_N"].max()
+        assert held == pytest.approx(ratio * 0.4 * 0.5, rel=0.02)
+        stuck = np.diff(found["skin_x_m"]) == 0.0
+        assert stuck.any()
+        assert np.all(found["relative_friction"][1:][stuck] == 0.5)
+        assert plant.counts[k.FAILED] == 0
 
 
 def test_a_finger_lands_with_a_relaxed_skin() -> None:

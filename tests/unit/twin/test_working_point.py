@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.chain.friction import TABLE_SPEEDS
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.working_mode import WorkingMode
@@ -26,10 +27,11 @@ STATOR, PLATE = load_display("biet2008-stator"), load_display("biet2008-plate")
 
 
 class Laws:
-    """Friction that falls with amplitude over force; it holds up to an amplitude."""
+    """Friction that falls with amplitude over force and may rise with speed; it holds up to an
+    amplitude."""
 
-    def __init__(self, reach: float = math.inf) -> None:
-        self.reach, self.asked, self.tried = reach, [], 0
+    def __init__(self, reach: float = math.inf, shear: bool = True) -> None:
+        self.reach, self.asked, self.tried, self.shear = reach, [], 0, shear
 
     def friction_law(self, display: Any, half: float, frequency: float, **how: Any) -> Any:
         self.asked.append((half, frequency, how))
@@ -42,7 +44,15 @@ class Laws:
                 raise OutOfRangeError("the gap closes")
             return 1 / (1 + 1e6 * amplitude / force)
 
-        return SimpleNamespace(curve=curve, force=force)
+        def over_speeds(amplitude: Any, speed: Any) -> Any:
+            return (
+                curve(amplitude) * (1 - np.exp(-speed / 0.1))[:, None]
+                if self.shear
+                else (np.repeat(curve(amplitude)[None, :], speed.size, axis=0))
+            )
+
+        kind = SimpleNamespace(shear=self.shear)
+        return SimpleNamespace(over_speeds=over_speeds, force=force, kind=kind)
 
 
 @pytest.fixture
@@ -67,7 +77,10 @@ def test_the_tables_hold_law_and_load_over_force_and_amplitude(laws: Laws) -> No
     np.testing.assert_allclose(found.amplitudes, amplitudes, rtol=1e-12)
     np.testing.assert_array_equal(found.forces, FORCES)
     friction = 1 / (1 + 1e6 * amplitudes[None, :] / FORCES[:, None])
-    np.testing.assert_allclose(found.relative_friction, friction, rtol=1e-12)
+    np.testing.assert_array_equal(found.speeds, TABLE_SPEEDS)
+    rise = 1 - np.exp(-TABLE_SPEEDS / 0.1)
+    expected = rise[None, :, None] * friction[:, None, :]
+    np.testing.assert_allclose(found.relative_friction, expected, rtol=1e-12)
     load = (1 + 2j) * FORCES[:, None] * (1 + amplitudes[None, :])
     np.testing.assert_allclose(found.load, load, rtol=1e-12)
     assert found.relative_friction.flags["C_CONTIGUOUS"]
@@ -75,6 +88,15 @@ def test_the_tables_hold_law_and_load_over_force_and_amplitude(laws: Laws) -> No
     assert found.display is STATOR
     assert found.mode is MODE
     assert laws.asked == [(8e-3, 40e3, {"normal_force": float(one)}) for one in FORCES]
+
+
+def test_a_law_that_knows_no_speed_has_a_table_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    use(monkeypatch, Laws(shear=False))
+    found = working_point(STATOR, SETTINGS, MODE)
+    np.testing.assert_array_equal(found.speeds, [0.0])
+    friction = 1 / (1 + 1e6 * found.amplitudes[None, :] / FORCES[:, None])
+    np.testing.assert_allclose(found.relative_friction[:, 0], friction, rtol=1e-12)
+    assert found.relative_friction.shape == (FORCES.size, 1, POINTS)
 
 
 def test_tables_end_where_the_gap_closes(monkeypatch: pytest.MonkeyPatch) -> None:

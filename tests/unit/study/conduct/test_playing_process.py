@@ -284,7 +284,7 @@ def test_a_twins_pickup_is_read_as_what_it_is(
 
     def solved(display: Any, given: TwinSettings) -> WorkingPoint:
         assert given is settings
-        return WorkingPoint(display, mode, none, 1e-6, none, none, 20e-9, 0.5, ())  # type: ignore[arg-type]
+        return WorkingPoint(display, mode, none, none, 1e-6, none, none, 20e-9, 0.5, ())  # type: ignore[arg-type]
 
     monkeypatch.setattr(playing_process, "working_point", solved)
     orders = dataclasses.replace(around.orders("twin"), settings=settings)

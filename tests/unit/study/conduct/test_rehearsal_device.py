@@ -76,8 +76,9 @@ def test_the_hand_feels_the_grating_that_is_presented(point: WorkingPoint) -> No
         found[name] = dict(zip(names, rows.T, strict=True))
     assert np.nanmin(found["flat"]["relative_friction"]) > 0.99
     x, friction = found["square"]["x_m"], found["square"]["relative_friction"]
-    known = np.isfinite(friction)
-    assert np.nanmin(friction) == pytest.approx(0.8, abs=0.05)
+    # Where it turns the finger is slower than the loop thinks, and feels less friction.
+    known = np.isfinite(friction) & (found["square"]["speed_m_per_s"] > 20e-3)
+    assert np.min(friction[known]) == pytest.approx(0.8, abs=0.05)
     assert np.nanmax(friction) > 0.98
     # The place in the period that is slippery: the second half.
     inside = (x / 10e-3) % 1.0
