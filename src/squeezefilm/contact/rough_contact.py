@@ -214,7 +214,7 @@ class RoughContact:
         from scipy.interpolate import CubicHermiteSpline
 
         t = np.asarray(gap, dtype=float) / self.roughness
-        if np.any(t < LEAST_GAP):
+        if np.any(t < LEAST_GAP * (1 - 1e-9)):
             least, rough = (
                 si.format_quantity(one, si.Unit("m"))
                 for one in (float(np.min(gap)), self.roughness)

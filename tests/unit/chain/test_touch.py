@@ -165,4 +165,5 @@ def test_a_firm_finger_off_the_antinode_is_felt_within_its_contact_s_law() -> No
     assert isinstance(asperities, RoughContact)
     assert float(law.sharing(0.5e-6).mean_gap[0]) < 0.5 * asperities.roughness
     found = load_ratios(mode(), law, np.array([0.5e-6]))
-    assert np.all(np.isfinite(found)) and np.all(found.imag > 0)
+    assert np.all(np.isfinite(found))
+    assert np.all(found.imag > 0)

@@ -121,10 +121,9 @@ def tapping_friction(
     """Friction of a patch of skin under a mean `pressure` (Pa), tapped at `amplitude` (m).
 
     `normal_stiffness` is that of the asperities per area, at the load (None: that of exponential
-    asperities, p/λ_r with the λ_r of `AsperityLaw`, assumed; the skin is then λ_r deep into the plate at rest,
-    whatever the load). Within a tap the shear stress q
-    follows the finger, dq/dt = k_t U, capped by µ p_c(t). Raises `InputError` for values that
-    cannot be used.
+    asperities, p/λ_r with the λ_r that `AsperityLaw` assumes; the skin is then λ_r deep into the
+    plate at rest, whatever the load). Within a tap the shear stress q follows the finger,
+    dq/dt = k_t U, capped by µ p_c(t). Raises `InputError` for values that cannot be used.
     """
     if normal_stiffness is None:
         normal_stiffness = pressure / AsperityLaw().decay_length

@@ -71,6 +71,18 @@ def test_a_rough_interface_is_refused_where_it_would_be_flat(table: FilmTable) -
         share_load(table, RoughContact(), 1e-6, 4e5)
 
 
+@pytest.mark.parametrize("amplitude", [1e-12, 1e-10, 1e-9])
+def test_a_hard_pressed_plateau_that_hardly_moves_is_one_at_rest(
+    table: FilmTable, amplitude: float
+) -> None:
+    """The search for its gap stays within the film's table."""
+    rest = share_load(table, RoughContact(), 0.0, 5.2e4)
+    found = share_load(table, RoughContact(), amplitude, 5.2e4)
+    assert float(found.mean_gap) == pytest.approx(float(rest.mean_gap), rel=1e-3)
+    with pytest.raises(OutOfRangeError, match="nearly everything into contact"):
+        share_load(table, RoughContact(), amplitude, 2e5)
+
+
 def test_of_tied_ridges_the_one_that_comes_nearest_is_refused(table: FilmTable) -> None:
     """Not the last one, which need not move at all."""
     for swings in ([0.3e-6, 0.0, 0.0], [0.0, 0.0, 0.3e-6]):
