@@ -126,7 +126,7 @@ SKIN_MASS = HardLimit("a mass per area", 1e-6, 1e9, "up to one that stands still
 SKIN_STIFFNESS = HardLimit("a stiffness per area", 0.0, 1e15, "of skin; " + _SLIP, si.Unit("Pa/m"))
 SKIN_DAMPING = HardLimit("a damping per area", 0.0, 1e12, "of skin; " + _SLIP, si.Unit("Pa*s/m"))
 FINGER_SPEED = HardLimit(
-    "a finger's speed", 1e-9, 5.0, "from standing still to faster than any hand", si.Unit("m/s")
+    "a finger's speed", 1e-9, 5.0, "from creeping to faster than any hand", si.Unit("m/s")
 )
 STROKE_LENGTH = HardLimit("a stroke's length", 1e-9, 10.0, "no surface is longer; " + _SLIP, _M)
 PASS_DURATION = HardLimit("a pass's duration", 1e-6, 1e9, "a pass may take thirty years", _S)

@@ -259,11 +259,11 @@ class FrictionLaw:
         """µ′/µ (dimensionless, 0 to 1) at an array of amplitudes (m), same shape (1-D)."""
         ambient = self.gas.ambient_pressure
         if self.kind.film == "asymptote":
-            return np.asarray(
-                paper.relative_friction(
-                    self.gap(amplitude), self.normal_force, ambient, self._closed_form
-                )
+            found = paper.relative_friction(
+                self.gap(amplitude), self.normal_force, ambient, self._closed_form
             )
+            # As printed, the mean pressure of small vibrations is a hair below the ambient one.
+            return np.minimum(found, 1.0)
         if self.kind.film == "shared":
             return self.sharing(np.ravel(amplitude)).relative_friction
         pressures = np.array([1 + self.load(float(a)).over_pressure for a in np.ravel(amplitude)])
@@ -272,9 +272,7 @@ class FrictionLaw:
     @si.checked_numbers
     def under(self, load: FilmLoad, amplitude: si.Metre) -> si.Dimensionless:
         """µ′/µ (dimensionless) with a film already solved at an amplitude (m), as `load` has it."""
-        if self.kind.film == "asymptote":
-            return self.at(amplitude)
-        if self.kind.shear:
+        if self.kind.film == "asymptote" or self.kind.shear:
             return self.at(amplitude)
         if self.kind.film == "shared":
             # The contact grows with the force here, so the paper's fixed area will not do.
@@ -326,6 +324,9 @@ class FrictionLaw:
                 return self.at(amplitude) - wanted
             return 1 - self.load(amplitude).over_pressure / pressure - wanted
 
+        # What is asked for may be within the rounding of what a still surface has.
+        if excess(0.0) <= 0:
+            return 0.0
         low, least = 0.0, 1.0
         for high in np.geomspace(2e-8, HIGHEST_AMPLITUDE, 24):
             try:
@@ -334,7 +335,7 @@ class FrictionLaw:
                 # So strong a vibration closes the gap at some ridge: it is no way to get there.
                 break
             if left <= 0:
-                return float(brentq(excess, max(low, 1e-9), high, xtol=1e-11, rtol=1e-6))
+                return float(brentq(excess, low, high, xtol=1e-13, rtol=1e-6))
             low, least = float(high), min(least, left + wanted)
         raise UnreachableError(
             f"relative_friction = {wanted:.4g} is not reached by any vibration amplitude up to "

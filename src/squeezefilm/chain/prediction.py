@@ -52,9 +52,9 @@ class Prediction(Result):
     `relative_friction_limits` are µ′/µ with each ridge at its own balance and with all ridges at
     one mean gap, None for a model that shares no load. `friction_reduction` is µ − µ′,
     `tangential_force` µ′ F of a finger that slides steadily. `validity` says how far the paper's
-    asymptote is from where it holds; `law` is the friction as a function of the amplitude. `heat`
-    is what the plate's losses do to it, None where they are not known: every other number is of
-    the cold plate.
+    asymptote is from where it holds; `law` is the friction as a function of amplitude and speed.
+    `heat` is what the plate's losses do to it, None where they are not known: every other number is
+    of the cold plate.
     """
 
     display: str
@@ -87,7 +87,7 @@ class Prediction(Result):
 
     @functools.cached_property
     def friction(self) -> FrictionTable:
-        """µ′/µ against the amplitude, up to this one, as a fast table: see `FrictionLaw.table`."""
+        """µ′/µ over amplitude (up to this one) and speed, a fast table: see `FrictionLaw.table`."""
         return self.law.table(self.vibration_amplitude)
 
     @functools.cached_property

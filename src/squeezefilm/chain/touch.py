@@ -16,6 +16,7 @@ from squeezefilm.contact.finger.load import (
     finger_stiffness,
     interface_stiffness,
 )
+from squeezefilm.contact.rough_contact import RoughContact
 from squeezefilm.contact.sharing.pad import PadFriction
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
@@ -174,13 +175,19 @@ class _Felt(NamedTuple):
 
 def _felt(law: FrictionLaw, amplitude: si.Metre, mean_gap: si.Metre) -> _Felt:
     finger = law.finger
+    asperities = finger.asperity_law(law.surface.roughness)
+    # The plateaus' mean gap beside the antinode's swing, which most of them do not meet: no deeper
+    # than the contact's law goes.
+    deepest = 0.9 * mean_gap
+    if isinstance(asperities, RoughContact):
+        deepest = min(deepest, mean_gap - asperities.least_gap)
     interface = interface_stiffness(
         mean_gap,
-        min(amplitude, 0.9 * mean_gap),
+        min(amplitude, deepest),
         finger.plateau_width,
         law.frequency,
         law.gas,
-        finger.asperity_law(law.surface.roughness),
+        asperities,
     )
     share = finger.plateau_width / finger.ridge_period
     area = finger.contact_area(law.normal_force)

@@ -214,7 +214,7 @@ class RoughContact:
         from scipy.interpolate import CubicHermiteSpline
 
         t = np.asarray(gap, dtype=float) / self.roughness
-        if np.any(t < LEAST_GAP):
+        if np.any(t < LEAST_GAP * (1 - 1e-9)):
             least, rough = (
                 si.format_quantity(one, si.Unit("m"))
                 for one in (float(np.min(gap)), self.roughness)
@@ -236,6 +236,11 @@ class RoughContact:
         return self.pressure_scale * math.exp(self.spectrum.logarithm[0])
 
     @property
+    def least_gap(self) -> si.Metre:
+        """The gap (m) at which the law ends: nearly everything is in contact there."""
+        return LEAST_GAP * self.roughness
+
+    @property
     def words(self) -> str:
         """What it is, for the name of a model."""
         return "a rough elastic interface by Persson's theory"
@@ -254,7 +259,7 @@ def _compiled(law: RoughContact) -> CompiledAsperities:
         law.pressure_scale * known.strength,
         0.0,
         law.decay_length,
-        LEAST_GAP * law.roughness,
+        law.least_gap,
         step,
         -law.roughness / known.steepness[-1],
     ]

@@ -7,6 +7,7 @@ import pytest
 
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.prediction import predict, voltage_for_friction
+from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import (
     ContradictionError,
@@ -259,6 +260,30 @@ def test_amplitude_for_a_friction_gives_that_friction(stator: Display) -> None:
         _law(stator, model="film-open", normal_force=500.0).amplitude_for(0.5)
     with pytest.raises(InputError, match="relative_friction"):
         _law(stator).amplitude_for(1.5)
+
+
+def test_an_amplitude_is_found_for_what_is_nearly_the_friction_at_rest(stator: Display) -> None:
+    finger = dataclasses.replace(stator.finger, asperities=AsperityLaw())
+    law = _law(dataclasses.replace(stator, finger=finger), model="partial-levitation-one-gap")
+    slow = _law(stator, speed=1e-6)
+    for one, wanted in ((law, 0.99999), (law, 1 - 1e-12), (slow, 0.999), (slow, 0.9)):
+        assert one.at(one.amplitude_for(wanted)) == pytest.approx(wanted, abs=1e-5)
+
+
+def test_the_asymptote_as_printed_adds_no_friction(stator: Display) -> None:
+    """Its mean pressure of a small vibration lies a hair below the ambient one."""
+    law = _law(stator, model="paper2008-printed", normal_force=0.02)
+    assert law.at(1e-9) == law.table(1e-8)(np.array([1e-9]))[0] == 1.0
+
+
+def test_an_area_that_grows_as_fast_as_the_force_keeps_the_pressure(stator: Display) -> None:
+    finger = dataclasses.replace(stator.finger, contact_area_exponent=1.0)
+    wide = dataclasses.replace(stator, finger=finger)
+    light, firm = (predict(wide, vibration_amplitude=2e-6, normal_force=f) for f in (0.25, 0.5))
+    pressures = [finger.plateau_pressure(p.normal_force) for p in (light, firm)]
+    assert pressures[0] == pytest.approx(pressures[1])
+    # Half of the pad lies nearer to the antinode, where all of it swings.
+    assert light.relative_friction < firm.relative_friction < 1
 
 
 def test_force_and_roughness_act_as_they_must(stator: Display) -> None:

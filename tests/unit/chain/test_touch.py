@@ -10,7 +10,10 @@ import numpy as np
 import pytest
 
 from squeezefilm.chain import touch as module
+from squeezefilm.chain.friction import friction_law
 from squeezefilm.chain.touch import Touch, kept_at, load_ratios, touch
+from squeezefilm.contact.rough_contact import RoughContact
+from squeezefilm.display import load_display
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.loaded_mode import LoadedMode
 
@@ -150,3 +153,17 @@ def test_loads_are_found_at_each_amplitude(loads: Callable[..., None]) -> None:
     found = load_ratios(mode(), LAW, np.array([1e-6, 3e-6]))
     assert found == pytest.approx([1 + 2j, 3 + 2j])
     assert load_ratios(mode(None), LAW, np.array([1e-6, 3e-6])) == pytest.approx([0j, 0j])
+
+
+def test_a_firm_finger_off_the_antinode_is_felt_within_its_contact_s_law() -> None:
+    """Its plateaus swing less than the antinode, and so may lie closer than that swings."""
+    half = 9.35e-3
+    law = friction_law(
+        load_display("biet2008-stator"), half, F, normal_force=25.0, position=half / 2
+    )
+    asperities = law.finger.asperity_law(law.surface.roughness)
+    assert isinstance(asperities, RoughContact)
+    assert float(law.sharing(0.5e-6).mean_gap[0]) < 0.5 * asperities.roughness
+    found = load_ratios(mode(), law, np.array([0.5e-6]))
+    assert np.all(np.isfinite(found))
+    assert np.all(found.imag > 0)

@@ -15,19 +15,19 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.asperities import AsperityLaw
+from squeezefilm.contact.asperities import (
+    MINDLIN_RATIO,
+    AsperityLaw,
+    TangentialStiffness,
+)
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.contact.sharing.balance import LoadSharing, share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import ridge_points
-from squeezefilm.contact.sharing.shear import (
-    AsperityShear,
-    TangentialStiffness,
-    sheared_friction,
-)
-from squeezefilm.contact.sharing.tapping import MINDLIN_RATIO, tapping_friction
+from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
+from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.errors import InputError
 from squeezefilm.materials import Gas
 
@@ -113,9 +113,7 @@ class FrozenContact:
         skin and face together. Raises `InputError` for a model that is not known."""
         law, skin = _model(model).law, self.finger.skin_roughness
         factor = math.hypot(skin, self.roughness) / math.hypot(skin, FROZEN.roughness)
-        if isinstance(law, AsperityLaw):
-            return law.scaled(factor)
-        return replace(law, roughness=law.roughness * factor)
+        return law.scaled(factor)
 
     def relative_friction(
         self,

@@ -135,15 +135,16 @@ class Finger:
     @si.checked_numbers
     def largest_force(self, surface_roughness: si.Metre) -> si.Newton:
         """The force (N) up to which the contact's law holds at rest on a surface of a roughness
-        (m); infinite where the area grows as fast as the force."""
-        if self.contact_area_exponent == 1:
-            return math.inf
+        (m); where the area grows as fast as the force, all the 10 kN that one may have, or none."""
         most = self.asperity_law(surface_roughness).largest_pressure
-        # p ∝ F^(1 − exponent)
         force = self.contact_area_force or self.normal_force
-        return float(
-            force * (most / self.plateau_pressure(force)) ** (1 / (1 - self.contact_area_exponent))
-        )
+        # p ∝ F^(1 − exponent), in logarithms: the power may be any.
+        room = math.log(most / self.plateau_pressure(force))
+        left = 1 - self.contact_area_exponent
+        reach = math.log(FORCE.most / force)
+        if room < left * reach:
+            return force * math.exp(room / left) if left > 0 else 0.0
+        return FORCE.most
 
     @si.checked_numbers
     def asperity_law(self, surface_roughness: Annotated[si.Metre, si.AtLeast(0.0)]) -> ContactLaw:

@@ -45,8 +45,8 @@ def interface_stiffness(
     spring = relative_stiffness(sigma, "strip", knudsen_number=knudsen)
     damper = relative_damping(sigma, "strip", knudsen_number=knudsen)
     film = gas.ambient_pressure / mean_gap * complex(float(spring), float(damper))
-    # A swing of a nanometre at the least: the limit of the difference quotient, without 0/0.
-    swing = max(amplitude, 1e-9)
+    # A swing of ten picometres at the least: the limit of the difference quotient, without 0/0.
+    swing = max(amplitude, 1e-11)
     pressure = np.asarray(asperities.pressure(mean_gap - swing * _PHASES))
     return film + 2 * float(np.mean(pressure * _PHASES)) / swing
 

@@ -88,6 +88,7 @@ def share_load(
             break
         table.build(lacking)
     _refuse(rows, a, p)
+    _require_law(asperities, rows[:, kernel.GAP] - rows[:, kernel.SWING], p)
     model = _model(table, asperities, skin, "each plateau at its own balance")
     return _shared(a.reshape(form), p.reshape(form), rows, table, asperities, model)
 
@@ -123,8 +124,14 @@ def share_load_tied(
             break
         table.build(int(row[kernel.PANEL]))
     _refuse(row[None, :], a.max(keepdims=True), np.array([plateau_pressure]))
+    # Whichever ridge comes nearest; where the skin yields only the last one's swing is known.
+    nearest = row[kernel.GAP] + (
+        np.min(shift - a) if skin is None else shift[-1] - row[kernel.SWING]
+    )
+    pressure = np.array(plateau_pressure)
+    _require_law(asperities, np.array(nearest), pressure)
     model = _model(table, asperities, skin, "all plateaus at one mean gap")
-    return _shared(a, np.array(plateau_pressure), row, table, asperities, model)
+    return _shared(a, pressure, row, table, asperities, model)
 
 
 def _shared(
@@ -147,7 +154,6 @@ def _shared(
         "residual": kernel.RESIDUAL,
         "steps": kernel.STEPS,
     }
-    _require_law(asperities, rows, pressure)
     return LoadSharing(
         amplitude=amplitude,
         plateau_pressure=pressure,
@@ -158,15 +164,13 @@ def _shared(
     )
 
 
-def _require_law(law: ContactLaw, rows: si.FloatArray, pressure: si.FloatArray) -> None:
-    """Refuse balances that press a rough interface nearly flat, where its law ends; warn of
-    plateaus pressed so hard that the law of asperities does not hold even at rest."""
-    from squeezefilm.contact.sharing import kernel
-
+def _require_law(law: ContactLaw, nearest: si.FloatArray, pressure: si.FloatArray) -> None:
+    """Refuse balances that press a rough interface nearly flat, where its law ends, at the
+    `nearest` gap of a period (m); warn of plateaus pressed so hard that the law of asperities does
+    not hold even at rest."""
     most = si.format_quantity(law.largest_pressure, si.Unit("Pa"))
     if isinstance(law, RoughContact):
-        least = (rows[..., kernel.GAP] - rows[..., kernel.SWING]).reshape(pressure.shape)
-        flat = least < LEAST_GAP * law.roughness
+        flat = nearest < law.least_gap
         if np.any(flat):
             shown = si.format_quantity(float(np.min(pressure[flat])), si.Unit("Pa"))
             raise OutOfRangeError(
@@ -182,7 +186,7 @@ def _require_law(law: ContactLaw, rows: si.FloatArray, pressure: si.FloatArray) 
             f"no longer carry by themselves: {law.words} hold to {most}. Press less, or take the "
             "contact of a rough elastic interface (RoughContact)",
             OutOfRangeWarning,
-            stacklevel=4,
+            stacklevel=3,
         )
 
 

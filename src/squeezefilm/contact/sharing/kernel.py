@@ -185,7 +185,11 @@ def balance(
     law = asperities.constants
     deepest = math.sqrt(-math.expm1(-films.edges[-1]))
     low = 1e-9
+    # Nearer than the table goes a film is not known: where that is not near enough, nothing is.
+    nearest = films.scale[0] * math.exp(films.scale[2]) * (1.0 + 1e-9)
     for i in range(len(amplitudes)):
+        if amplitudes[i] > 0.0:
+            low = max(low, nearest - offsets[i])
         # A yielding skin can swing further than the plate.
         low = max(low, amplitudes[i] / deepest * (1.0 + 1e-9) - offsets[i])
     # Where exponential asperities alone would carry the load; with the gas it is further out.

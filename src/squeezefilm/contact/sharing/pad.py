@@ -141,7 +141,8 @@ def pad_friction(
     share = own.relative_friction
     kept = share if shear is None else sheared_friction(own, shear, table.frequency)
     carrying = weight * lean / np.sum(weight * lean)
-    friction, carried = kept @ carrying, share @ carrying
+    # Weights sum to 1 within rounding only.
+    friction, carried = np.minimum(kept @ carrying, 1.0), share @ carrying
     return PadFriction(
         amplitude=a,
         relative_friction=friction,

@@ -26,10 +26,13 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.compiled import announce
-from squeezefilm.contact.asperities import MINDLIN_RATIO
-
-ASPERITY_DECAY: si.Metre = 0.6e-6
-"""λ_r of the default asperities, over which their pressure falls by e (assumed)."""
+from squeezefilm.contact.asperities import (
+    LINEAR_OVERLAP,
+    MINDLIN_RATIO,
+    NO_CUBICS,
+    AsperityLaw,
+    CompiledAsperities,
+)
 
 
 @si.closed_form(positive="friction_coefficient amplitude frequency speed")
@@ -90,7 +93,6 @@ def _sheared(
     half: float, amplitude: si.Metre, rest: si.Metre, pressure: si.Pascal, advance: float
 ) -> float:
     """µ′/µ by the tangential element of `shear`, behind contact in proportion to the overlap."""
-    from squeezefilm.contact.asperities import LINEAR_OVERLAP, NO_CUBICS, CompiledAsperities
     from squeezefilm.contact.sharing import shear_kernel as kernel
 
     announce(kernel.sheared_rows, "shear of what touches", 20)
@@ -119,13 +121,12 @@ def tapping_friction(
     """Friction of a patch of skin under a mean `pressure` (Pa), tapped at `amplitude` (m).
 
     `normal_stiffness` is that of the asperities per area, at the load (None: that of exponential
-    asperities, p/λ_r with λ_r = 0.6 µm, assumed; the skin is then λ_r deep into the plate at rest,
-    whatever the load). Within a tap the shear stress q
-    follows the finger, dq/dt = k_t U, capped by µ p_c(t). Raises `InputError` for values that
-    cannot be used.
+    asperities, p/λ_r with the λ_r that `AsperityLaw` assumes; the skin is then λ_r deep into the
+    plate at rest, whatever the load). Within a tap the shear stress q follows the finger,
+    dq/dt = k_t U, capped by µ p_c(t). Raises `InputError` for values that cannot be used.
     """
     if normal_stiffness is None:
-        normal_stiffness = pressure / ASPERITY_DECAY
+        normal_stiffness = pressure / AsperityLaw().decay_length
     rest = pressure / normal_stiffness
     half = contact_angle(amplitude, rest)
     intermittent = half < np.pi

@@ -102,10 +102,16 @@ def changed(quality: float, rise: float, speed: float, field: float, drifts: Dri
 
 
 @compiled()
+def resonance(rise: float, driven: Driven, drifts: Drifts) -> float:
+    """The resonance frequency (Hz) of a plate that is warmer by `rise` (K), at a low amplitude."""
+    return float(driven.frequency * max(1.0 + drifts.frequency * rise, _LEAST))
+
+
+@compiled()
 def response(frequency: float, rise: float, moved: float, driven: Driven, drifts: Drifts) -> float:
     """The amplitude (m) that a mode takes at a frequency (Hz; 0 follows the resonance) if its
     changes are those of an amplitude `moved` (m)."""
-    f0 = driven.frequency * (1.0 + drifts.frequency * rise)
+    f0 = resonance(rise, driven, drifts)
     speed = 2.0 * math.pi * f0 * moved
     quality, gain, soft = changed(driven.quality, rise, speed, driven.field, drifts)
     peak = driven.amplitude * gain * quality / driven.quality
@@ -144,7 +150,7 @@ def lost(frequency: float, rise: float, driven: Driven, drifts: Drifts) -> Any:
     """Amplitude (m) and the power lost in the plate (W) at a frequency (0: at resonance) and a
     warmth: of its material, which goes with A²/Q at a constant modal stiffness, and dielectric."""
     moved = amplitude(frequency, rise, driven, drifts)
-    f0 = driven.frequency * (1.0 + drifts.frequency * rise)
+    f0 = resonance(rise, driven, drifts)
     speed = 2.0 * math.pi * f0 * moved
     quality, _, soft = changed(driven.quality, rise, speed, driven.field, drifts)
     pace = (frequency if frequency > 0.0 else f0 * soft) / driven.frequency

@@ -21,6 +21,7 @@ from squeezefilm.plate.heat.kernel import (
     Driven,
     conductance,
     lost,
+    resonance,
     surpluses,
     time_until,
 )
@@ -305,7 +306,7 @@ class _Case:
 
     def _state(self, frequency: float, rise: si.Kelvin) -> WarmState:
         moved, power = lost(frequency, rise, self.driven, self.drifts)
-        drift = self.driven.frequency * self.drifts.frequency * rise
+        drift = resonance(rise, self.driven, self.drifts) - self.driven.frequency
         return WarmState(rise, drift, moved, power)
 
 

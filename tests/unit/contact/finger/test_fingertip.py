@@ -49,6 +49,19 @@ def test_the_asperity_law_is_as_given_on_its_own_roughness_and_scales_elsewhere(
         bare.asperity_law(0.0)
 
 
+def test_the_contact_s_law_holds_up_to_a_force() -> None:
+    finger = Finger(10e-3, 50e-6, 350e-6, 0.5)
+    most = finger.largest_force(0.6e-6)
+    ends = finger.asperity_law(0.6e-6).largest_pressure
+    assert finger.plateau_pressure(most) == pytest.approx(ends)
+    # Where the area keeps up with the force the pressure never gets there, or is always beyond.
+    for exponent in (0.999, 1.0):
+        wide = dataclasses.replace(finger, contact_area_exponent=exponent)
+        assert wide.largest_force(0.6e-6) == 1e4
+    hard = dataclasses.replace(finger, contact_area_exponent=1.0, normal_force=50.0)
+    assert hard.largest_force(0.6e-6) == 0.0
+
+
 def test_moisture_softens_and_grips() -> None:
     dry, moist = (dataclasses.replace(FINGER, moisture=m) for m in ("dry", "moist"))
     pressures = [f.asperity_law(0.6e-6).pressure(2e-6) for f in (moist, FINGER, dry)]

@@ -7,7 +7,7 @@ import pytest
 
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.rough_contact import RoughContact
-from squeezefilm.contact.sharing.balance import LoadSharing, share_load
+from squeezefilm.contact.sharing.balance import LoadSharing, share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
 from squeezefilm.display import load_display
@@ -69,6 +69,26 @@ def test_of_real_contact_it_parts_from_the_share_of_the_load(table: FilmTable) -
 def test_a_rough_interface_is_refused_where_it_would_be_flat(table: FilmTable) -> None:
     with pytest.raises(OutOfRangeError, match="nearly everything into contact"):
         share_load(table, RoughContact(), 1e-6, 4e5)
+
+
+@pytest.mark.parametrize("amplitude", [1e-12, 1e-10, 1e-9])
+def test_a_hard_pressed_plateau_that_hardly_moves_is_one_at_rest(
+    table: FilmTable, amplitude: float
+) -> None:
+    """The search for its gap stays within the film's table."""
+    rest = share_load(table, RoughContact(), 0.0, 5.2e4)
+    found = share_load(table, RoughContact(), amplitude, 5.2e4)
+    assert float(found.mean_gap) == pytest.approx(float(rest.mean_gap), rel=1e-3)
+    with pytest.raises(OutOfRangeError, match="nearly everything into contact"):
+        share_load(table, RoughContact(), amplitude, 2e5)
+
+
+def test_of_tied_ridges_the_one_that_comes_nearest_is_refused(table: FilmTable) -> None:
+    """Not the last one, which need not move at all."""
+    for swings in ([0.3e-6, 0.0, 0.0], [0.0, 0.0, 0.3e-6]):
+        with pytest.raises(OutOfRangeError, match="nearly everything into contact"):
+            share_load_tied(table, RoughContact(), np.array(swings), 1.2e5)
+    share_load_tied(table, RoughContact(), np.array([0.3e-6, 0.0, 0.0]), 9e4)
 
 
 def test_many_speeds_are_one_call(shared: LoadSharing) -> None:

@@ -8,14 +8,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from squeezefilm.contact.sharing.tapping import (
-    ASPERITY_DECAY,
-    MINDLIN_RATIO,
-    Tapping,
-    tapping_friction,
-)
+from squeezefilm.contact.asperities import MINDLIN_RATIO, AsperityLaw
+from squeezefilm.contact.sharing.tapping import Tapping, tapping_friction
 
-REST = ASPERITY_DECAY
+REST = AsperityLaw().decay_length
 
 
 def envelope(half: float, rate: float, phases: int = 2**18) -> float:

@@ -180,3 +180,14 @@ def test_a_source_knows_the_ceramics_field_and_capacitance() -> None:
     ring = load_display("biet2008-stator").actuator
     bare = heat_source(ring, 140.0, 40.5e3, 200.0, 2e-6, 1.0)
     assert (bare.field, bare.quality_of_ceramic, bare.dielectric_power) == (None, None, 0.0)
+
+
+def test_a_plate_that_would_drift_to_no_frequency_at_all_keeps_some() -> None:
+    """A coefficient stands for some tens of kelvin: beyond, it leaves a twentieth."""
+    steep = dataclasses.replace(MEASURED, thermal_resistance=1e3, temperature_coefficient=-9e-3)
+    for gain in (0.0, 5e-2):
+        found = warming(
+            SOURCE, PLATE, dataclasses.replace(steep, quality_temperature_coefficient=gain)
+        )
+        assert found.tracked.resonance_drift >= -0.95 * SOURCE.frequency * (1 + 1e-12)
+        assert found.tracked.temperature_rise > 0
