@@ -7,6 +7,7 @@ solved film the friction.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import functools
 import warnings
@@ -235,8 +236,10 @@ def _felt(
     load = law.load(felt.amplitude)
     friction, limits = law.under(load, felt.amplitude), None
     if law.kind.film == "shared":
-        found = law.limits(felt.amplitude)
-        limits = float(found.own[0]), float(found.one_gap[0])
+        # The other limit of the skin is a remark; where it is out of range the answer stands.
+        with contextlib.suppress(OutOfRangeError):
+            found = law.limits(felt.amplitude)
+            limits = float(found.own[0]), float(found.one_gap[0])
     base = law.friction_coefficient
     sigma = squeeze_number(
         drive.frequency,
@@ -310,13 +313,15 @@ def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
             f"under {asked} most asperities are pressed flat even at rest: this contact's law "
             f"holds to {held}. Press less, or take asperities of type 'rough_contact'"
         )
-    if limits is not None:
-        spread = abs(limits[0] - limits[1])
+    if film == "shared":
+        between = "it holds for a skin that sinks ridge by ridge; a stiff one is out of range here"
+        if limits is not None:
+            between = f"relative friction differs by {abs(limits[0] - limits[1]):.2f} between a "
+            between += "skin that sinks ridge by ridge and a stiff one"
         messages.append(
             f"the model '{p.model}' lets film and asperities share the load of each ridge; "
             "its asperities and plateaus are assumed, not measured, and decide the answer: see the "
-            "interval of squeezefilm friction. Relative friction differs by "
-            f"{spread:.2f} between a skin that sinks ridge by ridge and a stiff one"
+            f"interval of squeezefilm friction; {between}"
         )
     return messages if p.heat is None else [*messages, *p.heat.doubts]
 

@@ -98,6 +98,13 @@ def test_film_and_asperities_share_the_load_by_default(stator: Display, plate: D
         )
 
 
+def test_a_stiff_skin_out_of_range_leaves_the_answer_of_a_soft_one(stator: Display) -> None:
+    p = predict(stator, normal_force=10.0, vibration_amplitude=3e-6)
+    assert p.relative_friction_limits is None
+    assert 0 < p.relative_friction < 0.3
+    assert any("a stiff one is out of range here" in one for one in p.warnings)
+
+
 def test_the_finger_takes_some_of_the_vibration_of_a_plate(plate: Display) -> None:
     p = predict(plate)
     assert p.touch.mode is not None
