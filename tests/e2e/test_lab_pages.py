@@ -195,6 +195,42 @@ def test_a_texture_is_felt_recorded_replayed_and_saved(
     assert complaints == []
 
 
+def test_friction_met_and_wanted_are_of_the_same_speed(
+    chromium: Browser, running_lab: RunningLab
+) -> None:
+    page, complaints = opened(chromium, running_lab, "feel")
+    page.locator(".parity", has_text="agree").wait_for(timeout=SOLVED)
+    # An amplitude reached, without a wave: what is met is what is wanted, however fast.
+    found = page.evaluate(
+        """async () => {
+          const { Finger, frictionAt } = await import("/static/finger.js");
+          const ready = {
+            finger_speed_m_per_s: [0, 0.04, 0.08], lowest_finger_speed_m_per_s: 0.02,
+            relative_friction: [[1, 0], [1, 0.2], [1, 0.4]], largest_amplitude_m: 2e-6,
+            friction_coefficient: 1, normal_force_N: 1, envelope_time_constant_s: 1e-3,
+          };
+          return [0, 0.01, 0.04, 0.3].map((speed) => {
+            const one = { ready, x: 0, y: 0, speed, direction: 1, wanted: 2e-6, amplitude: 2e-6 };
+            const met = Finger.prototype.met.call(one);
+            return [met.friction, met.frictionWanted, met.pace, frictionAt(ready, 2e-6, -speed)];
+          });
+        }"""
+    )
+    for met, wanted, _, _ in found:
+        assert met == wanted
+    # At rest as at the slowest that amplitudes are chosen for; linear between; held beyond.
+    assert [round(one[0], 9) for one in found] == [0.1, 0.1, 0.2, 0.4]
+    assert [one[2] for one in found] == [0.02, 0.02, 0.04, 0.3]
+    assert [round(one[3], 9) for one in found] == [0.0, 0.05, 0.2, 0.4]
+    box = page.locator("canvas.surface").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 30, box["y"] + 30)
+    page.mouse.down()
+    page.locator(".number small", has_text="at 5 mm/s").wait_for()
+    page.mouse.up()
+    assert complaints == []
+
+
 def test_a_grating_is_composed_and_a_picture_dropped(
     chromium: Browser, running_lab: RunningLab, tmp_path: Path
 ) -> None:

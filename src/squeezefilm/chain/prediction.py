@@ -51,11 +51,11 @@ class Prediction(Result):
     `mean_pressure` is the film's, averaged over contact and period, divided by ambient,
     `mean_pressure_error` the solver's estimate of its error (0 for a closed form).
     `relative_friction_limits` are µ′/µ with each ridge at its own balance and with all ridges at
-    one mean gap, None for a model that shares no load. `friction_reduction` is µ − µ′,
-    `tangential_force` µ′ F of a finger that slides steadily. `validity` says how far the paper's
-    asymptote is from where it holds; `law` is the friction as a function of amplitude and speed.
-    `heat` is what the plate's losses do to it, None where they are not known: every other number is
-    of the cold plate.
+    one mean gap, None for a model that shares no load or where one of the two is out of range.
+    `friction_reduction` is µ − µ′, `tangential_force` µ′ F of a finger that slides steadily.
+    `validity` says how far the paper's asymptote is from where it holds; `law` is the friction as
+    a function of amplitude and speed. `heat` is what the plate's losses do to it, None
+    where they are not known: every other number is of the cold plate.
     """
 
     display: str
@@ -236,7 +236,7 @@ def _felt(
     load = law.load(felt.amplitude)
     friction, limits = law.under(load, felt.amplitude), None
     if law.kind.film == "shared":
-        # The other limit of the skin is a remark; where it is out of range the answer stands.
+        # The limit that is not the model's own may be out of reach where the model is not.
         with contextlib.suppress(OutOfRangeError):
             found = law.limits(felt.amplitude)
             limits = float(found.own[0]), float(found.one_gap[0])
@@ -314,14 +314,16 @@ def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
             f"holds to {held}. Press less, or take asperities of type 'rough_contact'"
         )
     if film == "shared":
-        between = "it holds for a skin that sinks ridge by ridge; a stiff one is out of range here"
-        if limits is not None:
-            between = f"relative friction differs by {abs(limits[0] - limits[1]):.2f} between a "
-            between += "skin that sinks ridge by ridge and a stiff one"
+        spread = (
+            "A skin so stiff that all ridges hang on one mean gap is out of this contact's range"
+            if limits is None
+            else f"Relative friction differs by {abs(limits[0] - limits[1]):.2f} between a skin "
+            "that sinks ridge by ridge and a stiff one"
+        )
         messages.append(
             f"the model '{p.model}' lets film and asperities share the load of each ridge; "
             "its asperities and plateaus are assumed, not measured, and decide the answer: see the "
-            f"interval of squeezefilm friction; {between}"
+            f"interval of squeezefilm friction. {spread}"
         )
     return messages if p.heat is None else [*messages, *p.heat.doubts]
 

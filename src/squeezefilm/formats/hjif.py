@@ -24,6 +24,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.errors import InputError
 from squeezefilm.render.program.made_for import MadeForSpeed
 from squeezefilm.render.texture.composition import Composable, require_texture
@@ -43,8 +44,6 @@ _DRIFT = 1e-3
 _ELSEWHERE_Y = (-0.011_37, 0.002_71, 0.017_93)
 _ELSEWHERE_V = (-0.08, 0.021_3, 0.167)
 _ELSEWHERE_T = (0.113_7, 0.971_3)
-
-_USUAL_SPEED: si.MetrePerSecond = 0.08
 
 ToFriction = Callable[[si.FloatArray], si.DimensionlessArray]
 """Values of a texture, in its quantity → relative friction (1)."""
@@ -135,7 +134,7 @@ def hjif_of(
             "law, or write the texture in relative_friction"
         )
     known = to_friction or (lambda values: values)
-    speed = _USUAL_SPEED if made_for is None else made_for.speed
+    speed = EXPLORING_SPEED if made_for is None else made_for.speed
 
     def friction(
         x: si.FloatArray, y: float = 0.0, v: float = speed, t: float = 0.0

@@ -23,6 +23,7 @@ from squeezefilm.formats.pictures import picture_from
 from squeezefilm.lab.designing.form import display_of
 from squeezefilm.lab.designing.numbers import WorkingPoint, predicted
 from squeezefilm.plate.layout import DiscPlate
+from squeezefilm.render.program.inverse import LOWEST_SPEED
 from squeezefilm.render.program.lowering import Program
 from squeezefilm.render.program.renderer import render
 from squeezefilm.results import stamp, to_json
@@ -119,6 +120,7 @@ def feel(asked: TextureOnDisplay) -> dict[str, Any]:
         "amplitude_m": amplitude.tolist(),
         "finger_speed_m_per_s": ready.friction.speed.tolist(),
         "nominal_finger_speed_m_per_s": ready.friction.nominal_speed,
+        "lowest_finger_speed_m_per_s": LOWEST_SPEED,
         "relative_friction": ready.friction.over_speeds(amplitude).tolist(),
         "friction_coefficient": p.friction_coefficient,
         "normal_force_N": p.normal_force,

@@ -67,12 +67,15 @@ export class Finger {
     const { ready } = this;
     const place = ready.wave?.along === "y" ? this.y : this.x;
     const factor = this.wave && ready.wave ? waveFactor(ready.wave, place) : 1;
-    // A finger at rest is shown what it would meet exploring.
-    const friction = frictionAt(ready, this.amplitude * factor, this.speed > RESTING ? this.speed : undefined);
+    // The program chooses amplitudes for no slower finger; shown at rest, so that a texture is what
+    // it asks for and does not fall to nothing where the finger stops.
+    const pace = Math.max(this.speed, ready.lowest_finger_speed_m_per_s);
+    const friction = frictionAt(ready, this.amplitude * factor, pace);
     const force = this.speed > RESTING ? ready.friction_coefficient * friction * ready.normal_force_N : 0;
     return {
       x: this.x, y: this.y, speed: this.speed, wanted: this.wanted, amplitude: this.amplitude,
-      friction, force: force * this.direction, factor,
+      friction, frictionWanted: frictionAt(ready, this.wanted, pace), pace,
+      force: force * this.direction, factor,
       lag: this.speed * ready.envelope_time_constant_s,
     };
   }

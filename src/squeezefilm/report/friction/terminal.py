@@ -16,6 +16,7 @@ from squeezefilm.report.kit.numbers import (
     influence_rows,
     reduction_row,
     shown,
+    speed_row,
     weight_rows,
 )
 from squeezefilm.report.kit.terminal import heading, plain_console, show_missed, table
@@ -91,7 +92,7 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     rows += [
         ("Surface", p.surface.name, f"roughness {shown(p.surface.roughness, M)}"),
         ("Normal force", shown(p.normal_force, N), ""),
-        ("Finger speed", shown(p.speed, si.Unit("m/s")), "of sliding"),
+        speed_row(p),
         ("Ambient pressure", shown(result.display.gas.ambient_pressure, si.Unit("Pa")), ""),
     ]
     sharing = p.touch.sharing

@@ -87,6 +87,7 @@ def key_numbers(analysis: Analysis) -> list[tuple[str, str, str]]:
         ("Vibration amplitude", shown(p.vibration_amplitude, M), _kept(p)),
         ("Surface", printable(p.surface.name), f"roughness {shown(p.surface.roughness, M)}"),
         ("Normal force", shown(p.normal_force, N), ""),
+        speed_row(p),
         ("Squeeze number", f"{p.squeeze_number:.4g}", ""),
         ("Mean pressure", f"{p.mean_pressure:.4f}", "over ambient, contact and period"),
         ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", _sure(analysis)),
@@ -146,6 +147,11 @@ def heat_rows(heat: Warming | None) -> list[tuple[str, str, str]]:
             f"time constant {shown(heat.thermal_time, S, 2)}; assumed: " + "; ".join(heat.assumed),
         ),
     ]
+
+
+def speed_row(p: Prediction) -> tuple[str, str, str]:
+    """The finger's speed that the friction is for: quantity, value, remark."""
+    return "Finger speed", shown(p.speed, si.Unit("m/s")), "of sliding"
 
 
 def reduction_row(p: Prediction) -> tuple[str, str, str]:

@@ -17,6 +17,7 @@ from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing import program
 from squeezefilm.lab.designing.form import edited, preset_text
 from squeezefilm.lab.designing.program import TextureOnDisplay, feel, parity, pixels_of, title_of
+from squeezefilm.render.program.inverse import LOWEST_SPEED
 from squeezefilm.results import config_hash
 from squeezefilm.texture_file import load_texture
 
@@ -68,6 +69,7 @@ def test_friction_falls_from_one_at_rest_to_what_the_display_makes() -> None:
     assert np.all(np.diff(speed) > 0)
     assert np.all(np.diff(rows, axis=0) >= -1e-9)
     friction = rows[np.flatnonzero(speed == found["nominal_finger_speed_m_per_s"])[0]]
+    assert found["lowest_finger_speed_m_per_s"] == LOWEST_SPEED
     assert amplitude[0] == 0.0
     assert amplitude[-1] == found["largest_amplitude_m"]
     np.testing.assert_allclose(np.diff(amplitude), amplitude[-1] / 256)

@@ -34,6 +34,7 @@ def test_analysis_at_80_columns(
     text = printed(capsys)
     for part in (
         "33.58 kHz",
+        "Finger speed                 80 mm/s",
         "(8,0), solved to ± ",
         shown(plate_analysis.prediction.vibration_amplitude, Unit("m")),
         f"{plate_analysis.prediction.relative_friction:.3f}",

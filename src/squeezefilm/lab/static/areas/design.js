@@ -248,14 +248,15 @@ class DesignView {
     const error = found.resonance_frequency_error_Hz;
     say(n.frequency, quantity(found.resonance_frequency_Hz, "Hz", 5), error ? `± ${quantity(error, "Hz", 2)} of the solver` : `mode ${found.mode}`);
     say(n.amplitude, quantity(found.vibration_amplitude_m, "m"), `${quantity(found.free_amplitude_m, "m")} without finger`);
-    say(n.friction, plain(found.relative_friction), "µ′/µ, 1 = no effect");
+    const pace = `at ${plain(found.finger_speed_m_per_s * 1e3)} mm/s`;
+    say(n.friction, plain(found.relative_friction), `µ′/µ, 1 = no effect; ${pace}`);
     say(n.reduction, plain(found.friction_reduction), `of µ = ${plain(found.friction_coefficient)} on ${found.surface}`);
     say(n.squeeze, plain(found.squeeze_number), found.squeeze_number > 10 ? "" : "below the paper's 10");
     say(n.wave, quantity(found.half_wavelength_m, "m"));
     say(n.time, quantity(found.envelope_time_constant_s, "s"), `Q = ${plain(found.quality_factor)}`);
     say(n.force, quantity(found.tangential_force_N, "N"), `at ${quantity(found.normal_force_N, "N")}`);
     const model = found.vibration_model.replaceAll("_", " ");
-    this.quality.textContent = `${found.quality === "solved" ? "solved" : "screening"}: vibration by ${model}, friction by ${found.friction_model}; ${quantity(found.voltage_V, "V")} at resonance`;
+    this.quality.textContent = `${found.quality === "solved" ? "solved" : "screening"}: vibration by ${model}, friction by ${found.friction_model} under a finger ${pace}; ${quantity(found.voltage_V, "V")} at resonance`;
     this.quality.dataset.quality = found.quality;
     this.plan.set(this.store.current.outline, found.line, found.shape);
     const micro = (values) => values.map((value) => (value === null ? null : value * 1e6));

@@ -173,8 +173,7 @@ class FeelView {
     this.delays.push(performance.now() - stamp);
     if (this.delays.length > 500) this.delays.shift();
     this.met = met;
-    const wanted = frictionAt(this.ready, met.wanted, met.speed);
-    this.scope.add(stamp / 1e3, [wanted, met.friction]);
+    this.scope.add(stamp / 1e3, [met.frictionWanted, met.friction]);
     if (this.recording && this.rows.length < MOST_ROWS) {
       this.rows.push([stamp / 1e3 - this.began, x, y, met.speed, met.wanted, met.amplitude, met.friction, met.force]);
     }
@@ -198,6 +197,7 @@ class FeelView {
       this.view.draw();
       const moving = now / 1e3 - this.finger.time < 0.1;
       n.friction.value.textContent = plain(met.friction);
+      n.friction.note.textContent = this.ready.finger_speed_m_per_s.length > 1 ? `at ${plain(met.pace * 1e3)} mm/s` : "";
       n.amplitude.value.textContent = quantity(met.amplitude, "m");
       n.amplitude.note.textContent = `wanted ${quantity(met.wanted, "m")}`;
       n.force.value.textContent = quantity(moving ? Math.abs(met.force) : 0, "N");
@@ -288,7 +288,7 @@ class FeelView {
       relative_friction: (v) => v,
       friction_reduction: (v) => 1 - v / ready.friction_coefficient,
     }[ready.quantity];
-    this.view.set(ready, (x, y) => friction(renderer.value(x, y, 0.08, 0)));
+    this.view.set(ready, (x, y) => friction(renderer.value(x, y, ready.nominal_finger_speed_m_per_s, 0)));
     this.port?.postMessage({ ready });
     this.scope.clear();
     this.showStroke();
@@ -339,8 +339,7 @@ class FeelView {
     while (replaying.at < rows.length && rows[replaying.at][0] - first <= (now - replaying.began) / 1e3) {
       const [time, x, y] = rows[replaying.at];
       this.met = this.finger.move(x, y, replaying.began / 1e3 + time - first);
-      const wanted = frictionAt(this.ready, this.met.wanted, this.met.speed);
-      this.scope.add(replaying.began / 1e3 + time - first, [wanted, this.met.friction]);
+      this.scope.add(replaying.began / 1e3 + time - first, [this.met.frictionWanted, this.met.friction]);
       replaying.at += 1;
     }
     if (replaying.at >= rows.length) this.replaying = null;
