@@ -55,6 +55,19 @@ def test_the_table_of_fingers_on_metal_and_glass_is_what_is_computed(display: st
             assert numbers(cell) == pytest.approx(finger(display, volts, force), rel=2e-3, abs=0.06)
 
 
+@pytest.mark.nightly
+@pytest.mark.filterwarnings("ignore")
+def test_on_glass_the_amplitude_gives_way_at_the_force_that_the_page_says() -> None:
+    said = re.search(
+        r"(\d+) % is left at ([\d.]+) N and (\d+) % at ([\d.]+) N", PAGE.read_text("utf-8")
+    )
+    assert said is not None
+    for kept, force in (said.group(1, 2), said.group(3, 4)):
+        assert finger("touchpad-glass", 30.0, float(force))[0] == pytest.approx(
+            float(kept), abs=0.6
+        )
+
+
 def test_the_stator_has_the_impedances_that_the_page_says() -> None:
     said = re.search(r"would have\s+Z = (.+?)\s+N·s/m", PAGE.read_text(encoding="utf-8"), re.S)
     assert said is not None

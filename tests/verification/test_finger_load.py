@@ -150,20 +150,50 @@ def test_the_default_is_of_the_order_of_a_piston_in_tissue() -> None:
     assert 0.4 < Z.imag / piston.imag < 2
 
 
-def test_through_film_and_asperities_at_half_a_newton_no_skin_would_be_felt_like_that() -> None:
+@pytest.mark.parametrize(("force", "bound"), [(0.2, 28.3), (0.5, 57.6)])
+def test_through_film_and_asperities_of_a_light_touch_no_skin_would_be_felt_like_that(
+    force: float, bound: float
+) -> None:
     """1/K = 1/K_i + 1/D, and Im 1/D ≤ 0 of a skin that makes no energy: so |K| ≤ |K_i|²/Im K_i."""
-    Ki = resting(0.5, 1e-8)
+    Ki = resting(force, 1e-8)
     most = finger_impedance(SHARE * abs(Ki) ** 2 / Ki.imag + 0j, AREA, 34e3)
-    assert abs(most) == pytest.approx(42, abs=1)
-    assert abs(most) < PUBLISHED_IMPEDANCE
+    assert abs(most) == pytest.approx(bound, abs=0.2)
+    # At half a newton the published figure is just within reach.
+    assert (abs(most) < PUBLISHED_IMPEDANCE) == (force < 0.5)
     for skin in (Skin(), Skin(damping_per_area=0.0), Skin(0.5, 0.0, 1e4), Skin(3.3, 1.2e11, 1e3)):
         felt = finger_impedance(finger_stiffness(Ki, skin, 34e3, SHARE), AREA, 34e3)
         assert abs(felt) <= abs(most) * (1 + 1e-9)
+    # Reached by a mass in resonance with the interface, Re 1/D = −Re 1/K_i, and no damping.
+    resonant = Skin(abs(Ki) ** 2 / Ki.real / (2 * np.pi * 34e3) ** 2, 0.0, 0.0)
+    if force == 0.5:
+        assert resonant.mass_per_area == pytest.approx(1.83, abs=0.02)
+    felt = finger_impedance(finger_stiffness(Ki, resonant, 34e3, SHARE), AREA, 34e3)
+    assert felt == pytest.approx(abs(most), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("force", "amplitude", "share"),
+    [(0.5, 1e-8, 36), (2, 1e-8, 70), (0.5, 1e-6, 13), (2, 1e-6, 31)],
+)
+def test_the_skin_takes_the_share_of_the_loss_that_the_page_on_models_says(
+    force: float, amplitude: float, share: float
+) -> None:
+    interface = resting(force, amplitude)
+    _, _, film, tissue = two_bodies(interface, Skin(), 34e3)
+    assert 100 * tissue / (film + tissue) == pytest.approx(share, abs=1)
+
+
+@pytest.mark.parametrize(("force", "enough"), [(2.3, False), (2.5, True)])
+def test_the_real_part_passes_the_published_one_at_a_heavy_touch(
+    force: float, enough: bool
+) -> None:
+    felt = finger_stiffness(resting(force, 1e-8), Skin(), 34e3, SHARE)
+    assert (finger_impedance(felt, AREA, 34e3).real > PUBLISHED_IMPEDANCE) == enough
 
 
 @pytest.mark.parametrize(
     ("force", "amplitude", "expected"),
-    [(0.5, 1e-8, 15 - 15j), (2.0, 1e-8, 56 - 33j), (0.5, 1e-6, 8 - 6j), (2.0, 1e-6, 20 - 20j)],
+    [(0.5, 1e-8, 19 - 18j), (2.0, 1e-8, 47 - 33j), (0.5, 1e-6, 8 - 6j), (2.0, 1e-6, 16 - 16j)],
 )
 def test_a_plate_feels_a_finger_as_the_page_on_models_says(
     force: float, amplitude: float, expected: complex

@@ -22,6 +22,7 @@ _FIVE = (*style.LINES, (style.INK, (0, (3, 1, 1, 1, 1, 1))))
 
 _NAMES = {
     "partial-levitation": "partial levitation",
+    "partial-levitation-shear": "partial levitation with shear",
     "partial-levitation-one-gap": "partial levitation, one mean gap",
     "paper2008": "paper's asymptote",
     "film-sealed": "solved film, grooves sealed",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.report.friction.told_apart import told_apart
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from squeezefilm.chain.friction import FrictionLaw
     from squeezefilm.chain.prediction import Prediction
 
+_SHEARED = "partial-levitation-shear"
 _STYLES = {
     "paper2008": (*style.LINES[1], "paper's asymptote"),
     "film-smooth": (*style.LINES[2], "smooth film, no ridges"),
@@ -87,6 +89,10 @@ def _models(
     axes.fill_between(x, stiff, own.relative_friction, color=style.BAND, lw=0, label=name)
     name = "partial levitation, each ridge at its own balance"
     axes.plot(x, own.relative_friction, color=style.BLUE, lw=2.4, label=name)
+    for curve in curves:
+        if curve.model == _SHEARED:
+            name = f"the same with shear, at {shown(p.speed, si.Unit('m/s'))}"
+            axes.plot(1e6 * curve.amplitude, curve.relative_friction, color=style.INK, label=name)
     at, words = 1e6 * p.vibration_amplitude, f"{p.relative_friction:.2f}"
     if unsure is not None:
         low, high = unsure.interval
@@ -202,13 +208,13 @@ def ripple(result: FrictionAnalysis) -> Figure:
     """The friction as the pad moves along the standing wave, at constant amplitude."""
     found = result.ripple
     assert found is not None, "nothing vibrates"
-    half = found.half_wavelength
+    half, sheared = found.half_wavelength, result.prediction.model == _SHEARED
     x = np.concatenate([found.position, found.position + half, [2 * half]])
     y = np.concatenate([found.relative_friction] * 2 + [found.relative_friction[:1]])
     figure = style.new_figure(
         f"The wave itself is felt: {100 * found.ripple:.2g} % of ripple every "
         f"{shown(half, M, 3)} under a contact of {shown(found.contact_length, M, 3)}",
-        "partial-levitation, each ridge at its own balance",
+        f"{_SHEARED if sheared else 'partial-levitation'}, each ridge at its own balance",
         4.0,
     )
     axes = figure.subplots()

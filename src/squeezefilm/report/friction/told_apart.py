@@ -14,10 +14,11 @@ from squeezefilm.report.kit.terminal import heading, plain_console, table
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.friction.tell_apart import Condition, ToldApart
+    from squeezefilm.analysis.friction.tell_apart import BestExperiment, Condition, ToldApart
 
 _SPEED = si.Unit("m/s")
 _OF = {"height_law": "laws of the heights", "finger.tangential_stiffness": "shear elements"}
+_SHORT = {"height_law": "heights", "finger.tangential_stiffness": "shear"}
 
 
 def show_told_apart(found: ToldApart) -> None:
@@ -26,10 +27,10 @@ def show_told_apart(found: ToldApart) -> None:
     heading(console, "Which measurement would tell the laws apart")
     rows = [
         (
-            " or ".join(one.pair),
+            _pair(one),
             _words(one.condition),
             "{:.2f} or {:.2f}".format(*one.means),
-            f"{one.right:.0%}",
+            _percent(one.right),
         )
         for one in found.best
     ]
@@ -37,10 +38,10 @@ def show_told_apart(found: ToldApart) -> None:
     heading(console, "Which ratio of two measurements with the same finger would")
     rows = [
         (
-            " or ".join(one.pair),
+            _pair(one),
             f"{_words(one.ratio[0])} over {_words(one.ratio[1])}",
             "{:.2f} or {:.2f}".format(*one.ratio_means),
-            f"{one.ratio_right:.0%}",
+            _percent(one.ratio_right),
         )
         for one in found.best
     ]
@@ -48,7 +49,7 @@ def show_told_apart(found: ToldApart) -> None:
     for overall in found.overall:
         console.print(
             f"One condition for all {_OF[overall.of]}: {_words(overall.condition)}; right in "
-            f"{overall.least:.0%} of the cases for the two told worst."
+            f"{_percent(overall.least)} of the cases for the two told worst."
         )
     console.print(
         "“Right” is how often whoever measures would choose the right one of the two; 50% is "
@@ -65,19 +66,19 @@ def told_apart(result: Any) -> Figure:
     found: ToldApart = result.apart
     best = max(found.best, key=lambda one: one.discriminability)
     figure = style.new_figure(
-        f"One measurement tells {' from '.join(best.pair)} best, at {_words(best.condition)}: "
-        f"right in {best.right:.0%} of the cases",
+        f"One measurement tells {_OF[best.of]} best: {' or '.join(best.pair)}, at "
+        f"{_words(best.condition)}, right in {_percent(best.right)} of the cases",
         f"{found.draws} fingers drawn, µ′/µ measured within {found.noise:.0%} (assumed); "
         "blank where draws are refused",
         6.0,
     )
     axes = figure.subplots(2, -(-len(found.pairs) // 2), sharex=True, sharey=True, squeeze=False)
     columns = [f"{1e6 * a:g} µm" for a in found.amplitudes]
-    for one, pair, d in zip(axes.ravel(), found.pairs, found.discriminability, strict=False):
+    for one, pair, d in zip(axes.ravel(), found.best, found.discriminability, strict=False):
         # Amplitudes side by side, within each the speeds.
         right = ndtr(np.swapaxes(d, 1, 2).reshape(found.forces.size, -1) / 2)
         image = one.imshow(100 * right, vmin=50, vmax=100, cmap="cividis", aspect="auto")
-        one.set_title(" or ".join(pair), fontsize=10)
+        one.set_title(_pair(pair), fontsize=10)
         style.bare(one)
         for edge in range(1, found.amplitudes.size):
             one.axvline(edge * found.speeds.size - 0.5, color=style.PAPER, lw=2)
@@ -91,6 +92,15 @@ def told_apart(result: Any) -> Figure:
     )
     figure.colorbar(image, ax=axes, label="chooses the right one (%), 50 is guessing")
     return figure
+
+
+def _pair(one: BestExperiment) -> str:
+    return f"{_SHORT[one.of]}: {' or '.join(one.pair)}"
+
+
+def _percent(share: float) -> str:
+    """A probability of a model, which is never certain."""
+    return f"{share:.0%}" if share <= 0.99 else "above 99%"
 
 
 def _words(at: Condition) -> str:

@@ -204,7 +204,7 @@ def group_words(one: GroupInfluence) -> str:
     what = {"measurable": "Could be measured", "unknown": "Nobody knows"}[one.knowledge]
     return (
         f"{what}: {one.total:.0%} ± {one.error:.0%} of the variance, {max(one.alone, 0):.0%} "
-        "without the other group"
+        "by itself"
     )
 
 

@@ -128,6 +128,17 @@ def test_every_model_is_drawn_in_its_own_way() -> None:
     assert axes.get_legend() is not None
 
 
+def test_with_shear_the_curve_is_drawn_that_the_working_point_is_on() -> None:
+    point = SimpleNamespace(**{**vars(POINT), "model": "partial-levitation-shear", "speed": 0.08})
+    curves = (*CURVES, curve("partial-levitation-shear", FINE, 0.5))
+    figure = models(without(curves=curves, prediction=point))
+    line = labelled(figure.axes[0])["the same with shear, at 80 mm/s"]
+    assert line.get_ydata() == pytest.approx(1 - 0.5 * np.linspace(0, 1, 9))
+    assert words(ripple(without(prediction=point)).get_supxlabel()).startswith(
+        "Model: partial-levitation-shear, each ridge"
+    )
+
+
 def test_the_band_lies_between_a_stiff_pad_and_a_soft_one() -> None:
     axes = models(RESULT).axes[0]
     band = labelled(axes)["between a stiff pad (one mean gap) and a soft one"]
