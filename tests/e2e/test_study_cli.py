@@ -147,4 +147,5 @@ def test_a_rehearsal_acknowledges_the_ultrasound(tmp_path: Path) -> None:
     (row,) = csv.DictReader(io.StringIO(text))
     assert row["ultrasound_acknowledged"] == row["verified_before"] == "true"
     assert row["verified_after"] == "true"
-    assert float(row["amplitude_before_m"]) > 1e-6
+    # At a quarter of the drive's 15 V.
+    assert float(row["amplitude_before_m"]) == pytest.approx(3.75 * 114.8e-9, rel=0.02)

@@ -15,9 +15,6 @@ from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, evaluate, quantile
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 
-# Draws of a smooth finger under a large force are beyond what laws of separate asperities hold to.
-pytestmark = pytest.mark.filterwarnings("ignore::squeezefilm.errors.OutOfRangeWarning")
-
 
 def _mixture(name: str, force: float) -> Mixture:
     display = load_display(name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import warnings
 from collections import Counter
@@ -32,12 +33,20 @@ from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.touch import touch
 from squeezefilm.display import Display
-from squeezefilm.errors import SqueezefilmError
+from squeezefilm.errors import OutOfRangeWarning, SqueezefilmError
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.plate.working_mode import working_mode
 
 Input = Parameter | Choice
+
+
+@contextlib.contextmanager
+def as_drawn() -> Iterator[None]:
+    """Within it a draw beyond the range of its law counts as it is, without a warning for each."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutOfRangeWarning)
+        yield
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from squeezefilm.analysis.draws import (
     Mixture,
     Refusals,
     Tally,
+    as_drawn,
     between_limits,
     friction_of,
 )
@@ -253,6 +254,7 @@ def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
     return np.asarray(qmc.Sobol(len(mixture.inputs), rng=seed).random(count))
 
 
+@as_drawn()
 def evaluate(
     mixture: Mixture, points: si.DimensionlessArray, tell: SayProgress
 ) -> tuple[si.DimensionlessArray, si.MetreArray, Refusals]:
@@ -353,6 +355,7 @@ class FrictionBand:
     samples: int
 
 
+@as_drawn()
 def friction_band(
     display: Display,
     prediction: Prediction,

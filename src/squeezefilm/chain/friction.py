@@ -6,6 +6,7 @@ curves, textures. Each law names its model.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, cast
 
@@ -139,11 +140,10 @@ class FrictionLaw:
 
     @si.checked_numbers
     def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
-        """µ′/µ in both limits of partial levitation at amplitudes (m), whatever the model; what
-        touches slips, or is elastic until it does, as the model has it."""
+        """µ′/µ in both limits of the skin at amplitudes (m); with shear where the model has it."""
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
-        own, tied = self.sharing(a, "own"), self.sharing(a, "one-gap")
-        return FrictionLimits(a, own.relative_friction, tied.relative_friction)
+        own, tied = (self.sharing(a, one).relative_friction for one in ("own", "one-gap"))
+        return FrictionLimits(a, own, tied)
 
     def ripple(self, amplitude: si.Metre) -> FrictionRipple:
         """µ′/µ along the wave by partial levitation at an amplitude (m), each ridge at its own
@@ -213,8 +213,7 @@ class FrictionLaw:
         )
 
     def ridge_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-        """The amplitudes that ridges meet over an antinode's, each once, and the share of the
-        ridges that meets it."""
+        """The amplitudes that ridges meet over an antinode's, and the shares that meet them."""
         points = self._ridges
         wave = np.abs(np.cos(np.pi * (points + self.position) / self.half_wavelength))
         kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
@@ -242,12 +241,14 @@ class FrictionLaw:
         """µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds, amplitudes).
 
         Toward rest a constant tangential stiffness keeps what the least pressure of a period
-        holds, one that follows the load keeps nothing: it is sheared off by every period.
-        """
+        holds, one that follows the load nothing."""
         a, speeds = np.ravel(amplitude), np.ravel(speed)
         if not self.kind.shear:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
-        return self._pad(a, speeds, limit=limit or self.kind.limit).relative_friction
+        # A pad of thousands of ridges takes them in parts, within some 100 MB.
+        parts = min(math.ceil(a.size * speeds.size * self._ridges.size / 1e7), a.size)
+        asked, kind = np.array_split(a, parts), limit or self.kind.limit
+        return np.hstack([self._pad(one, speeds, limit=kind).relative_friction for one in asked])
 
     @si.checked_numbers
     def at(self, amplitude: si.Metre) -> si.Dimensionless:

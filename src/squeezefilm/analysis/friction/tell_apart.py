@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import Mixture
+from squeezefilm.analysis.draws import Mixture, as_drawn
 from squeezefilm.analysis.model_choices import HEIGHT_LAW, SHEAR, Choice
 from squeezefilm.analysis.parameters import SKIN_COMPLIANCE
 from squeezefilm.analysis.uncertainty import MOST_REFUSED, sobol_points
@@ -203,6 +203,7 @@ def tell_apart(
     )
 
 
+@as_drawn()
 def _frictions(
     mixture: Mixture,
     points: si.DimensionlessArray,

@@ -26,6 +26,8 @@ from squeezefilm.errors import InputError
 Limit = Literal["own", "one-gap"]
 
 _MOST_RIDGES = 100_000
+# More points of ridges than that are taken in as many kinds, by the wave's amplitude there.
+_KINDS = 4096
 
 
 @si.checked_numbers
@@ -135,6 +137,8 @@ def pad_friction(
     reach = float(np.max(np.abs(points)))
     lean = 1 + posture.pressure_tilt * points / reach if reach > 0 else np.ones_like(points)
     # Ridges on the two sides of an antinode do the same: each kind is balanced once.
+    if points.size > _KINDS:
+        wave, lean = (np.round(_KINDS * one) / _KINDS for one in (wave, lean))
     (wave, lean), counts = np.unique(np.round([wave, lean], 9), axis=1, return_counts=True)
     weight = counts / points.size
     own = share_load(table, asperities, np.outer(a, wave), plateau_pressure * lean, skin=skin)

@@ -277,4 +277,6 @@ def works_on(
         lost += b * (still * m0 + friction.rate * m1 + 2.0 * friction.rise * both)
         lost += friction.rise * b * b * square
         damped += c * b * (b * square - 2.0 * (towed - both))
-    return bone, lost, damped
+    # Where friction vanishes with the speed, its line in time may pass below 0 by what a piece may
+    # stray: no work comes back from there.
+    return bone, max(lost, 0.0), damped
