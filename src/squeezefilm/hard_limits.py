@@ -167,7 +167,7 @@ ASPECT = HardLimit("an aspect ratio", 1e-6, 1e6, "beyond, a strip is the same fi
 MOTION_SAMPLES = HardLimit(
     "samples of a motion", 2, 20_000_000, "160 MB for every array of a trace"
 )
-RENDER_STEPS = HardLimit("steps of a rendered stroke", 2, 3_000_000, "seventy arrays of 24 MB each")
+RENDER_STEPS = HardLimit("steps of a rendered stroke", 2, 3_000_000, "fifty arrays of 24 MB each")
 LAG_PRODUCTS = HardLimit(
     "products of a lag's correlation", 0, 5e8, "more take minutes for one number"
 )

@@ -26,7 +26,6 @@ from squeezefilm.chain.played_texture import (
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.standing_wave import WAVES, UnderPad, Wave, resonance_with_finger
 from squeezefilm.chain.stroke_force import first_pass_vibration
-from squeezefilm.contact.sliding.dry_friction import SpeedFriction
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.contact.sliding.skin_vibration import SkinVibration
 from squeezefilm.display import Display, NamedDisplay
@@ -320,7 +319,7 @@ def _analysis(
     force = slide(
         finger.way,
         1 / stroke.control_rate,
-        _of_the_skin(under, stroke.amplitude * factor, p.friction_coefficient),
+        under.of_the_skin(stroke.amplitude * factor, p.friction_coefficient),
         p.normal_force,
         display.finger.fingerpad,
     )
@@ -346,17 +345,6 @@ def _analysis(
         unjudged=because,
         seed=stroke.seed,
     )
-
-
-def _of_the_skin(
-    under: UnderPad, amplitude: si.MetreArray, coefficient: si.Dimensionless
-) -> SpeedFriction | si.DimensionlessArray:
-    """Friction along the way by the skin's own speed, which is not the finger's where it yields."""
-    table = under.felt
-    if table.speed.size == 1:
-        return np.asarray(coefficient * table(amplitude))
-    rows = table.over_speeds(amplitude).T
-    return SpeedFriction(table.speed, np.ascontiguousarray(coefficient * rows))
 
 
 def _played(

@@ -12,6 +12,7 @@ from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.chain.prediction import Prediction
+from squeezefilm.contact.sliding.dry_friction import SpeedFriction
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import DiscPlate
@@ -23,6 +24,8 @@ Wave = Literal["ignored", "felt", "compensated"]
 WAVES: tuple[Wave, ...] = get_args(Wave)
 """Whether the standing wave's nodes are left out, felt, or felt and made up for."""
 
+# Of a stroke's steps and its speeds, 160 MB.
+_MOST_FRICTIONS = 20_000_000
 # How much more amplitude a pad may seem to meet off an antinode than on it.
 _BETTER = 1.5
 
@@ -100,6 +103,25 @@ class UnderPad:
         if self.wave == "compensated":
             return self.felt(amplitude / self.centred, speed)
         return self.friction(amplitude, speed)
+
+    def of_the_skin(
+        self, amplitude: si.MetreArray, friction_coefficient: si.Dimensionless
+    ) -> SpeedFriction | si.DimensionlessArray:
+        """Friction at amplitudes that the pad meets along a way (m) by the skin's own speed, which
+        is not the finger's where the skin yields; `friction_coefficient` is that at rest.
+
+        A stroke of hundreds of thousands of steps takes fewer of the table's speeds.
+        """
+        table = self.felt
+        if table.speed.size == 1:
+            return np.asarray(friction_coefficient * table(amplitude))
+        count = min(max(int(_MOST_FRICTIONS / amplitude.size), 5), table.speed.size)
+        taken = np.unique(np.linspace(0, table.speed.size - 1, count).round().astype(int))
+        rows = np.empty((amplitude.size, taken.size))
+        for column, at in zip(rows.T, taken, strict=True):
+            found = np.interp(amplitude, table.amplitude, table.relative_friction[at])
+            column[:] = friction_coefficient * found
+        return SpeedFriction(table.speed[taken], rows)
 
     def factor(self, finger: FingerMotion) -> si.DimensionlessArray:
         """The amplitude along the way over that of an antinode (1)."""

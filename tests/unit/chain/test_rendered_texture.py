@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.chain import standing_wave
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.rendered_texture import (
     CONTROL_RATE,
@@ -17,7 +18,8 @@ from squeezefilm.chain.rendered_texture import (
     lowered,
     render_texture,
 )
-from squeezefilm.chain.standing_wave import WAVES, wave_factors
+from squeezefilm.chain.standing_wave import WAVES, UnderPad, wave_factors
+from squeezefilm.contact.sliding.dry_friction import SpeedFriction
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.render.fidelity.report import strongest_lines
@@ -342,3 +344,22 @@ def test_an_even_texture_has_no_fidelity_to_judge() -> None:
     assert np.ptp(found.stroke.relative_friction_wanted) == 0.0
     assert found.fidelity is None
     assert "does not change along the stroke" in str(found.unjudged)
+
+
+def test_a_long_stroke_takes_fewer_speeds_of_the_skin(monkeypatch: pytest.MonkeyPatch) -> None:
+    display = load_display("biet2008-stator")
+    p = predict(display)
+    under = UnderPad.of(display, p, "ignored")
+    amplitude = np.linspace(0.0, p.vibration_amplitude, 200)
+    whole = under.of_the_skin(amplitude, 0.9)
+    assert isinstance(whole, SpeedFriction)
+    assert np.array_equal(whole.speed, p.friction.speed)
+    monkeypatch.setattr(standing_wave, "_MOST_FRICTIONS", 2400)
+    fewer = under.of_the_skin(amplitude, 0.9)
+    assert isinstance(fewer, SpeedFriction)
+    assert fewer.speed.size == 12
+    assert set(fewer.speed) < set(whole.speed)
+    assert fewer.speed[[0, -1]].tolist() == whole.speed[[0, -1]].tolist()
+    # Between the speeds left it is a line, and never far from the law.
+    slow = [np.interp(0.08, one.speed, one.coefficient[-1]) for one in (whole, fewer)]
+    assert slow[1] == pytest.approx(slow[0], rel=0.05)
