@@ -12,8 +12,6 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-
 from squeezefilm import quantities as si
 from squeezefilm.contact.asperities import (
     MINDLIN_RATIO,
@@ -23,9 +21,9 @@ from squeezefilm.contact.asperities import (
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
-from squeezefilm.contact.sharing.balance import LoadSharing, share_load
+from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.contact.sharing.pad import ridge_points
+from squeezefilm.contact.sharing.pad import pad_friction, ridge_points
 from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
 from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.errors import InputError
@@ -133,26 +131,29 @@ class FrozenContact:
         shared = share_load(
             table, here.law(model), here.amplitude, here.plateau_pressure, skin=skin
         )
-        return float(here._held(shared, model))
+        return float(sheared_friction(shared, here._shear(model), here.frequency))
 
     def pad_friction(self, model: str, ridge_angle: si.Radian) -> si.Dimensionless:
         """µ′/µ by a model of a whole pad over an antinode, its ridges turned by an angle (rad) out
         of the nodal lines, each place at its own balance. Raises as `relative_friction`."""
-        turned = replace(self.finger, ridge_angle=ridge_angle)
-        wave = np.abs(np.cos(np.pi * ridge_points(turned) / self.half_wavelength))
-        kinds, counts = np.unique(np.round(wave, 6), return_counts=True)
-        met: si.MetreArray = self.amplitude * np.asarray(kinds, dtype=np.float64)
-        shared = share_load(self._films(None), self.law(model), met, self.plateau_pressure)
-        return float(np.asarray(self._held(shared, model)) @ counts / counts.sum())
+        found = pad_friction(
+            self._films(None),
+            self.law(model),
+            self.amplitude,
+            self.half_wavelength,
+            ridge_points(replace(self.finger, ridge_angle=ridge_angle)),
+            self.plateau_pressure,
+            shear=self._shear(model),
+        )
+        return float(found.relative_friction[0])
 
     def _films(self, ambient_pressure: si.Pascal | None) -> FilmTable:
         gas = self.gas if ambient_pressure is None else self.gas.at_pressure(ambient_pressure)
         return film_table(self.frequency, self.finger.plateau_width, gas, self.slip)
 
-    def _held(self, shared: LoadSharing, model: str) -> si.DimensionlessLike:
+    def _shear(self, model: str) -> AsperityShear:
         kind = _model(model).stiffness
-        shear = AsperityShear(self.speed, self.friction_coefficient, kind, self.stiffness_ratio)
-        return sheared_friction(shared, shear, self.frequency)
+        return AsperityShear(self.speed, self.friction_coefficient, kind, self.stiffness_ratio)
 
     def _tapped(self, model: str) -> si.Dimensionless:
         return tapping_friction(
