@@ -118,6 +118,14 @@ class Watched:
             self.page.wait_for_timeout(50)
         raise AssertionError("the lab did not answer within 30 s")
 
+    def hears(self, type: str, times: int) -> None:
+        """Until the page has asked for this so often, and is answered."""
+        for _ in range(600):
+            if self.count(type) >= times:
+                break
+            self.page.wait_for_timeout(50)
+        self.settle()
+
     def count(self, type: str) -> int:
         """How often the page asked for this."""
         return sum(one["type"] == type for one in self.asked)
@@ -178,11 +186,13 @@ def test_an_area_that_was_left_is_silent(seen: Watched) -> None:
         seen.go(area)
         page.wait_for_function("() => framesWaiting() === 1")
     seen.go("study")
+    seen.settle()
     button = page.get_by_role("button", name="Create the study")
     button.focus()
     before = seen.count("create study")
     page.keyboard.press("Space")
-    seen.settle()
+    # A key is heard after it was pressed, and what it asks for after that.
+    seen.hears("create study", before + 1)
     assert seen.count("create study") == before + 1
     assert seen.count("stop everything") == 0
 
