@@ -1,4 +1,4 @@
-/* See squeezefilm_fw.h, and docs/protocol.md for the rules and the layout of every frame. */
+/* See squeezefilm_fw.h, and docs/development/protocol.md for the rules and the layout of every frame. */
 #include "squeezefilm_fw.h"
 
 #include <string.h>

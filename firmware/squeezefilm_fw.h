@@ -1,6 +1,6 @@
 /* The reference firmware's state machine and framing: C99, no allocation, no libm, no clock.
  *
- * The twin of src/squeezefilm/device/machine.py; docs/protocol.md states the rules. Everything is
+ * The twin of src/squeezefilm/device/machine.py; docs/development/protocol.md states the rules. Everything is
  * integer (us, uV, mHz, um); the volts on the wire, IEEE binary32, are turned into uV in integers too,
  * exactly. Not reentrant: call it from one context, or mask interrupts around it.
  *

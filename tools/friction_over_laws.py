@@ -1,4 +1,4 @@
-"""Prints the table of docs/models.md: µ'/µ over force, speed and amplitude, by law of contact.
+"""Prints the table of docs/explanation/models.md: µ'/µ over force, speed, amplitude and law.
 
 Run `python tools/friction_over_laws.py`. The stator's film, µ 0.9, pad at an antinode; what is not
 in a column stands at 0.5 N, 80 mm/s and 2 µm. A dash where the law refuses. A test compares

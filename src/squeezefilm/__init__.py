@@ -6,7 +6,7 @@
 
 The names below are all that most work needs; each is imported when it is first asked for, so that
 importing the package costs next to nothing. Quantities may be written as text with a unit, and a
-display, a texture or a study by its name. See ``docs/front-door.md``.
+display, a texture or a study by its name. See ``docs/how-to/front-door.md``.
 """
 
 __version__ = "0.2.0.dev0"

@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "src" / "squeezefilm"
-START = ROOT / "docs" / "where-to-start.md"
+START = ROOT / "docs" / "development" / "where-to-start.md"
 ROOMS = {path.stem for path in PACKAGE.iterdir() if path.suffix == ".py" or path.is_dir()}
 _CODE = re.compile(r"`([^`\n]+)`")
 _DOTTED = re.compile(r"[a-z]\w*(\.\w+)+")

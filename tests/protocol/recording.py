@@ -108,7 +108,7 @@ class Recording:
 
 @functools.cache
 def page_session() -> Recording:
-    """The session at the end of docs/protocol.md, whose answers are checked here as well."""
+    """The session at the end of the protocol's page, whose answers are checked here as well."""
     finger = Finger()
     finger.x, finger.y, finger.touching, finger.pickup = FINGER
     recording = Recording(1, finger=finger)

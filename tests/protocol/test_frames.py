@@ -1,4 +1,4 @@
-"""Framing: published COBS vectors, byte scripts from docs/protocol.md, and a line that lies."""
+"""Framing: published COBS vectors, byte scripts of the protocol's page, and a line that lies."""
 
 import random
 import re
@@ -23,7 +23,7 @@ from squeezefilm.device.wire.frames import (
 )
 from squeezefilm.errors import InputError
 
-PAGE = Path(__file__).parents[2] / "docs" / "protocol.md"
+PAGE = Path(__file__).parents[2] / "docs" / "development" / "protocol.md"
 
 # The examples of Cheshire & Baker's method as widely published (runs around 254 among them).
 VECTORS = [

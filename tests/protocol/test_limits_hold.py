@@ -17,7 +17,7 @@ from .adversary import Adversary
 
 
 class Watch:
-    """Watches the output with floats of its own, by what docs/protocol.md promises."""
+    """Watches the output with floats of its own, by what docs/development/protocol.md promises."""
 
     def __init__(self) -> None:
         self.machine = Machine(3, sensor=self.finger, pickup=lambda: 7)

@@ -1,4 +1,4 @@
-"""The table of docs/models.md that says what a finger does to metal and glass, computed again."""
+"""What a finger does to metal and glass: the table of the page of models, computed again."""
 
 import re
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 
-PAGE = Path(__file__).parents[2] / "docs" / "models.md"
+PAGE = Path(__file__).parents[2] / "docs" / "explanation" / "models.md"
 FORCES = (0.1, 0.5, 1.0, 2.0)
 ROW = re.compile(r"\| `([\w-]+)`, \w+, ([\d.]+) V, (\d+) \|(.+)\|")
 

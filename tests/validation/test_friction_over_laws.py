@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.filterwarnings("ignore::squeezefilm.errors.OutOfRangeWarning")
 def test_the_page_shows_what_the_tool_prints() -> None:
     rows = runpy.run_path(str(ROOT / "tools" / "friction_over_laws.py"))["rows"]()
-    page = (ROOT / "docs" / "models.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "explanation" / "models.md").read_text(encoding="utf-8")
     assert "\n".join(rows) in page
     assert "–" not in "".join(rows)
 

@@ -27,7 +27,7 @@ from squeezefilm.render.resonator.square_swing import (
     square_swing_compensated,
 )
 
-# The paper's plate: solved resonance and assumed Q (docs/models.md); limits in units of a_max.
+# The paper's plate: solved resonance and assumed Q (page of models); limits in units of a_max.
 FREQUENCY, Q = 33.583e3, 60.0
 TAU = float(envelope_time_constant(Q, FREQUENCY))
 LIMIT = 1e-6

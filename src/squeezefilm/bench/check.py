@@ -172,7 +172,7 @@ def reading_checks(talk: Conversation, duration: si.Second = 0.5) -> list[CheckR
             not backwards and abs(drift) <= 0.02,
             f"{backwards} steps that do not rise, {100 * drift:+.2f} % against this clock",
             "0, within 2 %",
-            "the firmware's microsecond clock is not one; see docs/device.md",
+            "the firmware's microsecond clock is not one; see docs/reference/device.md",
         ),
         _result(
             "finger sensor",

@@ -15,7 +15,8 @@ def reproduce(
     out: Annotated[Path | None, written_to("Write figures 4, 5, 10, 11 and a page.")] = None,
     as_json: AsJson = False,
     write_docs: Annotated[
-        bool, typer.Option("--write-docs", help="In a checkout: rewrite docs/validation.md.")
+        bool,
+        typer.Option("--write-docs", help="In a checkout: rewrite docs/reference/validation.md."),
     ] = False,
 ) -> None:
     """Recompute every published claim: what the paper printed, what its formula gives, a verdict.

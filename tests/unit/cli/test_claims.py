@@ -34,7 +34,7 @@ def claims(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
         shown=stands_in("report.claims.terminal:show_claims"),
         page=stands_in("report.claims.page:write_reproduction", tmp_path / "index.html"),
         checkout=stands_in("report.claims.page:checkout"),
-        docs=stands_in("report.claims.page:write_validation_docs", "docs/validation.md"),
+        docs=stands_in("report.claims.page:write_validation_docs", "docs/reference/validation.md"),
     )
 
 
@@ -57,7 +57,7 @@ def test_a_page_and_the_docs_need_the_prototype(claims: SimpleNamespace, tmp_pat
     assert claims.asked.calls[-1][1] == {"prototype": True}
     assert len(claims.checkout.calls) == 1
     assert claims.docs.given == (claims.asked.answer,)
-    assert "wrote docs/validation.md\n" in done.stderr
+    assert "wrote docs/reference/validation.md\n" in done.stderr
     assert done.stdout == ""
     assert len(claims.page.calls) == 1
 

@@ -33,7 +33,7 @@ def test_the_verbs_are_those_of_the_program() -> None:
 
 
 def test_every_verb_is_described_in_the_docs() -> None:
-    text = (Path(__file__).parents[3] / "docs" / "cli.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[3] / "docs" / "reference" / "cli.md").read_text(encoding="utf-8")
     commands: dict[str, Any] = vars(typer.main.get_command(app))["commands"]
     verbs = [
         f"{name} {below}".strip()

@@ -46,7 +46,9 @@ def test_settings_come_from_a_file_and_say_what_is_assumed(tmp_path: Path) -> No
 
 
 def test_the_settings_on_the_page_are_the_defaults(tmp_path: Path) -> None:
-    page = (Path(__file__).parents[3] / "docs" / "twin.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "reference" / "twin.md").read_text(
+        encoding="utf-8"
+    )
     file = tmp_path / "twin.toml"
     file.write_text(page.split("```toml\n")[1].split("```")[0], encoding="utf-8")
     read, default = load_settings(file), TwinSettings()

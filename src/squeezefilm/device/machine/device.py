@@ -2,7 +2,7 @@
 
 The twin of `firmware/squeezefilm_fw.c`, rule by rule and number by number: integers throughout
 (µs, µV, mHz, µm), and a clock that is passed in, 32 bits of µs that may wrap. It boots off.
-`docs/protocol.md` states the rules.
+`docs/development/protocol.md` states the rules.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Frames: a header, a payload and a CRC-32, stuffed by COBS and ended by a zero byte.
 
 Before stuffing a frame is `version u8, type u8, sequence u16, payload, CRC-32 u32`, little-endian;
-the CRC (that of zlib) covers everything before it, in every frame. `docs/protocol.md` is the
-description byte by byte.
+the CRC (that of zlib) covers everything before it, in every frame. `docs/development/protocol.md`
+is the description byte by byte.
 """
 
 from __future__ import annotations

@@ -118,12 +118,12 @@ export const DISPLAY = {
 export const MOTION = {
   lag: { name: "lag", text: "How far the rendered vibration trails the finger: the resonator's time constant times the speed.", source: "first-order envelope" },
   event_delay: { name: "event → friction", text: "From the pointer event's time stamp to the friction computed from it, in this page, median over the last events.", source: "performance.now() of the browser" },
-  device_state: { name: "state", text: "Of the device: off, armed, playing, fault. A fault stays until it is cleared; then it must be armed again.", source: "docs/protocol.md" },
+  device_state: { name: "state", text: "Of the device: off, armed, playing, fault. A fault stays until it is cleared; then it must be armed again.", source: "docs/development/protocol.md" },
   finger_position: { name: "position", symbol: "x", text: "Of the finger as estimated for now from the sensor's samples.", source: "the sensor, through the motion estimator" },
   finger_speed: { name: "speed", symbol: "v", text: "Of the finger along its path, as estimated.", source: "the motion estimator" },
   loop_lag: { name: "lag", text: "How far the finger goes between the newest sample and the moment the command acts: sensor, loop and drive together. A loop that did not predict would be behind by so much; this one predicts, and the session's report says how far it was off.", source: "time × speed, for every tick" },
   lateness: { name: "lateness of the loop", text: "From when a tick was due to when it was made. Ticks later than a period are lost and counted.", source: "this computer's monotonic clock" },
-  fault: { name: "fault", text: "Why the device stopped by itself: watchdog, limit, sensor. It latches with the output at zero.", source: "docs/protocol.md" },
+  fault: { name: "fault", text: "Why the device stopped by itself: watchdog, limit, sensor. It latches with the output at zero.", source: "docs/development/protocol.md" },
 };
 
 /** What people answered. */

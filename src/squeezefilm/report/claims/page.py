@@ -1,4 +1,4 @@
-"""What `reproduce` shows: docs/validation.md, and the paper's figures redrawn on one page."""
+"""What `reproduce` shows: the page of validation, and the paper's figures redrawn."""
 
 from __future__ import annotations
 
@@ -57,11 +57,11 @@ _ERRATA = ("equation", "printed", "corrected", "why")
 
 
 def write_validation_docs(result: Reproduction, root: Path | None = None) -> Path:
-    """Write docs/validation.md of a checkout (the package's own, or the one at `root`).
+    """Write docs/reference/validation.md of a checkout (the package's own, or the one at `root`).
 
     Raises `InputError` where the package is installed without one.
     """
-    path = checkout(root) / "docs" / "validation.md"
+    path = checkout(root) / "docs" / "reference" / "validation.md"
     write_whole(path, validation_markdown(result))
     return path
 
@@ -78,7 +78,7 @@ def checkout(root: Path | None = None) -> Path:
 
 
 def validation_markdown(result: Reproduction) -> str:
-    """The text of docs/validation.md: a table of all claims, their reasons, the errata."""
+    """The text of the page of validation: a table of all claims, their reasons, the errata."""
     lines = [_HEADER, "## What the verdicts say", ""]
     lines += markdown_table(verdict_table(result.results))
     plain = plain_claims(result.results)

@@ -159,7 +159,7 @@ def sentences(study: PrototypeStudy) -> list[str]:
 
 
 def prototype_markdown(study: PrototypeStudy) -> list[str]:
-    """The section of docs/validation.md, line by line."""
+    """The section of docs/reference/validation.md, line by line."""
     lines = ["", "## The plate: the paper, the solved plate, the prototype", ""]
     lines += [*markdown_table(comparison(study)), "", "### What could shift it (with d31)", ""]
     lines += [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -163,10 +164,9 @@ def test_the_document_is_written_into_a_checkout_only(tmp_path: Path) -> None:
         checkout(tmp_path)
     (tmp_path / "pyproject.toml").write_text("")
     path = write_validation_docs(FOUND, tmp_path)
-    assert path == tmp_path / "docs" / "validation.md"
+    assert path == tmp_path / "docs" / "reference" / "validation.md"
     assert path.read_text(encoding="utf-8") == validation_markdown(FOUND)
-    (tmp_path / "docs" / "validation.md").unlink()
-    (tmp_path / "docs").rmdir()
+    shutil.rmtree(tmp_path / "docs")
     with pytest.raises(InputError, match="needs a checkout of the source"):
         checkout(tmp_path)
 

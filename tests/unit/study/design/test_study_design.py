@@ -138,7 +138,9 @@ def test_a_study_that_is_not_there_is_named_with_those_that_are(tmp_path: Path) 
 
 
 def test_the_design_in_the_documentation_is_one() -> None:
-    page = (Path(__file__).parents[4] / "docs" / "study.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[4] / "docs" / "reference" / "study.md").read_text(
+        encoding="utf-8"
+    )
     block = page[page.index('    name = "period-jnd"') : page.index("**Period or groove width.**")]
     design = config.load_text(StudyDesign, textwrap.dedent(block))
     assert design.adaptive[0].count == 60

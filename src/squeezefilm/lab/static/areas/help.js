@@ -32,7 +32,7 @@ export function show(place) {
       element("table", {}, ...KEYS.map(([keys, text]) => element("tr", {}, element("th", { scope: "row", class: "nowrap", text: keys }), element("td", { text })))),
       element("p", {}, element("button", { text: "Start the tour again", onclick: startTour }))),
     element("section", { class: "card" }, element("h2", { text: "Quantities" }),
-      element("p", { text: "“Paper” is Biet, Giraud, Lemaire-Semail, The implementation of tactile feedback using squeeze film effect; its misprints are corrected, see docs/models.md." }),
+      element("p", { text: "“Paper” is Biet, Giraud, Lemaire-Semail, The implementation of tactile feedback using squeeze film effect; its misprints are corrected, see docs/explanation/models.md." }),
       ...[["The display", DISPLAY], ["A finger on it", MOTION], ["What people answered", RESULTS]].flatMap(([title, quantities]) => [
         element("h3", { text: title }),
         element("dl", {}, ...Object.values(quantities).flatMap((one) => [
