@@ -10,6 +10,7 @@ def main() -> dict[str, float]:
     print(f"levitation at      {zero * 1e6:.2f} um")
     for check in p.validity.failed:
         print(f"but: {check.sentence}")
+    sf.plot(p).savefig("friction_of_the_stator.png")
     return {"relative_friction": p.relative_friction, "zero_friction_amplitude": zero}
 
 

@@ -40,6 +40,7 @@ def main() -> dict[str, float]:
     low, high = fit.posterior_interval["threshold"]
     d_prime = 2**0.5 * NormalDist().inv_cdf(float(fit.function(threshold)))
     print(f"d' at the threshold is {d_prime:.2f}")
+    sf.plot(fit).savefig("friction_threshold.png")
     return {"threshold": threshold, "low": low, "high": high, "d_prime": d_prime}
 
 

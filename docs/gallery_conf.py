@@ -1,0 +1,26 @@
+"""How the build of the documentation finds the pictures of the examples: the PNG that they save."""
+
+from pathlib import Path
+from typing import Any
+
+from mkdocs_gallery.scrapers import figure_md_or_html
+
+
+class SavedPictures:
+    """Moves what a program saved beside itself onto its page."""
+
+    def __repr__(self) -> str:
+        """The same in every build: the gallery tells settings apart by it."""
+        return "SavedPictures"
+
+    def __call__(self, block: Any, script: Any) -> str:
+        """The Markdown of the pictures that are there now."""
+        moved = []
+        saved = sorted(Path.cwd().glob("*.png"))
+        for picture, place in zip(saved, script.run_vars.image_path_iterator, strict=False):
+            picture.replace(place)
+            moved.append(place)
+        return figure_md_or_html(moved, script) if moved else ""
+
+
+conf = {"image_scrapers": (SavedPictures(),)}
