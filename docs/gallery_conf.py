@@ -3,8 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-from mkdocs_gallery.scrapers import figure_md_or_html
-
 
 class SavedPictures:
     """Moves what a program saved beside itself onto its page."""
@@ -15,12 +13,12 @@ class SavedPictures:
 
     def __call__(self, block: Any, script: Any) -> str:
         """The Markdown of the pictures that are there now."""
-        moved = []
+        lines = []
         saved = sorted(Path.cwd().glob("*.png"))
         for picture, place in zip(saved, script.run_vars.image_path_iterator, strict=False):
             picture.replace(place)
-            moved.append(place)
-        return figure_md_or_html(moved, script) if moved else ""
+            lines.append(f"![{picture.stem.replace('_', ' ')}](./images/{Path(place).name})")
+        return "\n\n".join(lines)
 
 
 conf = {"image_scrapers": (SavedPictures(),)}

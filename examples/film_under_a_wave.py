@@ -1,4 +1,7 @@
-"""The gas film under a ridge that a flexural wave bends: pressure within, and what it carries."""
+"""# Gas film under a wave
+
+The gas film under a ridge that a flexural wave bends: pressure within, and what it carries.
+"""
 
 import numpy as np
 

@@ -1,4 +1,7 @@
-"""A square grating under a finger whose skin has a mass: its force, and how the skin vibrates."""
+"""# A finger drags its skin
+
+A square grating under a finger whose skin has a mass: its force, and how the skin vibrates.
+"""
 
 import matplotlib.pyplot as plt
 

@@ -1,4 +1,7 @@
-"""The paper's main numbers: how slippery the stator gets, and why not to believe it blindly."""
+"""# Friction of the stator
+
+The paper's main numbers: how slippery the stator gets, and why not to believe it blindly.
+"""
 
 import squeezefilm as sf
 

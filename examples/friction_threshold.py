@@ -1,4 +1,7 @@
-"""The least drop of friction that a (simulated) person tells from none, in two intervals."""
+"""# A threshold of friction
+
+The least drop of friction that a (simulated) person tells from none, in two intervals.
+"""
 
 import json
 from statistics import NormalDist

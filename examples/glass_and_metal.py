@@ -1,4 +1,7 @@
-"""How a solved plate moves: the working mode of a glass disc and of the paper's metal plate."""
+"""# Mode shapes of glass and metal
+
+How a solved plate moves: the working mode of a glass disc and of the paper's metal plate.
+"""
 
 import squeezefilm as sf
 

@@ -1,4 +1,7 @@
-"""A 0.4 mm grating under a finger at three speeds: how much of it gets through the resonator."""
+"""# A grating under a finger
+
+A 0.4 mm grating under a finger at three speeds: how much of it gets through the resonator.
+"""
 
 import numpy as np
 

@@ -1,4 +1,7 @@
-"""An interval instead of a number: what it covers, and what to measure to make it narrow."""
+"""# How sure is the friction?
+
+An interval instead of a number: what it covers, and what to measure to make it narrow.
+"""
 
 import squeezefilm as sf
 

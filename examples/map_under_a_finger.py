@@ -1,4 +1,7 @@
-"""A map drawn in NumPy, saved as PNG and TOML, felt along a slanted stroke on a display."""
+"""# A map under a finger
+
+A map drawn in NumPy, saved as PNG and TOML, felt along a slanted stroke on a display.
+"""
 
 import tempfile
 from pathlib import Path

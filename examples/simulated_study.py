@@ -1,4 +1,7 @@
-"""Who would tell the paper's gratings apart: twelve simulated people, and the study they answer."""
+"""# A simulated study
+
+Who would tell the paper's gratings apart: twelve simulated people, and the study they answer.
+"""
 
 import squeezefilm as sf
 

@@ -1,4 +1,7 @@
-"""A texture of friction, composed, written to a file, and rendered on the paper's plate."""
+"""# A texture of your own
+
+A texture of friction, composed, written to a file, and rendered on the paper's plate.
+"""
 
 import tempfile
 from pathlib import Path

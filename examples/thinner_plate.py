@@ -1,4 +1,7 @@
-"""What a thinner plate would do: resonance and amplitude per volt of a design of one's own."""
+"""# A thinner plate
+
+What a thinner plate would do: resonance and amplitude per volt of a design of one's own.
+"""
 
 import squeezefilm as sf
 

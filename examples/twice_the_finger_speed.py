@@ -1,4 +1,7 @@
-"""A 0.4 mm grating at twice the speed its plate can follow, with a sensor that knows the finger."""
+"""# Faster than the plate
+
+A 0.4 mm grating at twice the speed its plate can follow, with a sensor that knows the finger.
+"""
 
 import squeezefilm as sf
 
