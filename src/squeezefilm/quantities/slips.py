@@ -169,7 +169,7 @@ def _of_the_unit(number: str, rest: str, wanted: str, allowed: tuple[str, ...]) 
     same = [unit for unit in allowed if unit.casefold() == rest.replace(" ", "").casefold()]
     if same:
         yield "capital and small letters differ in units", (f"{number} {same[0]}",)
-    if len(rest) == 1:
+    if rest in tuple("µμukMGpn"):
         yield f"'{rest}' alone is no unit", (f"{number} {rest.replace('u', 'µ')}{wanted}",)
     if " per " in rest:
         yield "a quotient of units is written with /", (f"{number} {rest.replace(' per ', '/')}",)

@@ -58,7 +58,7 @@ def test_every_number_of_a_preset_has_a_source(name: str) -> None:
         ('value = "72 mm"', 'value = "73 mm"', "actuator", "ceramic 7 overhangs the plate"),
         ("rectangular_plate", "rectangle_plate", "actuator", "Did you mean 'rectangular_plate'"),
         ("polarity = -1", "polarity = 0", "actuator.patches.2.polarity", "1 or -1"),
-        ("value = 8,", "value = 8.5,", "actuator.nodal_lines", "integer"),
+        ("value = 8,", "value = 8.5,", "actuator.nodal_lines", "no whole number"),
         ('"from_d31"\n', '"from_d33"\n', "actuator.ceramic.data_set", "printed_e31"),
         ('evidence = "assumed"', 'evidence = "guess"', "actuator.quality_factor", "measured"),
         ("value = 0.9", "value = 0", "surfaces.1.friction_coefficient", "above 0"),
@@ -104,7 +104,7 @@ def test_missing_table_and_typo() -> None:
     [
         (b"", "is empty"),
         (b"# nothing\n", "is empty"),
-        (b"[gas", "not valid TOML"),
+        (b"[gas", r"not closed; write \[gas\]"),
         (b"\xff\xfe\x00", "not UTF-8"),
         (b"actuator = 3\n", "actuator"),
     ],
