@@ -20,8 +20,10 @@ from squeezefilm.config.provenance import (
     read_only,
     split_provenance,
 )
+from squeezefilm.config.references import COPIED_FROM, References
 from squeezefilm.config.scan import DEEPEST, require_quick_toml
 from squeezefilm.config.schema import family, model_of, reads_from_file
+from squeezefilm.config.stated import stated_sources
 from squeezefilm.config.syntax import explained
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import ConfigError, InputError
@@ -74,22 +76,36 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         fields = [field for field in dataclasses.fields(cls) if reads_from_file(field)]  # type: ignore[arg-type]
         raise ConfigError(f"is empty; {_keys_of(cls, fields)}", file=file)
     source = _Source(text, file)
+    references: References | None = getattr(cls, "references", None)
+    original = None
     try:
-        plain, sources, spreads = split_provenance(raw)
+        if references is not None:
+            raw, copied_from = references.written_out(raw)
+            original = None if copied_from is None else _original(references, copied_from)
+        split = split_provenance(raw, of_tables=references is not None)
     except ConfigError as error:
         place = locate(text, (error.key or "").split("."))
         raise ConfigError(error.message, file=file, line=place, key=error.key) from error
     try:
-        model = model_of(cls).model_validate(plain)
+        model = model_of(cls).model_validate(split.plain)
     except ValidationError as error:
         raise _all_errors(cls, error, source) from error
     built = _build(cls, model, (), source)
     if any(field.name == "provenance" for field in dataclasses.fields(cls)):  # type: ignore[arg-type]
-        for key, spread in spreads.items():
+        for key, spread in split.spreads.items():
             found = _distribution(built, key, spread, source)
-            sources[key] = dataclasses.replace(sources[key], distribution=found)
+            split.sources[key] = dataclasses.replace(split.sources[key], distribution=found)
+        sources = split.sources if references is None else stated_sources(built, split, original)
         built = dataclasses.replace(built, provenance=read_only(sources))
     return typing.cast(T, built)
+
+
+def _original(references: References, name: str) -> Any:
+    """What a file says that it was copied from. Raises `ConfigError` with the key."""
+    try:
+        return references.original(name)
+    except InputError as error:
+        raise ConfigError(str(error), key=COPIED_FROM) from error
 
 
 def _depth(tree: Any) -> int:
