@@ -35,7 +35,8 @@ class References:
         """The tree with its materials in place of their names, and what it was copied from.
 
         A table that names a material may state single values of its own beside it: they stand in
-        place of the library's. Raises `ConfigError`, with the key, for a name that is not known.
+        place of the library's. ``material = { value = "PZT-5A", source = "our choice", evidence =
+        "assumed" }`` makes every value that it brings an assumed one. Raises `ConfigError`, with the key, for a name that is not known.
         """
         found = dict(tree)
         copied_from = found.pop(COPIED_FROM, None)
@@ -62,7 +63,8 @@ def _with_material(
     own = {MATERIAL: here} if isinstance(here, str) else here
     if not isinstance(own, dict) or MATERIAL not in own:
         return tree
-    name = own[MATERIAL]
+    choice = own[MATERIAL]
+    name = choice.get("value") if isinstance(choice, dict) else choice
     key = whole if isinstance(here, str) else f"{whole}.{MATERIAL}"
     if not isinstance(name, str):
         raise ConfigError(f"{name!r} is no name of a material; write one as text", key=key)
@@ -70,7 +72,24 @@ def _with_material(
         library = table(name)
     except InputError as error:
         raise ConfigError(str(error), key=key) from error
+    if isinstance(choice, dict) and choice.get("evidence") == "assumed":
+        library = _as_assumed(library, str(choice.get("source", "")))
     return {**tree, head: _over(library, {k: v for k, v in own.items() if k != MATERIAL})}
+
+
+def _as_assumed(library: Mapping[str, Any], source: str) -> dict[str, Any]:
+    """The values of a material that is only taken to be the one: each is assumed, however well the
+    material itself is known."""
+    found: dict[str, Any] = {}
+    for key, value in library.items():
+        if not isinstance(value, dict):
+            found[key] = value
+        elif "value" in value:
+            because = "; ".join(one for one in (source, str(value.get("source", ""))) if one)
+            found[key] = {**value, "source": because, "evidence": "assumed"}
+        else:
+            found[key] = _as_assumed(value, source)
+    return found
 
 
 def _over(library: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
