@@ -35,8 +35,9 @@ class References:
         """The tree with its materials in place of their names, and what it was copied from.
 
         A table that names a material may state single values of its own beside it: they stand in
-        place of the library's. ``material = { value = "PZT-5A", source = "our choice", evidence =
-        "assumed" }`` makes every value that it brings an assumed one. Raises `ConfigError`, with the key, for a name that is not known.
+        place of the library's. A name may have a source, as a value has one: where that says that
+        the material is assumed, every value that it brings is. Raises `ConfigError`, with the key,
+        for a name that is not known.
         """
         found = dict(tree)
         copied_from = found.pop(COPIED_FROM, None)
