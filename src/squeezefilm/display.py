@@ -124,7 +124,7 @@ class Display(Result):
     """
 
     references: ClassVar[References] = References(
-        original=lambda name: _preset(name),
+        original=lambda name: preset_display(name),
         parts={
             f"actuator.{part}": functools.partial(presets.materials.table, kind=part)
             for part in presets.materials.KINDS
@@ -210,9 +210,14 @@ def load_display(name_or_path: str | Path) -> Display:
     return config.load(Display, presets.resolve(name_or_path))
 
 
+def preset_display(name: str) -> Display:
+    """The display of a preset's name. Raises `ConfigError` for a name that is not known."""
+    return _read_once(presets.path(name))
+
+
 @functools.cache
-def _preset(name: str) -> Display:
-    return load_display(presets.path(name))
+def _read_once(path: Path) -> Display:
+    return load_display(path)
 
 
 NamedDisplay = Annotated[Display, ReadBy(load_display)]

@@ -97,10 +97,7 @@ def _over(library: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     """The library's table with one's own values in place of its; tables within likewise."""
     found = dict(library)
     for key, value in own.items():
-        there = found.get(key)
-        within = isinstance(value, dict) and isinstance(there, dict)
-        if within and "value" not in value and "value" not in there:
-            found[key] = _over(there, value)
-        else:
-            found[key] = value
+        there: Any = found.get(key)
+        both = isinstance(value, dict) and isinstance(there, dict) and "value" not in value
+        found[key] = _over(there, value) if both and "value" not in there else value
     return found

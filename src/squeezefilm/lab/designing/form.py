@@ -15,6 +15,8 @@ from tomlkit.exceptions import TOMLKitError
 
 from squeezefilm import config, presets
 from squeezefilm import quantities as si
+from squeezefilm.config.provenance import UNSTATED
+from squeezefilm.config.stated import changed_from
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.report.kit.numbers import leaves
@@ -76,7 +78,7 @@ def edited(text: str, path: str, value: str) -> str:
 
     `value` is what a person typed: quantity text, a number, or a word. A source that stood beside
     the old value no longer vouches for the new one: it is kept with "changed from …" before it, and
-    the evidence becomes assumed.
+    the evidence becomes unstated.
 
     Raises:
         InputError: a path that is not there, or a text that is no display with the new value, in
@@ -102,6 +104,11 @@ def edited(text: str, path: str, value: str) -> str:
                 # A table that may be one of several kinds says which it is.
                 if kind := rows.get(".".join([*heads[:depth], "type"])):
                     owner[part]["type"] = kind["text"]
+            if isinstance(owner[part], str):
+                # A part that is named by its material alone.
+                alone = tomlkit.inline_table()
+                alone["material"] = str(owner[part])
+                owner[part] = alone
             owner = owner[part]
         old = owner.get(last) if hasattr(owner, "get") else None
         if isinstance(old, dict) and "value" in old:
@@ -109,10 +116,24 @@ def edited(text: str, path: str, value: str) -> str:
             if was != written:
                 old["value"] = written
                 if source and not source.startswith("changed from"):
-                    old["source"] = f"changed from {was} ({source})"
-                old["evidence"] = "assumed"
+                    old["source"] = changed_from(str(was), source)
+                old["evidence"] = UNSTATED
                 for spread in ("uncertainty", "range"):
                     old.pop(spread, None)
+        elif old is None and row["source"] and value.strip() == row["text"]:
+            return text
+        elif row["source"] and old != written:
+            # Its table, or the library of materials, vouches for the old value only.
+            changed = tomlkit.inline_table()
+            was = row["text"] if old is None else str(old)
+            changed.update(
+                {
+                    "value": written,
+                    "source": changed_from(was, row["source"]),
+                    "evidence": UNSTATED,
+                }
+            )
+            owner[last] = changed
         else:
             owner[last] = written
         found = tomlkit.dumps(document)

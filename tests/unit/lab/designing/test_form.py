@@ -45,7 +45,9 @@ def test_a_row_says_all_that_the_page_shows() -> None:
     # A member of a list is counted, and stands in its list's section.
     second = row_of(GLASS, "actuator.patches.1.y")
     assert (second["section"], second["text"]) == ("actuator.patches.1", "55 mm")
-    assert (second["source"], second["evidence"]) == ("", "")
+    # Its source is the one of its table.
+    assert second["source"] == "a strip along each long edge; our design"
+    assert second["evidence"] == "assumed"
     assert name_of(GLASS) == "touchpad-glass"
 
 
@@ -55,7 +57,7 @@ def test_a_value_that_changes_keeps_where_it_was_from() -> None:
     row = row_of(found, "actuator.length")
     old = "our own design of the size of a touch pad; no device"
     assert row["source"] == f"changed from 100 mm ({old})"
-    assert row["evidence"] == "assumed"
+    assert row["evidence"] == "unstated"
     # Changed again, it still says where the first one was from.
     twice = edited(found, "actuator.length", "102 mm")
     assert row_of(twice, "actuator.length")["source"] == f"changed from 100 mm ({old})"
@@ -77,7 +79,7 @@ def test_evidence_and_spread_do_not_vouch_for_another_value(spread: str) -> None
     found = edited(base, "actuator.patches.1.y", "52 mm")
     assert spread not in found
     row = row_of(found, "actuator.patches.1.y")
-    assert (row["text"], row["evidence"]) == ("52 mm", "assumed")
+    assert (row["text"], row["evidence"]) == ("52 mm", "unstated")
     assert row["source"] == "changed from 53 mm (a rule)"
 
 
@@ -85,12 +87,16 @@ def test_where_no_source_stood_none_is_made_up() -> None:
     base = GLASS.replace('y = "55 mm"', 'y = { value = "55 mm", evidence = "measured" }', 1)
     found = edited(base, "actuator.patches.1.y", "54 mm")
     assert "changed from" not in found
-    assert row_of(found, "actuator.patches.1.y")["evidence"] == "assumed"
+    assert row_of(found, "actuator.patches.1.y")["evidence"] == "unstated"
 
 
 def test_a_plain_value_is_replaced_and_a_missing_one_is_written() -> None:
     found = edited(GLASS, "actuator.patches.0.length", "90 mm")
-    assert 'length = "90 mm"' in found
+    row = row_of(found, "actuator.patches.0.length")
+    # What vouched for it, here its table, vouched for the other value.
+    assert row["source"] == "changed from 100 mm (a strip along each long edge; our design)"
+    assert row["evidence"] == "unstated"
+    assert edited(GLASS, "actuator.patches.0.length", "100 mm") == GLASS
     assert row_of(found, "actuator.patches.0.length")["value"] == pytest.approx(0.09)
     assert row_of(found, "actuator.patches.1.length")["value"] == pytest.approx(0.1)
     other = edited(GLASS, "actuator.patches.1.length", "90 mm")
