@@ -9,6 +9,7 @@ import pytest
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing.form import (
     LONGEST_VALUE,
+    OWN_VALUES,
     choices,
     display_of,
     edited,
@@ -166,3 +167,38 @@ def test_a_type_says_what_a_value_may_be() -> None:
     # A quantity that may be left out knows its unit itself.
     assert stated(Hertz | None) in (Hertz, Hertz | None)
     assert choices(Annotated[float, Unit("m")]) is None
+
+
+def test_a_material_is_chosen_from_the_library() -> None:
+    row = row_of(GLASS, "actuator.substrate.material")
+    assert row["text"] == OWN_VALUES
+    assert "aluminium 5083" in row["choices"]  # type: ignore[operator]
+    found = edited(GLASS, "actuator.substrate.material", "aluminium 5083")
+    assert row_of(found, "actuator.substrate.material")["text"] == "aluminium 5083"
+    modulus = row_of(found, "actuator.substrate.young_modulus")
+    assert modulus["text"] == "71 GPa"
+    assert "MatWeb" in str(modulus["source"])
+    # What the library does not say stays; what was assumed of another material does not.
+    assert row_of(found, "actuator.substrate.quality_factor")["text"] == "1000.0"
+    assert "borosilicate" not in found[found.index("[actuator.substrate]") :][:200]
+    ceramic = edited(found, "actuator.ceramic.material", "PZT-8")
+    assert row_of(ceramic, "actuator.ceramic.charge_coefficient")["text"] == "-97 pm/V"
+    glue = edited(ceramic, "actuator.glue.material", "filled epoxy")
+    assert row_of(glue, "actuator.glue.thickness")["text"] == "20 um"
+    assert row_of(glue, "actuator.glue.young_modulus")["text"] == "7 GPa"
+    with pytest.raises(InputError, match="there is no material 'wood'"):
+        edited(GLASS, "actuator.substrate.material", "wood")
+
+
+def test_a_value_of_the_library_is_overwritten_beside_its_name() -> None:
+    start, end = GLASS.index("[actuator.substrate]"), GLASS.index("[actuator.ceramic]")
+    for named in ('[actuator.substrate]\nmaterial = "brass"\n\n', 'substrate = "brass"\n\n'):
+        text = GLASS[:start] + named + GLASS[end:]
+        found = edited(text, "actuator.substrate.density", "8500 kg/m3")
+        row = row_of(found, "actuator.substrate.density")
+        assert (row["text"], row["evidence"]) == ("8500 kg/m3", "unstated")
+        assert row["source"] == "changed from 8530 kg/m3 (Olin Brass, C26000)"
+        assert row_of(found, "actuator.substrate.young_modulus")["text"] == "112 GPa"
+        same = edited(text, "actuator.substrate.density", "8530 kg/m3")
+        assert display_of(same).provenance == display_of(text).provenance
+        assert row_of(found, "actuator.substrate.material")["text"] == "brass CuZn30"
