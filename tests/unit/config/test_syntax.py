@@ -162,3 +162,10 @@ def test_a_file_of_another_kind_is_named_as_what_it_is(
     with pytest.raises(ConfigError, match=says) as caught:
         load(Display, file)
     assert "mine.toml" in str(caught.value)
+
+
+def test_a_vibration_beyond_every_display_is_refused_as_it_was_asked() -> None:
+    import squeezefilm as sf
+
+    with pytest.raises(sf.SqueezefilmError, match=r"^vibration_amplitude = 2 m cannot be used"):
+        sf.predict("biet2008-stator", vibration_amplitude=2)
