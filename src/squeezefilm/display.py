@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, ClassVar
 
+from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.config.provenance import Provenance
+from squeezefilm.config.references import References
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.errors import InputError
@@ -116,8 +119,17 @@ class Display(Result):
     """A friction-modulation display, complete enough to be analysed.
 
     Read one with `load_display`. The first of `surfaces` is the default. `provenance` says where
-    each value is from, by its dotted path in the file.
+    each value is from, by its dotted path in the file. In a file `references` are resolved: a
+    material by its name, and the preset that it is a changed copy of.
     """
+
+    references: ClassVar[References] = References(
+        original=lambda name: preset_display(name),
+        parts={
+            f"actuator.{part}": functools.partial(presets.materials.table, kind=part)
+            for part in presets.materials.KINDS
+        },
+    )
 
     name: str
     title: str
@@ -193,9 +205,19 @@ class Display(Result):
 
 def load_display(name_or_path: str | Path) -> Display:
     """The display of a preset's name or of a TOML file. Raises `ConfigError` if it can't be."""
-    from squeezefilm import config, presets
+    from squeezefilm import config
 
     return config.load(Display, presets.resolve(name_or_path))
+
+
+def preset_display(name: str) -> Display:
+    """The display of a preset's name. Raises `ConfigError` for a name that is not known."""
+    return _read_once(presets.path(name))
+
+
+@functools.cache
+def _read_once(path: Path) -> Display:
+    return load_display(path)
 
 
 NamedDisplay = Annotated[Display, ReadBy(load_display)]
@@ -210,8 +232,6 @@ def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
     """
     import re
 
-    from squeezefilm import presets
-
     text = presets.path(preset).read_text(encoding="utf-8")
     if file.is_dir():
         raise InputError(f"{file} is a directory; give the name of a TOML file to write")
@@ -221,5 +241,7 @@ def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
     own = re.sub(r'(?m)^name = ".*"$', f'name = "{name}"', text, count=1)
     header = (
         f"# Started from the preset {preset}: change what is yours, and say where it is from.\n"
+        "# While the next line stands, a number that you change loses the source beside it, until\n"
+        f'# the words of the source are yours too.\ncopied_from = "{preset}"\n\n'
     )
     write_whole(file, header + own)

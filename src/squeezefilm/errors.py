@@ -31,7 +31,8 @@ class QuantityError(InputError):
 
 
 class ConfigError(InputError):
-    """A configuration that cannot be used: names file, line and key where they are known."""
+    """A configuration that cannot be used: names file, line, column and key where they
+    are known."""
 
     def __init__(
         self,
@@ -39,17 +40,20 @@ class ConfigError(InputError):
         *,
         file: str | Path | None = None,
         line: int | None = None,
+        column: int | None = None,
         key: str | None = None,
     ) -> None:
         self.message = message
         self.file = None if file is None else str(file)
         self.line = line
+        self.column = column
         self.key = key
         super().__init__(str(self), quantity=key)
 
     def __str__(self) -> str:
         line = None if self.line is None else f"line {self.line}"
-        place = ", ".join(part for part in (self.file, line) if part)
+        column = None if self.column is None else f"column {self.column}"
+        place = ", ".join(part for part in (self.file, line, column) if part)
         parts = [part for part in (place, self.key) if part]
         return ": ".join([*parts, self.message])
 

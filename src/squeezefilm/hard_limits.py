@@ -118,6 +118,13 @@ VISCOSITY = HardLimit("a viscosity", 1e-8, 1e3, "below any gas to honey; " + _SL
 GAS_DENSITY = HardLimit("a gas's density", 1e-9, 1e4, "of any gas; " + _SLIP, si.Unit("kg/m3"))
 SOUND_SPEED = HardLimit("a speed of sound", 10.0, 1e5, "of any gas; " + _SLIP, si.Unit("m/s"))
 FREE_PATH = HardLimit("a mean free path", 1e-18, 1e3, "none, in effect, to a vacuum; " + _SLIP, _M)
+TOUCHED_VIBRATION = HardLimit(
+    "a vibration under a finger",
+    0.0,
+    1e-4,
+    "displays reach some micrometres, and film and contact are solved up to here",
+    _M,
+)
 VIBRATION = HardLimit("a vibration's amplitude", 0.0, 1e-3, "no plate survives more", _M)
 PAD_STIFFNESS = HardLimit("a stiffness", 1e-3, 1e9, "of a fingertip; " + _SLIP, si.Unit("N/m"))
 PAD_DAMPING = HardLimit("a damping", 0.0, 1e6, "of a fingertip; " + _SLIP, si.Unit("N*s/m"))

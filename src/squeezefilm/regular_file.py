@@ -5,6 +5,7 @@ A pipe would be waited for without an end, and a device such as /dev/zero has no
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import os
 import stat
@@ -73,11 +74,28 @@ def read_regular_text(path: str | Path, limit: HardLimit, what: str) -> str:
 
     Raises as `read_regular` does, and `ConfigError` for what is not UTF-8.
     """
+    found = read_regular(path, limit, what)
     try:
-        text = read_regular(path, limit, what).decode("utf-8-sig")
+        text = found.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ConfigError(f"is not UTF-8 text; save it in UTF-8 as {what}", file=path) from error
+        raise _no_text(found, error, path, what) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _no_text(found: bytes, error: UnicodeDecodeError, path: str | Path, what: str) -> ConfigError:
+    if found.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        why = "it is UTF-16, which some editors call Unicode"
+    elif b"\0" in found[:1000]:
+        why = f"it holds bytes that no text has, as pictures and archives do; give {what}"
+        return ConfigError(f"is not UTF-8 text: {why}", file=path)
+    else:
+        why = f"the byte 0x{found[error.start]:02x} is of another encoding, perhaps Latin-1"
+    line = found.count(b"\n", 0, error.start) + 1
+    return ConfigError(
+        f"is not UTF-8 text: {why}; save it with the encoding UTF-8, as {what}",
+        file=path,
+        line=line if error.start else None,
+    )
 
 
 def _refused(path: str | Path, what: str, error: OSError | ValueError) -> ConfigError:

@@ -243,7 +243,7 @@ def test_a_display_may_be_given_by_its_name_and_a_prediction_asked_in_words() ->
         normal_force=0.5,
     )
     assert by_text.to_dict() == by_number.to_dict()
-    with pytest.raises(QuantityError, match=r"^voltage: '2 mm' has the wrong dimension; .* in V"):
+    with pytest.raises(QuantityError, match=r"^voltage: '2 mm' has the wrong dimension: .* of V"):
         sf.predict("biet2008-stator", voltage="2 mm")
     with pytest.raises(sf.SqueezefilmError, match="Did you mean 'biet2008-stator'"):
         sf.predict("biet2008-stater")

@@ -163,8 +163,12 @@ def test_sensitivities_and_tracks_of_a_small_plate(tmp_path: Path) -> None:
     head, first, *_ = text.split("[[actuator.patches]]")
     tail = "[drive]" + text.split("[drive]")[1]
     text = (head + "[[actuator.patches]]" + first).split("# The voltage")[0] + tail
-    for old, new in (('"83 mm"', '"30 mm"'), ('"49 mm"', '"12 mm"'), ('x = { value = "0 mm"',
-                     'x = { value = "9.5 mm"'), ("value = 8,", "value = 2,")):  # fmt: skip
+    for old, new in (
+        ('"83 mm"', '"30 mm"'),
+        ('"49 mm"', '"12 mm"'),
+        ('x = "0 mm"', 'x = "9.5 mm"'),
+        ("value = 8,", "value = 2,"),
+    ):
         assert old in text
         text = text.replace(old, new)
     file.write_text(text)
@@ -318,8 +322,8 @@ TEXT = presets.path("biet2008-plate").read_text(encoding="utf-8")
         (TEXT.replace('"83 mm"', "83"), "line 9: actuator.length"),
         (TEXT.replace('"2 mm"', '"-2 mm"'), "at least 10 nm"),
         (TEXT.replace('"2 mm"', '"nan mm"'), "finite"),
-        (TEXT.replace('value = "12 mm"', 'value = "5 mm"'), "overlap"),
-        (TEXT.replace('value = "72 mm"', 'value = "80 mm"'), "overhangs"),
+        (TEXT.replace('x = "12 mm"', 'x = "5 mm"'), "overlap"),
+        (TEXT.replace('x = "72 mm"', 'x = "80 mm"'), "overhangs"),
         (TEXT.replace("viscosity", "viscocity"), "Did you mean 'viscosity'"),
     ],
 )

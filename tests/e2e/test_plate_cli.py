@@ -81,9 +81,9 @@ STATOR = presets.path("biet2008-stator").read_text(encoding="utf-8")
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        (GLASS.replace('value = "87 mm"', 'value = "88 mm"'), "overhangs the plate"),
-        (GLASS.replace('value = "87 mm"', 'value = "5 mm"'), "overlap by 1 mm"),
-        (GLASS.replace('x = { value = "6 mm"', 'x = { value = "5 mm"'), "foam under a ceramic"),
+        (GLASS.replace('x = "87 mm"', 'x = "88 mm"'), "overhangs the plate"),
+        (GLASS.replace('x = "87 mm"', 'x = "5 mm"'), "overlap by 1 mm"),
+        (GLASS.replace('x = "6 mm"', 'x = "5 mm"'), "foam under a ceramic"),
         (GLASS.replace("[[actuator.patches]]", "[[actuator.patch]]"), "unknown key 'patch'"),
         (GLASS.replace("polarity = 1", 'polarity = 1\nelectrode = "shunted"'), "shunt_resistance"),
         (GLASS.replace('thickness = "0.5 mm"', 'thickness = "0.5 um"'), "aspect ratio"),

@@ -14,6 +14,7 @@ from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
+from squeezefilm.config.stated import source_doubt
 from squeezefilm.display import Display
 from squeezefilm.render.fidelity.survival import FidelityTable
 
@@ -58,13 +59,8 @@ def verdict(
         yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
     if films is not None:
         yield from _of_films(p, films)
-    assumed = [path for path, item in display.provenance.items() if item.evidence == "assumed"]
-    if assumed:
-        yield Finding(
-            "doubt",
-            f"{len(assumed)} of {len(display.provenance)} sourced values of this display are "
-            f"assumed, not measured or published: squeezefilm show {display.name} lists them.",
-        )
+    if (doubt := source_doubt(display.provenance)) is not None:
+        yield Finding("doubt", doubt)
     yield Finding(
         "doubt",
         "Friction against amplitude is not validated against measurements: no measured curve "

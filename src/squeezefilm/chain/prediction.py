@@ -33,6 +33,7 @@ from squeezefilm.errors import (
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
 from squeezefilm.from_text import reads_text
+from squeezefilm.hard_limits import TOUCHED_VIBRATION, require_within
 from squeezefilm.plate.beam.response import beam_doubt
 from squeezefilm.plate.heat.warming import Warming, warming_of_mode
 from squeezefilm.plate.layout import Actuator, RectangularPlate
@@ -218,7 +219,7 @@ def _drive(
     frequency = mode.resonance_frequency if frequency is None else frequency
     si.require("frequency", frequency, si.Unit("Hz"), above=0)
     if vibration_amplitude is not None:
-        si.require("vibration_amplitude", vibration_amplitude, si.Unit("m"), at_least=0)
+        require_within(TOUCHED_VIBRATION, vibration_amplitude, "vibration_amplitude")
         return _Drive(frequency, None, vibration_amplitude, "given")
     volts = display.drive.voltage if voltage is None else voltage
     si.require("voltage", volts, si.Unit("V"), at_least=0)

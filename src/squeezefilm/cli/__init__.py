@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import sys
+from typing import Any
 
 import typer
 
@@ -14,7 +15,7 @@ from squeezefilm.cli import textures  # noqa: F401 # isort: skip
 from squeezefilm.cli import claims  # noqa: F401 # isort: skip
 from squeezefilm.cli import study  # noqa: F401 # isort: skip
 from squeezefilm.cli.app import app
-from squeezefilm.errors import SqueezefilmError
+from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
 
 
 def _show_announcements() -> None:
@@ -28,12 +29,33 @@ def _show_announcements() -> None:
     logger.setLevel(logging.INFO)
 
 
+def _say_warnings() -> None:
+    """What the library warns of as one line on standard error, without the place in the code. Of
+    other packages' warnings nothing that a person could do anything about is said; ``-W`` or
+    PYTHONWARNINGS bring them back.
+    """
+    import warnings
+
+    if sys.warnoptions:
+        return
+    shown = warnings.showwarning
+
+    def say(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if issubclass(category, SqueezefilmWarning):
+            typer.echo(f"warning: {message}", err=True)
+        elif more.get("file") is not None:
+            shown(message, category, *place, **more)
+
+    warnings.showwarning = say
+
+
 def main() -> None:
     """Run the command line: a person's mistake is one message and exit code 2, no traceback."""
     # Before NumPy loads: its linear algebra on our small blocks is slower with threads, by far.
     for library in ("OMP", "OPENBLAS", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     _show_announcements()
+    _say_warnings()
     try:
         try:
             app()

@@ -33,17 +33,30 @@ from squeezefilm.errors import InputError
 @app.command()
 def presets(as_json: AsJson = False) -> None:
     """List the displays that come with the package."""
-    from squeezefilm.report.kit.terminal import preset_list, show_presets
+    from squeezefilm.report.kit.described import preset_list, show_presets
 
     answer(as_json, preset_list(), show_presets)
 
 
 @app.command()
 def show(target: Target, as_json: AsJson = False) -> None:
-    """Show every value of a display, with its source and what is assumed."""
-    from squeezefilm.report.kit import terminal
+    """Show every value of a display, with its source, what is assumed and what has no source."""
+    from squeezefilm.report.kit.described import display_values, show_values
 
-    answer(as_json, terminal.display_values(target), terminal.show_values)
+    answer(as_json, display_values(target), show_values)
+
+
+@app.command()
+def materials(
+    name: Annotated[
+        str | None, typer.Argument(help="One of them, by any of its names: all its values.")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """List the materials that a display's file may name, with their sources."""
+    from squeezefilm.report.kit.described import material_list, show_materials
+
+    answer(as_json, material_list(name), show_materials)
 
 
 @app.command()

@@ -20,8 +20,11 @@ from squeezefilm.config.provenance import (
     read_only,
     split_provenance,
 )
+from squeezefilm.config.references import COPIED_FROM, References
 from squeezefilm.config.scan import DEEPEST, require_quick_toml
 from squeezefilm.config.schema import family, model_of, reads_from_file
+from squeezefilm.config.stated import stated_sources
+from squeezefilm.config.syntax import explained
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES
@@ -64,31 +67,45 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         raw = tomllib.loads(text)
     except ValueError as error:
         # Beside TOMLDecodeError: a whole number of more digits than Python takes.
-        raise ConfigError(f"is not valid TOML: {error}", file=file) from error
+        raise explained(text, error, file) from error
     except RecursionError as error:
         raise ConfigError("is nested too deeply to be read; nest less", file=file) from error
     if (depth := _depth(raw)) > DEEPEST:
         raise ConfigError(f"is nested {depth} deep; at most {DEEPEST} are read", file=file)
     if not raw:
-        keys = ", ".join(field.name for field in dataclasses.fields(cls) if reads_from_file(field))  # type: ignore[arg-type]
-        raise ConfigError(f"is empty; a {cls.__name__.lower()} needs the keys {keys}", file=file)
+        fields = [field for field in dataclasses.fields(cls) if reads_from_file(field)]  # type: ignore[arg-type]
+        raise ConfigError(f"is empty; {_keys_of(cls, fields)}", file=file)
     source = _Source(text, file)
+    references: References | None = getattr(cls, "references", None)
+    original = None
     try:
-        plain, sources, spreads = split_provenance(raw)
+        if references is not None:
+            raw, copied_from = references.written_out(raw)
+            original = None if copied_from is None else _original(references, copied_from)
+        split = split_provenance(raw, of_tables=references is not None)
     except ConfigError as error:
         place = locate(text, (error.key or "").split("."))
         raise ConfigError(error.message, file=file, line=place, key=error.key) from error
     try:
-        model = model_of(cls).model_validate(plain)
+        model = model_of(cls).model_validate(split.plain)
     except ValidationError as error:
         raise _all_errors(cls, error, source) from error
     built = _build(cls, model, (), source)
     if any(field.name == "provenance" for field in dataclasses.fields(cls)):  # type: ignore[arg-type]
-        for key, spread in spreads.items():
+        for key, spread in split.spreads.items():
             found = _distribution(built, key, spread, source)
-            sources[key] = dataclasses.replace(sources[key], distribution=found)
+            split.sources[key] = dataclasses.replace(split.sources[key], distribution=found)
+        sources = split.sources if references is None else stated_sources(built, split, original)
         built = dataclasses.replace(built, provenance=read_only(sources))
     return typing.cast(T, built)
+
+
+def _original(references: References, name: str) -> Any:
+    """What a file says that it was copied from. Raises `ConfigError` with the key."""
+    try:
+        return references.original(name)
+    except InputError as error:
+        raise ConfigError(str(error), key=COPIED_FROM) from error
 
 
 def _depth(tree: Any) -> int:
@@ -198,16 +215,27 @@ def _tag(cls: Any) -> Any:
     return next((f.default for f in dataclasses.fields(cls) if f.name == "type"), None)
 
 
+def _keys_of(owner: type[Any], fields: list[dataclasses.Field[Any]]) -> str:
+    """The keys that an owner needs, and those that may be left out."""
+    missing = dataclasses.MISSING
+    needed = [
+        one.name for one in fields if one.default is missing and one.default_factory is missing
+    ]
+    optional = [one.name for one in fields if one.name not in needed]
+    article = "an" if owner.__name__[0] in "AEIO" else "a"
+    words = f"{article} {owner.__name__} needs {', '.join(needed)}"
+    return f"{words}; it may also have {', '.join(optional)}" if optional else words
+
+
 def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
-    known = [field.name for field in dataclasses.fields(owner) if reads_from_file(field)]
+    fields = [field for field in dataclasses.fields(owner) if reads_from_file(field)]
+    known = [field.name for field in fields]
     kind = item["type"]
     if kind == "extra_forbidden":
         hint = si.did_you_mean(str(path[-1]), known)
         return f"unknown key '{path[-1]}'.{hint} Allowed here: {', '.join(known)}"
     if kind == "missing":
-        article = "an" if owner.__name__[0] in "AEIO" else "a"
-        needs = f"{article} {owner.__name__} needs {', '.join(known)}"
-        return f"the key '{path[-1]}' is missing; {needs}"
+        return f"the key '{path[-1]}' is missing; {_keys_of(owner, fields)}"
     if kind == "union_tag_invalid":
         tag = str(item["ctx"]["tag"])
         allowed = [part.strip(" '") for part in str(item["ctx"]["expected_tags"]).split(",")]
@@ -220,5 +248,17 @@ def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
         return f"{item['input']!r} is no table; write it as [table] with keys"
     if kind == "literal_error":
         return f"{item['input']!r} is not allowed; allowed: {item['ctx']['expected']}"
+    if kind in ("int_type", "int_from_float"):
+        return f"{item['input']!r} is no whole number; write one without quotation marks, like 8"
+    if kind == "string_type":
+        return f"{item['input']!r} is no text; write it between quotation marks"
+    if kind == "list_type":
+        one = str(path[-1])
+        return (
+            f"{one} is a list; write each of its members below a header [[{one}]], or all between "
+            "brackets"
+        )
+    if kind == "bool_type":
+        return f"{item['input']!r} is neither true nor false; write one of them, without quotes"
     message = str(item["msg"]).removeprefix("Value error, ")
     return message if kind == "value_error" else f"{item['input']!r}: {message}"

@@ -4,6 +4,10 @@ A value in TOML is either plain, ``thickness = "2 mm"``, or a table that says wh
 ``thickness = { value = "2 mm", source = "paper, section 3.1", evidence = "published" }``. How sure
 it is may stand beside it: ``uncertainty = "0.05 mm"`` or ``"5 %"`` (a standard deviation), or
 ``range = ["1.9 mm", "2.1 mm"]`` (anywhere between).
+
+A table may say it once for all numbers of its own that do not: ``source = "drawing 17"`` among its
+keys. A number that nobody gave a source is `UNSTATED`, and so is one that was changed in a copy
+while the words of its source stayed.
 """
 
 from __future__ import annotations
@@ -12,7 +16,7 @@ import copyreg
 import types
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from squeezefilm import quantities as si
 from squeezefilm.distributions import Distribution, Normal, Uniform
@@ -26,15 +30,19 @@ def read_only(values: Mapping[str, Any]) -> types.MappingProxyType[str, Any]:
 
 copyreg.pickle(types.MappingProxyType, lambda mapping: (read_only, (dict(mapping),)))
 
-EVIDENCE = ("measured", "published", "derived", "assumed")
+UNSTATED = "unstated"
+"""The evidence of a number whose file does not say where it is from."""
+EVIDENCE = ("measured", "published", "derived", "assumed", UNSTATED)
 _SPREADS = ("uncertainty", "range")
-_KEYS = {"value", "source", "evidence", *_SPREADS}
+_OF_TABLES = ("source", "evidence")
+_KEYS = {"value", *_OF_TABLES, *_SPREADS}
 
 
 @dataclass(frozen=True)
 class Provenance:
     """The source of one value and the kind of evidence behind it: measured, published, derived
-    from published values, or assumed; and how it is distributed, where the file says so."""
+    from published values, assumed, or unstated; and how it is distributed, where the file says
+    so."""
 
     source: str
     evidence: str = "published"
@@ -45,29 +53,39 @@ Spread = str | tuple[str, str]
 """An uncertainty as it is written, before the unit of its value is known."""
 
 
-def split_provenance(
-    tree: Mapping[str, Any],
-) -> tuple[dict[str, Any], dict[str, Provenance], dict[str, Spread]]:
-    """Separate values from their sources: the tree with plain values, the sources and the spreads
-    by path (``"actuator.thickness"``). Raises `ConfigError` for a malformed source or spread."""
-    found: dict[str, Provenance] = {}
-    spreads: dict[str, Spread] = {}
+class Split(NamedTuple):
+    """A tree with plain values; by path (``"actuator.thickness"``) the sources of values, their
+    spreads, and the sources that tables give for their own values."""
+
+    plain: dict[str, Any]
+    sources: dict[str, Provenance]
+    spreads: dict[str, Spread]
+    tables: dict[str, Provenance]
+
+
+def split_provenance(tree: Mapping[str, Any], *, of_tables: bool = False) -> Split:
+    """Separate values from their sources, and with `of_tables` tables from theirs. Raises
+    `ConfigError` for a malformed source or spread."""
+    found = Split({}, {}, {}, {})
 
     def walk(node: Any, path: str) -> Any:
         if isinstance(node, Mapping):
             if "value" in node and set(node) <= _KEYS:
                 if set(node) > {"value"}:
-                    found[path] = _provenance(node, path)
+                    found.sources[path] = _provenance(node, path)
                 if (spread := _spread(node, path)) is not None:
-                    spreads[path] = spread
+                    found.spreads[path] = spread
                 return node["value"]
+            if of_tables and "source" in node:
+                found.tables[path] = _provenance(node, path)
+                node = {key: item for key, item in node.items() if key not in _OF_TABLES}
             return {key: walk(item, f"{path}.{key}" if path else key) for key, item in node.items()}
         if isinstance(node, list):
             return [walk(item, f"{path}.{index}") for index, item in enumerate(node)]
         return node
 
-    plain = walk(tree, "")
-    return plain, found, spreads
+    found.plain.update(walk(tree, ""))
+    return found
 
 
 def _spread(node: Mapping[str, Any], path: str) -> Spread | None:

@@ -1,5 +1,5 @@
-"""Displays named for their paper, each value with its source; textures, studies and
-simulated observers to begin with.
+"""Displays named for their paper, each value with its source; materials by name; textures, studies
+and simulated observers to begin with.
 
 Files only: rooms above read them.
 """
@@ -10,9 +10,23 @@ from pathlib import Path
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError
+from squeezefilm.presets import materials
+
+__all__ = [
+    "claims_path",
+    "display_names",
+    "materials",
+    "path",
+    "resolve",
+    "resolve_observer",
+    "resolve_study",
+    "resolve_texture",
+    "study_names",
+    "texture_names",
+]
 
 _FOLDER = Path(__file__).parent
-_NOT_DISPLAYS = {"claims"}
+_NOT_DISPLAYS = {"claims", "materials"}
 
 
 def display_names() -> tuple[str, ...]:

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.errors import QuantityError
+from squeezefilm.quantities.slips import probably_meant
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -70,6 +71,9 @@ _PREFIXES = {
     "c": "1e-2", "d": "1e-1", "k": "1e3", "M": "1e6", "G": "1e9",
 }  # fmt: skip
 
+# What a keyboard has no key for: "kg/m³" is kg/m3, "Pa·s" is Pa*s.
+_TYPED = str.maketrans("·⋅×²³⁴⁻¹", "***234-1")
+
 # A text past it is no quantity, and would be searched for one in vain for minutes.
 _LONGEST_TEXT = 200
 _FACTOR = re.compile(r"([^\s*/^·\d]+?|1)\s*(?:\^|\*\*)?\s*(-?\d{1,2})?")
@@ -98,7 +102,7 @@ def parse_unit(text: str) -> tuple[Decimal, Dimension]:
     Raises `QuantityError` for a unit that is unknown or not well formed.
     """
     scale, total = Decimal(1), list(_NONE)
-    for position, part in enumerate(text.replace("·", "*").split("/")):
+    for position, part in enumerate(text.translate(_TYPED).split("/")):
         sign = 1 if position == 0 else -1
         for piece in re.split(r"(?<!\*)\*(?!\*)|\s+", part.strip()):
             match = _FACTOR.fullmatch(piece.strip())
@@ -140,7 +144,7 @@ class Unit:
 
 # What to offer a person who wrote no unit, or the wrong one.
 _EXAMPLES = {
-    "m": "m, mm, um, nm",
+    "m": "m, mm, µm, nm",
     "Hz": "Hz, kHz",
     "s": "s, ms",
     "N": "N, mN",
@@ -165,12 +169,55 @@ def allowed_units(unit: Unit) -> str:
     return _EXAMPLES.get(unit.symbol, unit.symbol)
 
 
+# What a bare number is most often meant in; the first of the units offered where none is named.
+_USUAL = {"m": "mm", "Hz": "kHz", "Pa": "kPa", "m/s": "mm/s", "m/V": "pm/V", "rad": "deg"}
+
+_DIMENSIONS = {
+    "m": "a length", "Hz": "a frequency", "s": "a time", "N": "a force", "V": "a voltage",
+    "Pa": "a pressure or a modulus", "Pa*s": "a viscosity", "kg/m3": "a density",
+    "kg": "a mass", "m/s": "a speed", "m2": "an area", "m/V": "a charge coefficient",
+    "C/m2": "a stress coefficient", "m2/N": "a compliance", "rad": "an angle",
+    "ohm": "a resistance", "A": "a current", "W": "a power", "J": "an energy", "F": "a capacitance",
+    "K": "a temperature", "J/kg/K": "a specific heat", "N/m": "a stiffness",
+    "V/s": "a rate of voltage", "1": "a number without dimension (dimensionless)",
+}  # fmt: skip
+
+
+def _dimension_in_words(dimension: Dimension) -> str | None:
+    known = {parse_unit(symbol)[1]: words for symbol, words in reversed(_DIMENSIONS.items())}
+    return known.get(dimension)
+
+
 def parse_quantity(text: str, unit: Unit) -> float:
     """The SI value of a quantity text such as ``"2 um"``, correctly rounded to the nearest float.
 
     Raises `QuantityError` for a text without a number, without a unit (unless the quantity is
-    dimensionless), of another dimension, not finite, or too large for a float.
+    dimensionless), of another dimension, not finite, or too large for a float; the message says
+    what to write where it can be guessed.
     """
+    try:
+        return _parsed(text, unit)
+    except QuantityError as error:
+        if len(text) > _LONGEST_TEXT or (meant := _meant(text, unit)) is None:
+            raise
+        raise QuantityError(f"'{text}' cannot be read: {meant}") from error
+
+
+def _meant(text: str, unit: Unit) -> str | None:
+    """Why it was refused and what to write, the first that can be read; None where none can."""
+    units = allowed_units(unit)
+    for why, candidates in probably_meant(text, unit.symbol, tuple(units.split(", "))):
+        try:
+            for candidate in candidates:
+                _parsed(candidate, unit)
+        except QuantityError:
+            continue
+        where = f" (units allowed here: {units})" if unit.label else ""
+        return f"{why}; write " + " or ".join(f'"{one}"' for one in candidates) + where
+    return None
+
+
+def _parsed(text: str, unit: Unit) -> float:
     if len(text) > _LONGEST_TEXT:
         raise QuantityError(
             f"'{text[:40]}…' is no quantity: it has {len(text)} characters, and at most "
@@ -187,22 +234,14 @@ def parse_quantity(text: str, unit: Unit) -> float:
         raise QuantityError(f"'{text}' is too large or too small to be represented") from error
     if not number.is_finite():
         raise QuantityError(f"'{text}' is not a finite number; a quantity must be finite")
-    symbol = match.group("unit")
-    if symbol is None:
-        if unit.symbol != "1":
-            raise QuantityError(
-                f"'{text}' has no unit; write it with one of {allowed_units(unit)}, "
-                f'like "{match.group("number")} {_second(unit)}"'
-            )
-        symbol = "1"
-    try:
-        scale, dimension = parse_unit(symbol)
-    except QuantityError as error:
-        raise QuantityError(f"'{text}': {error}; allowed here: {allowed_units(unit)}") from error
+    scale, dimension = _scale(text, match, unit)
     if dimension != unit.dimension:
+        is_, wanted = _dimension_in_words(dimension), _dimension_in_words(unit.dimension)
         raise QuantityError(
-            f"'{text}' has the wrong dimension; a quantity in "
-            f"{unit.label or 'no unit (dimensionless)'} is wanted, in one of {allowed_units(unit)}"
+            f"'{text}' has the wrong dimension"
+            + (f": it is {is_}" if is_ else "")
+            + f", and {wanted or f'a quantity in {unit.label}'} is wanted"
+            + ("" if unit.symbol == "1" else f", in one of {allowed_units(unit)}")
         )
     try:
         with localcontext() as context:
@@ -215,14 +254,29 @@ def parse_quantity(text: str, unit: Unit) -> float:
     return value
 
 
-def _second(unit: Unit) -> str:
-    units = allowed_units(unit).split(", ")
-    return units[min(1, len(units) - 1)]
+def _scale(text: str, match: re.Match[str], unit: Unit) -> tuple[Decimal, Dimension]:
+    """The scale and dimension of the unit that was written, or of none where none is needed."""
+    symbol = match.group("unit")
+    if symbol is None:
+        if unit.symbol != "1":
+            raise QuantityError(
+                f"'{text}' has no unit; write it with one of {allowed_units(unit)}, "
+                f'like "{match.group("number")} {_usual(unit)}"'
+            )
+        symbol = "1"
+    try:
+        return parse_unit(symbol)
+    except QuantityError as error:
+        where = f"allowed here: {allowed_units(unit)}" if unit.label else "no unit stands here"
+        raise QuantityError(f"'{text}': {error}; {where}") from error
+
+
+def _usual(unit: Unit) -> str:
+    return _USUAL.get(unit.symbol, allowed_units(unit).split(", ")[0])
 
 
 def _example(unit: Unit) -> str:
-    first = allowed_units(unit).split(",")[0]
-    return "0.5" if unit.symbol == "1" else f"2 {first}"
+    return "0.5" if unit.symbol == "1" else f"2 {_usual(unit)}"
 
 
 _READABLE = [("G", 9), ("M", 6), ("k", 3), ("", 0), ("m", -3), ("u", -6), ("n", -9), ("p", -12)]

@@ -20,7 +20,7 @@ from squeezefilm.analysis.film.models import (
 from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.analysis.verdict import Finding, friction_verdict, verdict
 from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.config.provenance import Provenance
+from squeezefilm.config.provenance import UNSTATED, Provenance
 from squeezefilm.display import load_display
 from squeezefilm.render.fidelity.survival import FidelityTable
 
@@ -169,10 +169,16 @@ def test_assumed_values_are_counted(point: Prediction) -> None:
     found = findings(display, point, (curve(1e-6),), None, None)
     assert Finding(
         "doubt",
-        "2 of 3 sourced values of this display are assumed, not measured or published: "
-        "squeezefilm show biet2008-stator lists them.",
+        "2 of 3 values of this display are assumed, not measured or published: squeezefilm show "
+        "lists them.",
     ) in found  # fmt: skip
-    assert not any("sourced values" in one.text for one in said(point))
+    bare = dataclasses.replace(STATOR, provenance={**sources, "d": Provenance("", UNSTATED)})
+    found = findings(bare, point, (curve(1e-6),), None, None)
+    assert Finding(
+        "doubt",
+        "1 of 4 values of this display have no source, and 2 are assumed, not measured or "
+        "published: squeezefilm show lists them.",
+    ) in found  # fmt: skip
 
 
 def test_the_last_word_is_that_nothing_is_validated(point: Prediction) -> None:
@@ -182,7 +188,8 @@ def test_the_last_word_is_that_nothing_is_validated(point: Prediction) -> None:
         "Friction against amplitude is not validated against measurements: no measured curve of an "
         "ultrasonic display could be read anywhere.",
     )
-    assert len(said(point, relative_friction=0.5)) == 2
+    # With what is said of the friction, and that no file says where these values are from.
+    assert len(said(point, relative_friction=0.5)) == 3
 
 
 def films(sealed: float, opened: float, plateau: float, **others: Any) -> FilmComparison:

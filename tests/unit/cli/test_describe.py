@@ -17,7 +17,7 @@ from tests.e2e.program import run
 from squeezefilm import __main__
 from squeezefilm.cli import main
 from squeezefilm.cli.app import app
-from squeezefilm.cli.describe import analyze, new, presets, show
+from squeezefilm.cli.describe import analyze, materials, new, presets, show
 from squeezefilm.display import load_display
 from squeezefilm.presets import display_names
 
@@ -28,7 +28,7 @@ ANSWER = SimpleNamespace(summary=lambda: {"found": 1})
 
 def test_the_verbs_are_those_of_the_program() -> None:
     said = run("--help").stdout
-    for verb in (presets, show, new, analyze):
+    for verb in (presets, show, new, materials, analyze):
         assert verb.__name__ in said
 
 
@@ -68,11 +68,23 @@ def test_presets_are_listed() -> None:
     assert "what it is" in said
 
 
+def test_materials_are_listed_and_shown() -> None:
+    listing = json.loads(run("materials", "--json").stdout)
+    assert "aluminium 5083" in [one["name"] for one in listing]
+    (one,) = json.loads(run("materials", "AA5083", "--json").stdout)
+    assert one["values"][0]["path"] == "young_modulus"
+    assert "5083" in run("materials").stdout
+    refused = run("materials", "PZT-6")
+    assert refused.returncode == 2
+    assert "there is no material 'PZT-6'" in refused.stderr
+
+
 def test_values_are_shown_with_their_sources() -> None:
     values = json.loads(run("show", DISPLAY, "--json").stdout)
     assert {one["path"]: one["text"] for one in values}["actuator.thickness"] == "2 mm"
     said = run("show", DISPLAY).stdout
-    assert f"of {len(values)} values" in said
+    sourced = [one for one in values if one["evidence"] is not None]
+    assert f"of {len(sourced)} values" in said
     refused = run("show", "biet2008-plat")
     assert refused.returncode == 2
     assert f"Did you mean '{DISPLAY}'" in refused.stderr

@@ -111,9 +111,9 @@ def test_names_of_keys_and_axes() -> None:
 @pytest.mark.parametrize(
     ("text", "unit", "says"),
     [
-        ("2", M, "'2' has no unit; write it with one of m, mm, um, nm, like \"2 mm\""),
+        ("2", M, "'2' has no unit; write it with one of m, mm, µm, nm, like \"2 mm\""),
         ("2", Unit("Pa*s"), "'2' has no unit; write it with one of Pa*s, like \"2 Pa*s\""),
-        ("x", M, "'x' is no quantity; write a number and a unit, like \"2 m\""),
+        ("x", M, "'x' is no quantity; write a number and a unit, like \"2 mm\""),
         ("x", ONE, "'x' is no quantity; write a number and a unit, like \"0.5\""),
         ("nan m", M, "'nan m' is not a finite number; a quantity must be finite"),
         ("-Infinity m", M, "'-Infinity m' is not a finite number; a quantity must be finite"),
@@ -122,19 +122,20 @@ def test_names_of_keys_and_axes() -> None:
         (
             "2 V",
             M,
-            "'2 V' has the wrong dimension; a quantity in m is wanted, in one of m, mm, um, nm",
+            "'2 V' has the wrong dimension: it is a voltage, and a length is wanted, in one of m, "
+            "mm, µm, nm",
         ),
         (
             "2 m",
             ONE,
-            "'2 m' has the wrong dimension; a quantity in no unit (dimensionless) is wanted, in "
-            "one of 1",
+            "'2 m' has the wrong dimension: it is a length, and a number without dimension "
+            "(dimensionless) is wanted",
         ),
         (
             "9" * 201,
             M,
             f"'{'9' * 40}…' is no quantity: it has 201 characters, and at most 200 are read; "
-            'write a number and a unit, like "2 m"',
+            'write a number and a unit, like "2 mm"',
         ),
     ],
 )
@@ -193,7 +194,7 @@ def test_the_digits_asked_for_are_kept() -> None:
 
 
 def test_units_to_write_are_named() -> None:
-    assert allowed_units(M) == "m, mm, um, nm"
+    assert allowed_units(M) == "m, mm, µm, nm"
     assert allowed_units(Unit("W")) == "W"
 
 

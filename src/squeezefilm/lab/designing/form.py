@@ -15,12 +15,16 @@ from tomlkit.exceptions import TOMLKitError
 
 from squeezefilm import config, presets
 from squeezefilm import quantities as si
+from squeezefilm.config.provenance import UNSTATED
+from squeezefilm.config.stated import changed_from
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.report.kit.numbers import leaves
 
 LONGEST_VALUE = 2000
 """Characters of one value in the form."""
+OWN_VALUES = "values of its own"
+"""What stands for a material where the text names none."""
 
 
 def preset_text(name: str) -> str:
@@ -47,7 +51,7 @@ def form(text: str) -> list[dict[str, Any]]:
     Raises `ConfigError` for a text that is no display.
     """
     display = display_of(text)
-    rows = []
+    rows = _material_rows(text, display)
     for path, value, annotation, field in leaves(display):
         hint = stated(annotation)
         dotted = ".".join(str(part) for part in path)
@@ -71,12 +75,59 @@ def form(text: str) -> list[dict[str, Any]]:
     return rows
 
 
+def _material_rows(text: str, display: Display) -> list[dict[str, Any]]:
+    """A row for each part whose values the library of materials may give."""
+    actuator = tomlkit.parse(text).unwrap().get("actuator", {})
+    rows = []
+    for kind in presets.materials.KINDS:
+        if getattr(display.actuator, kind, None) is None:
+            continue
+        here = actuator.get(kind)
+        name = here.get("material") if isinstance(here, dict) else here
+        name = name.get("value") if isinstance(name, dict) else name
+        known = [one.name for one in presets.materials.library() if one.kind == kind]
+        chosen = OWN_VALUES if name is None else presets.materials.named(name, kind).name
+        rows.append(
+            {
+                "path": f"actuator.{kind}.material",
+                "section": f"actuator.{kind}",
+                "name": "material",
+                "unit": None,
+                "text": chosen,
+                "value": None,
+                "whole": False,
+                "choices": [OWN_VALUES, *known] if name is None else known,
+                "source": "",
+                "evidence": "",
+                "optional": True,
+            }
+        )
+    return rows
+
+
+def _with_material(document: Any, kind: str, name: str) -> None:
+    """Let the library give a part's values; of its own table stays what the library does not say.
+
+    Of a ceramic nothing stays: its constants belong together. Raises `InputError` for a name that
+    is not in the library.
+    """
+    library = presets.materials.table(name, kind)  # type: ignore[arg-type]
+    old = document["actuator"].get(kind)
+    if not isinstance(old, dict):
+        document["actuator"][kind] = name
+        return
+    for key in list(old):
+        if key in library or key in ("material", "name", "source", "evidence") or kind == "ceramic":
+            del old[key]
+    old["material"] = name
+
+
 def edited(text: str, path: str, value: str) -> str:
     """The display's text with the value at a dotted path written anew.
 
     `value` is what a person typed: quantity text, a number, or a word. A source that stood beside
     the old value no longer vouches for the new one: it is kept with "changed from …" before it, and
-    the evidence becomes assumed.
+    the evidence becomes unstated.
 
     Raises:
         InputError: a path that is not there, or a text that is no display with the new value, in
@@ -91,37 +142,66 @@ def edited(text: str, path: str, value: str) -> str:
     written = _written(value.strip(), row)
     try:
         document = tomlkit.parse(text)
-        owner: Any = document
-        *heads, last = path.split(".")
-        for depth, part in enumerate(heads, 1):
-            if isinstance(owner, list):
-                owner = owner[int(part)]
-                continue
-            if part not in owner:
-                owner[part] = tomlkit.table()
-                # A table that may be one of several kinds says which it is.
-                if kind := rows.get(".".join([*heads[:depth], "type"])):
-                    owner[part]["type"] = kind["text"]
-            owner = owner[part]
-        old = owner.get(last) if hasattr(owner, "get") else None
-        if isinstance(old, dict) and "value" in old:
-            was, source = old["value"], str(old.get("source", ""))
-            if was != written:
-                old["value"] = written
-                if source and not source.startswith("changed from"):
-                    old["source"] = f"changed from {was} ({source})"
-                old["evidence"] = "assumed"
-                for spread in ("uncertainty", "range"):
-                    old.pop(spread, None)
+        if path.endswith(".material"):
+            _with_material(document, path.split(".")[-2], value.strip())
         else:
-            owner[last] = written
+            _assign(document, rows, path, written)
         found = tomlkit.dumps(document)
+    except InputError:
+        raise
     except (TOMLKitError, KeyError, IndexError, ValueError, TypeError) as error:
         raise InputError(
             f"'{path}' cannot be changed here ({error}); edit the TOML text"
         ) from error
     display_of(found)
     return found
+
+
+def _assign(document: Any, rows: dict[str, dict[str, Any]], path: str, written: Any) -> None:
+    """Write a value at a dotted path of a document, and what is left of its source."""
+    owner, row = document, rows[path]
+    *heads, last = path.split(".")
+    for depth, part in enumerate(heads, 1):
+        if isinstance(owner, list):
+            owner = owner[int(part)]
+            continue
+        if part not in owner:
+            owner[part] = tomlkit.table()
+            # A table that may be one of several kinds says which it is.
+            if kind := rows.get(".".join([*heads[:depth], "type"])):
+                owner[part]["type"] = kind["text"]
+        if isinstance(owner[part], str):
+            # A part that is named by its material alone.
+            alone = tomlkit.inline_table()
+            alone["material"] = str(owner[part])
+            owner[part] = alone
+        owner = owner[part]
+    old = owner.get(last) if hasattr(owner, "get") else None
+    if isinstance(old, dict) and "value" in old:
+        was, source = old["value"], str(old.get("source", ""))
+        if was != written:
+            old["value"] = written
+            if source and not source.startswith("changed from"):
+                old["source"] = changed_from(str(was), source)
+            old["evidence"] = UNSTATED
+            for spread in ("uncertainty", "range"):
+                old.pop(spread, None)
+    elif old is None and row["source"] and written == row["text"]:
+        return
+    elif row["source"] and old != written:
+        # Its table, or the library of materials, vouches for the old value only.
+        changed = tomlkit.inline_table()
+        was = row["text"] if old is None else str(old)
+        changed.update(
+            {
+                "value": written,
+                "source": changed_from(was, row["source"]),
+                "evidence": UNSTATED,
+            }
+        )
+        owner[last] = changed
+    else:
+        owner[last] = written
 
 
 def _written(value: str, row: dict[str, Any]) -> Any:

@@ -47,10 +47,10 @@ function title(section, rows) {
 
 function field(row, write, slide, limits) {
   const id = `f-${row.path.replaceAll(".", "-")}`;
-  const assumed = row.evidence === "assumed";
+  const mark = { assumed: " *", unstated: " ?" }[row.evidence];
   const tip = row.name in GLOSSARY || row.source ? row.name : null;
   const label = element("label", { for: id, "data-tip": tip, "data-source": row.source || null },
-    row.name.replaceAll("_", " "), assumed ? element("span", { class: "mark", title: `assumed: ${row.source}`, text: " *" }) : null);
+    row.name.replaceAll("_", " "), mark ? element("span", { class: "mark", title: `${row.evidence}: ${row.source || "no source"}`, text: mark }) : null);
   const source = row.source ? element("small", { class: "source", text: `${row.evidence}: ${row.source}` }) : null;
   if (row.name === "type") return null;
   if (row.choices) {

@@ -17,6 +17,7 @@ export const DISPLAY = {
   length: { name: "length", text: "Along the wave.", source: "geometry" },
   width: { name: "width", text: "Across the wave.", source: "geometry" },
   nodal_lines: { name: "nodal lines", text: "How many cross the length in the working mode; (8,0) has eight.", source: "paper, section 3.1.3" },
+  material: { name: "material", text: "From the library, whose values it brings, each with its source; values beside it replace them one by one.", source: "squeezefilm materials" },
   young_modulus: { name: "Young's modulus", symbol: "E", text: "Stiffness of the substrate, the glue or the foam.", source: "the material's data sheet" },
   poisson_ratio: { name: "Poisson's ratio", symbol: "ν", text: "Of the substrate or the glue.", source: "the material's data sheet" },
   density: { name: "density", symbol: "ρ", text: "Mass per volume.", source: "the material's data sheet" },

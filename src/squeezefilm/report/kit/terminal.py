@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import sys
-import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from squeezefilm.report.kit.numbers import (
     MISSED_HEADING,
-    dotted,
     film_rows,
     key_numbers,
-    micro,
     missed_directions,
     models,
     printable,
@@ -157,109 +154,3 @@ def show_analysis(analysis: Analysis) -> None:
     verdict = [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in analysis.verdict]
     bullets(console, verdict)
     console.print()
-
-
-def preset_list() -> list[dict[str, Any]]:
-    """The displays that come with the package: name, title, kind of actuator, values assumed."""
-    from squeezefilm import presets
-    from squeezefilm.display import load_display
-
-    listing = []
-    for name in presets.display_names():
-        display = load_display(name)
-        evidence = [item.evidence for item in display.provenance.values()]
-        listing.append(
-            {
-                "name": display.name,
-                "title": display.title,
-                "type": display.actuator.type,
-                "values_with_source": len(evidence),
-                "values_assumed": evidence.count("assumed"),
-            }
-        )
-    return listing
-
-
-def show_presets(listing: Sequence[dict[str, Any]]) -> None:
-    """Print the list of presets."""
-    console = plain_console()
-    rows = [
-        (one["name"], one["title"], f"{one['values_assumed']} of {one['values_with_source']}")
-        for one in listing
-    ]
-    table(console, ("preset", "what it is", "assumed"), rows, fixed=(0, 2))
-    console.print("squeezefilm show NAME lists the values; squeezefilm analyze NAME works them out")
-
-
-def display_values(target: str) -> list[dict[str, Any]]:
-    """Every value that a display's file states: path, text as written, source, evidence.
-
-    Members of lists are counted from 1. `source` and `evidence` are None where the file gives
-    none. Raises `ConfigError` for a file that is not right.
-    """
-    from squeezefilm import presets
-    from squeezefilm.display import load_display
-    from squeezefilm.hard_limits import DESCRIPTION_BYTES
-    from squeezefilm.regular_file import read_regular_text
-
-    load_display(target)  # for its messages: what is listed below can be analysed
-    text = read_regular_text(presets.resolve(target), DESCRIPTION_BYTES, "a TOML file")
-    # Numbers are kept as they were typed: 0.30 does not become 0.3.
-    return list(_written(tomllib.loads(text, parse_float=_Typed), ()))
-
-
-class _Typed(str):
-    """A number of a TOML file as it was typed."""
-
-    __slots__ = ()
-
-
-def _written(node: Any, path: tuple[str | int, ...]) -> Iterator[dict[str, Any]]:
-    if isinstance(node, dict) and not ("value" in node and set(node) <= _KEYS):
-        for key, item in node.items():
-            yield from _written(item, (*path, key))
-    elif isinstance(node, list):
-        for index, item in enumerate(node):
-            yield from _written(item, (*path, index))
-    else:
-        table = node if isinstance(node, dict) else {"value": node}
-        stated = "source" in table or "evidence" in table
-        yield {
-            "path": dotted(path),
-            "text": str(table["value"]),
-            "source": table.get("source"),
-            # What `split_provenance` takes a source without a kind of evidence for.
-            "evidence": table.get("evidence", "published") if stated else None,
-        }
-
-
-_KEYS = {"value", "source", "evidence"}
-
-
-def show_values(values: Sequence[dict[str, Any]]) -> None:
-    """Print the values of a display by table of its file, with their sources; a star marks what is
-    assumed."""
-    console = plain_console()
-    groups: dict[str, list[tuple[str, str, str]]] = {}
-    for item in values:
-        group, _, key = item["path"].rpartition(".")
-        star = "* " if item["evidence"] == "assumed" else "  "
-        groups.setdefault(group, []).append((star + key, micro(item["text"]), _origin(item)))
-    for group, rows in groups.items():
-        if group:
-            heading(console, group)
-        table(
-            console,
-            ("", "", ""),
-            rows,
-            fixed=(0,),
-            styles=lambda row: "yellow" if row[0].startswith("*") else "",
-        )
-    assumed = sum(item["evidence"] == "assumed" for item in values)
-    console.print(f"\n* assumed: {assumed} of {len(values)} values")
-
-
-def _origin(item: dict[str, Any]) -> str:
-    if item["evidence"] is None:
-        return ""
-    return f"{item['evidence']}: {item['source']}" if item["source"] else str(item["evidence"])

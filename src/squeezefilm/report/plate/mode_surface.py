@@ -45,7 +45,9 @@ def mode_surface(result: PlateAnalysis) -> Figure:
         f"those at {volts or 1:g} V, length and width to scale; nodal lines in black",
         5.4,
     )
-    # Placed by hand: the layout engine does not know how far a box in space reaches.
+    # Placed by hand: the layout engine does not know how far a box in space reaches, and warns of a
+    # figure that leaves it nothing to do.
+    figure.set_layout_engine("none")
     axes: Any = figure.add_axes((-0.02, 0.08, 0.88, 0.9), projection="3d", computed_zorder=False)
     X, Y = np.meshgrid(1e3 * x, 1e3 * y, indexing="ij")
     surface = axes.plot_surface(

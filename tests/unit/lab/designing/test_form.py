@@ -9,6 +9,7 @@ import pytest
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing.form import (
     LONGEST_VALUE,
+    OWN_VALUES,
     choices,
     display_of,
     edited,
@@ -45,7 +46,9 @@ def test_a_row_says_all_that_the_page_shows() -> None:
     # A member of a list is counted, and stands in its list's section.
     second = row_of(GLASS, "actuator.patches.1.y")
     assert (second["section"], second["text"]) == ("actuator.patches.1", "55 mm")
-    assert (second["source"], second["evidence"]) == ("", "")
+    # Its source is the one of its table.
+    assert second["source"] == "a strip along each long edge; our design"
+    assert second["evidence"] == "assumed"
     assert name_of(GLASS) == "touchpad-glass"
 
 
@@ -55,7 +58,7 @@ def test_a_value_that_changes_keeps_where_it_was_from() -> None:
     row = row_of(found, "actuator.length")
     old = "our own design of the size of a touch pad; no device"
     assert row["source"] == f"changed from 100 mm ({old})"
-    assert row["evidence"] == "assumed"
+    assert row["evidence"] == "unstated"
     # Changed again, it still says where the first one was from.
     twice = edited(found, "actuator.length", "102 mm")
     assert row_of(twice, "actuator.length")["source"] == f"changed from 100 mm ({old})"
@@ -77,7 +80,7 @@ def test_evidence_and_spread_do_not_vouch_for_another_value(spread: str) -> None
     found = edited(base, "actuator.patches.1.y", "52 mm")
     assert spread not in found
     row = row_of(found, "actuator.patches.1.y")
-    assert (row["text"], row["evidence"]) == ("52 mm", "assumed")
+    assert (row["text"], row["evidence"]) == ("52 mm", "unstated")
     assert row["source"] == "changed from 53 mm (a rule)"
 
 
@@ -85,12 +88,16 @@ def test_where_no_source_stood_none_is_made_up() -> None:
     base = GLASS.replace('y = "55 mm"', 'y = { value = "55 mm", evidence = "measured" }', 1)
     found = edited(base, "actuator.patches.1.y", "54 mm")
     assert "changed from" not in found
-    assert row_of(found, "actuator.patches.1.y")["evidence"] == "assumed"
+    assert row_of(found, "actuator.patches.1.y")["evidence"] == "unstated"
 
 
 def test_a_plain_value_is_replaced_and_a_missing_one_is_written() -> None:
     found = edited(GLASS, "actuator.patches.0.length", "90 mm")
-    assert 'length = "90 mm"' in found
+    row = row_of(found, "actuator.patches.0.length")
+    # What vouched for it, here its table, vouched for the other value.
+    assert row["source"] == "changed from 100 mm (a strip along each long edge; our design)"
+    assert row["evidence"] == "unstated"
+    assert edited(GLASS, "actuator.patches.0.length", "100 mm") == GLASS
     assert row_of(found, "actuator.patches.0.length")["value"] == pytest.approx(0.09)
     assert row_of(found, "actuator.patches.1.length")["value"] == pytest.approx(0.1)
     other = edited(GLASS, "actuator.patches.1.length", "90 mm")
@@ -160,3 +167,38 @@ def test_a_type_says_what_a_value_may_be() -> None:
     # A quantity that may be left out knows its unit itself.
     assert stated(Hertz | None) in (Hertz, Hertz | None)
     assert choices(Annotated[float, Unit("m")]) is None
+
+
+def test_a_material_is_chosen_from_the_library() -> None:
+    row = row_of(GLASS, "actuator.substrate.material")
+    assert row["text"] == OWN_VALUES
+    assert "aluminium 5083" in row["choices"]  # type: ignore[operator]
+    found = edited(GLASS, "actuator.substrate.material", "aluminium 5083")
+    assert row_of(found, "actuator.substrate.material")["text"] == "aluminium 5083"
+    modulus = row_of(found, "actuator.substrate.young_modulus")
+    assert modulus["text"] == "71 GPa"
+    assert "MatWeb" in str(modulus["source"])
+    # What the library does not say stays; what was assumed of another material does not.
+    assert row_of(found, "actuator.substrate.quality_factor")["text"] == "1000.0"
+    assert "borosilicate" not in found[found.index("[actuator.substrate]") :][:200]
+    ceramic = edited(found, "actuator.ceramic.material", "PZT-8")
+    assert row_of(ceramic, "actuator.ceramic.charge_coefficient")["text"] == "-97 pm/V"
+    glue = edited(ceramic, "actuator.glue.material", "filled epoxy")
+    assert row_of(glue, "actuator.glue.thickness")["text"] == "20 um"
+    assert row_of(glue, "actuator.glue.young_modulus")["text"] == "7 GPa"
+    with pytest.raises(InputError, match="there is no material 'wood'"):
+        edited(GLASS, "actuator.substrate.material", "wood")
+
+
+def test_a_value_of_the_library_is_overwritten_beside_its_name() -> None:
+    start, end = GLASS.index("[actuator.substrate]"), GLASS.index("[actuator.ceramic]")
+    for named in ('[actuator.substrate]\nmaterial = "brass"\n\n', 'substrate = "brass"\n\n'):
+        text = GLASS[:start] + named + GLASS[end:]
+        found = edited(text, "actuator.substrate.density", "8500 kg/m3")
+        row = row_of(found, "actuator.substrate.density")
+        assert (row["text"], row["evidence"]) == ("8500 kg/m3", "unstated")
+        assert row["source"] == "changed from 8530 kg/m3 (Olin Brass, C26000)"
+        assert row_of(found, "actuator.substrate.young_modulus")["text"] == "112 GPa"
+        same = edited(text, "actuator.substrate.density", "8530 kg/m3")
+        assert display_of(same).provenance == display_of(text).provenance
+        assert row_of(found, "actuator.substrate.material")["text"] == "brass CuZn30"

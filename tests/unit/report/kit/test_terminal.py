@@ -7,10 +7,9 @@ from typing import Any
 import pytest
 
 from squeezefilm.analysis.analyze import Analysis
-from squeezefilm.errors import ConfigError
 from squeezefilm.quantities import Unit
 from squeezefilm.report.kit import terminal
-from squeezefilm.report.kit.numbers import display_values, micro, printable, shown
+from squeezefilm.report.kit.numbers import micro, printable, shown
 
 
 @pytest.fixture(autouse=True)
@@ -64,54 +63,6 @@ def test_hostile_names_are_printed_and_not_obeyed(
 def test_a_display_without_texture(analysis_of: Any, capsys: pytest.CaptureFixture[str]) -> None:
     terminal.show_analysis(analysis_of("no-voltage"))
     assert "Finest grating" not in printed(capsys)
-
-
-def test_presets_are_listed_with_what_is_assumed(capsys: pytest.CaptureFixture[str]) -> None:
-    listing = terminal.preset_list()
-    by_name = {item["name"]: item for item in listing}
-    assert {"biet2008-plate", "biet2008-stator", "touchpad-glass"} <= set(by_name)
-    assert by_name["biet2008-plate"]["values_assumed"] == 15
-    terminal.show_presets(listing)
-    text = printed(capsys)
-    assert "biet2008-stator" in text
-    assert "15 of 39" in text
-
-
-def test_values_are_shown_as_written(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    values = terminal.display_values("biet2008-plate")
-    by_path = {item["path"]: item for item in values}
-    assert by_path["actuator.thickness"] == {
-        "path": "actuator.thickness",
-        "text": "2 mm",
-        "source": "paper, section 3.1",
-        "evidence": "published",
-    }
-    assert by_path["actuator.substrate.poisson_ratio"]["text"] == "0.30"
-    assert by_path["actuator.substrate.poisson_ratio"]["evidence"] == "assumed"
-    assert by_path["actuator.patches.7.polarity"]["text"] == "1"
-    assert by_path["name"]["evidence"] is None
-    terminal.show_values(values)
-    text = printed(capsys)
-    assert "* poisson_ratio" in text
-    assert "* assumed: 15 of" in text
-    # Where there are colours, what is assumed stands out.
-    styles: list[Any] = []
-    monkeypatch.setattr(terminal, "table", lambda *_, **how: styles.append(how["styles"]))
-    terminal.show_values(values)
-    assert [one(("* a", "b", "")) for one in styles[:2]] == ["yellow"] * 2
-    assert [one(("  a", "* b", "")) for one in styles[:2]] == [""] * 2
-
-
-def test_values_of_what_cannot_be_loaded_are_refused() -> None:
-    with pytest.raises(ConfigError, match="Did you mean"):
-        terminal.display_values("biet2008-plat")
-
-
-def test_paths_of_the_report_are_those_of_the_listing(plate_analysis: Analysis) -> None:
-    written = {item["path"] for item in terminal.display_values("biet2008-plate")}
-    assert written <= {value.path for value in display_values(plate_analysis.display)}
 
 
 def test_what_a_model_misses_is_said(capsys: pytest.CaptureFixture[str]) -> None:
