@@ -72,7 +72,9 @@ class PlateModes(SolvedAgain):
     def index(self, label: Label) -> int:
         """The position of the mode with these nodal lines.
 
-        Of several the most strongly driven one is taken. Raises `InputError` where there is none.
+        Of several the most strongly driven one is taken; of the plate's working mode the one
+        nearest to its `working_frequency`, where it has one. Raises `InputError` where there is
+        none.
         """
         found = [i for i, own in enumerate(self.labels) if own == tuple(label)]
         if not found:
@@ -83,6 +85,9 @@ class PlateModes(SolvedAgain):
                 "band",
                 quantity="label",
             )
+        wanted = self.plate.working_frequency
+        if wanted is not None and tuple(label) == self.plate.working_label:
+            return min(found, key=lambda i: abs(self.frequencies[i] - wanted))
         return max(found, key=lambda i: abs(self.drive_forces[i]))
 
     @si.checked_numbers

@@ -97,7 +97,8 @@ def _solved(
 ) -> PlateModes:
     classes = drive_classes(plate) if driven_only else all_classes(plate)
     if mode is not None:
-        near = estimated_frequency(plate, mode)
+        near = plate.working_frequency if mode == plate.working_label else None
+        near = near or estimated_frequency(plate, mode)
         classes = [c for c in all_classes(plate) if class_fits(c, mode)]
     centre = near if near is not None else sum(band or (0.0, 0.0)) / 2
     highest = band[1] if band is not None else 1.15 * centre
