@@ -51,8 +51,15 @@ def verdict(
     yield from (Finding("doubt", doubt.text) for doubt in doubts)
     undriven = any(doubt.kind == "undriven" for doubt in doubts)
     for finding in _findings(display, p, curves, table, films, unsure, why_not):
-        good = finding.kind == "good"
-        yield replace(finding, kind="limit") if good and undriven else finding
+        yield unless_undriven(finding, "") if undriven else finding
+
+
+def unless_undriven(finding: Finding, why: str | None) -> Finding:
+    """A finding that is not good where the working mode is not driven (`why`, added to it; None
+    where it is driven)."""
+    if why is None or finding.kind != "good":
+        return finding
+    return replace(finding, kind="limit", text=f"{finding.text} {why}".strip())
 
 
 def _findings(

@@ -334,9 +334,8 @@ def modes(asked: ModesOptions) -> None:
     display = load_display(asked.target)
     band = DEFAULT_BAND if asked.band is None else parse_band(asked.band)
     with working(asked.as_json) as step:
-        result = list_modes(
-            display, band, **given(asked, leave="target band out as_json"), progress=step
-        )
+        options = given(asked, leave="target band out as_json")
+        result = list_modes(display, band, **options, progress=step)
         written = None
         if asked.out is not None:
             from squeezefilm.report.plate.modes import write_modes

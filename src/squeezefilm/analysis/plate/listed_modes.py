@@ -167,16 +167,21 @@ def suggested(modes: Sequence[ListedMode]) -> Suggestion:
     if not able:
         return Suggestion(
             None,
-            "No driven mode in this band is inaudible and has straight nodal lines across one side "
-            "only, so that none can be suggested: look in a wider band (--band), or change the "
-            "ceramics' polarity, place or size.",
+            "No driven mode in this band is above the hearing range and has straight nodal lines "
+            "across one side only, so that none can be suggested: look in a wider band (--band), "
+            "or change the ceramics' polarity, place or size.",
         )
     best = max(able, key=lambda mode: mode.amplitude_per_volt / (1 + 4 * mode.neighbour_share))
+    straight = "" if best.straightness is None else ", its nodal lines cross one side only"
+    others = (
+        f", and of {len(able)} such modes it moves most for its neighbours"
+        if len(able) > 1
+        else ", the only such mode here"
+    )
     said = (
         f"Write {best.choice}"
         + ("" if best.unique else f', working_frequency = "{shown_frequency(best)}"')
-        + f": at {shown_frequency(best)} {best.label} is above the hearing range, its nodal lines "
-        f"cross one side only, and of {len(able)} such modes it moves most for its neighbours "
+        + f": at {shown_frequency(best)} {best.label} is above the hearing range{straight}{others} "
         f"({si.format_quantity(best.amplitude_per_volt, _PER_VOLT, 3)} at an antinode"
     )
     if best.neighbour is not None and best.neighbour_distance is not None:

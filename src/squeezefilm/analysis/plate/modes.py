@@ -151,10 +151,10 @@ def _rules(plate: RectangularPlate) -> tuple[str, ...]:
         driven = {parity[axis] for parity in drive_classes(plate)}
         if len(driven) == 1 and None not in driven:
             odd, even = ("odd", "even") if driven == {"S"} else ("even", "odd")
-            alike = "the same" if driven == {"S"} else "opposite"
+            alike = "alike" if driven == {"S"} else "opposite"
             said.append(
                 f"No mode with an {odd} number of nodal lines across the {side} is driven: the "
-                f"ceramics' signs are {alike} on both halves of it, which drives {even} numbers."
+                f"ceramics' signs are {alike} on its two halves, which drives {even} numbers."
             )
     return tuple(said)
 
@@ -180,7 +180,7 @@ def _of_ring(
                 quality_factor=row.quality_factor,
                 amplitude_per_volt=row.amplitude_per_volt,
                 largest_per_volt=row.amplitude_per_volt,
-                symmetry="once" if mode.harmonic == 0 else "a pair",
+                symmetry="alike all round" if mode.harmonic == 0 else "one of a pair",
                 audible=row.frequency < HEARING,
                 neighbour=None,
                 neighbour_distance=None,

@@ -17,7 +17,7 @@ from squeezefilm.plate.ring.pair import (
     most_travelling,
 )
 
-_HZ, _M, _SPEED = si.Unit("Hz"), si.Unit("m"), si.Unit("m/s")
+_HZ, _SPEED = si.Unit("Hz"), si.Unit("m/s")
 # In half-bandwidths: what good rings have, what is common, and the worst there is.
 _SPLITS = (0.1, 0.5, 2.0)
 
@@ -59,7 +59,7 @@ class RingPair:
         """What that means, with its numbers."""
         half = self.frequency / (2 * self.quality_factor)
         open_in_halves = self.electrode_split / half
-        amplitude = si.format_quantity(self.amplitude, _M, 3)
+        amplitude = f"{self.amplitude * 1e6:.3g} µm"
         two = si.format_quantity(self.two_channels, _SPEED, 2)
         said = [
             f"{self.label} is a pair: the same wave in two places around the ring, a quarter of a "

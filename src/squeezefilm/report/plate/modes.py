@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.plate.ring_pair import RingPair
 
 _PER_VOLT, _SPEED = si.Unit("m/V"), si.Unit("m/s")
-_HEAD = ("mode", "frequency", "per volt", "Q", "neighbour", "away", "adds", "")
+_HEAD = ("mode", "frequency", "per volt", "neighbour", "away", "adds", "")
 # So many shapes are drawn: those that move most.
 _SHAPES = 12
 
 
 def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
-    """One row a mode: label, frequency, amplitude per volt at an antinode, Q, the neighbour that
+    """One row a mode: label, frequency, amplitude per volt at an antinode, the neighbour that
     counts most, its distance in half-bandwidths, what it adds, and remarks."""
     working = result.working_mode
     rows = []
@@ -43,7 +43,6 @@ def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
                 ("→ " if mode is working else "  ") + mode.label,
                 shown(mode.frequency, HZ, 4),
                 shown(mode.amplitude_per_volt, _PER_VOLT, 3),
-                f"{mode.quality_factor:.3g}",
                 mode.neighbour or "",
                 "" if far is None else f"{far:.3g}",
                 "" if far is None else _percent(mode.neighbour_share),
@@ -62,6 +61,8 @@ def _remarks(mode: ListedMode) -> Iterator[str]:
         yield "crowded"
     if not mode.unique:
         yield "label not unique"
+    if mode.choice is not None:
+        yield mode.choice
 
 
 def _percent(share: float) -> str:
@@ -71,9 +72,6 @@ def _percent(share: float) -> str:
 def mode_list_sentences(result: ModeList) -> list[tuple[str, str, str]]:
     """What to know beside the table: a word for the kind, the sentence, a style."""
     said = [("symmetry", rule, "cyan") for rule in result.rules]
-    symmetries = sorted({mode.symmetry for mode in result.modes})
-    if len(symmetries) == 1:
-        said.append(("symmetry", f"All modes of the list are {symmetries[0]}.", "cyan"))
     own = result.working_mode
     if result.forbidden is not None:
         text = f"The display asks for {result.working}, and {result.forbidden}."
@@ -100,7 +98,7 @@ def show_mode_list(result: ModeList) -> None:
     display, (low, high) = result.display, result.band
     heading(console, f"{display.title} [{display.name}]")
     console.print(
-        f"{len(result.modes)} driven modes from {shown(low, HZ)} to {shown(high, HZ)}; amplitude "
+        f"Driven modes: {len(result.modes)}, from {shown(low, HZ)} to {shown(high, HZ)}; amplitude "
         "of each alone, zero to peak, at an antinode, at resonance, without a finger"
     )
     rows = mode_list_rows(result)
@@ -168,7 +166,11 @@ def spectrum(result: ModeList) -> Figure:
         axes.axvspan(low, min(HEARING / 1e3, high), color=style.BAND, lw=0, label="audible")
     axes.vlines(f, floor, per_volt, color=style.MUTED, lw=1.2)
     axes.plot(f, per_volt, "o", color=style.MUTED, ms=4)
-    marked = ((own, style.BLUE, "the display's mode"), (best, style.ORANGE, "suggested"))
+    marked = (
+        [(own, style.BLUE, "the display's mode, which is the one suggested")]
+        if own is best
+        else [(own, style.BLUE, "the display's mode"), (best, style.ORANGE, "suggested")]
+    )
     for mode, color, name in marked:
         if mode is not None:
             at = mode.frequency / 1e3, mode.amplitude_per_volt * 1e9
