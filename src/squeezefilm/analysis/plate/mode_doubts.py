@@ -97,6 +97,15 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
     """Neighbours and modes of the same name."""
     around = (1 - _NEAR) * mode.resonance_frequency, (1 + _NEAR) * mode.resonance_frequency
     modes = _screened(plate, around)
+    solid = mode.solid
+    has = None if solid is None else solid.modes.labels[solid.index]
+    if solid is not None and has != plate.working_label:
+        lines = "moves in its plane" if has is None else f"has nodal lines ({has[0]},{has[1]})"
+        yield ModeDoubt(
+            "ambiguous",
+            f"The mode taken, nearest to the working_frequency, {lines} and not {mode.label}: "
+            "nodal lines and half wavelength below are those of its dominant part.",
+        )
     own = chosen(modes, mode.label, mode.resonance_frequency)
     if own is None:
         return
@@ -115,22 +124,17 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
         and other is not own
         and other.amplitude_per_volt >= SAME_LABEL * own.amplitude_per_volt
     ]
-    if same:
+    if same and plate.working_frequency is None:
         listed = " and ".join(
             f"{shown_frequency(one)} ({si.format_quantity(one.amplitude_per_volt, _PER_VOLT, 3)})"
             for one in sorted([own, *same], key=lambda one: one.frequency)
         )
-        how = (
-            "the one nearest to working_frequency is taken"
-            if plate.working_frequency is not None
-            else f"the most strongly driven one was taken, at "
-            f"{si.format_quantity(mode.resonance_frequency, _HZ)}"
-        )
         yield ModeDoubt(
             "ambiguous",
             f"{len(same) + 1} modes near have the label {mode.label}, at {listed} by screening: "
-            f"{how}. To choose, write working_frequency beside nodal_lines; the other's nodal "
-            "lines are less straight than its name.",
+            "the most strongly driven was taken, at "
+            f"{si.format_quantity(mode.resonance_frequency, _HZ)}. To choose, write working_frequency beside nodal_lines. Modes that mix may be "
+            "labelled otherwise by the full solution.",
         )
 
 

@@ -17,9 +17,9 @@ from squeezefilm.hard_limits import BAND_MODES, require_within
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.layers import SCREENING
-from squeezefilm.plate.solid.mesh import plate_model, wave_number
+from squeezefilm.plate.solid.mesh import wave_number
 from squeezefilm.plate.solid.modes import Label, check_band
-from squeezefilm.plate.solid.reduced import class_drive, reduced_class
+from squeezefilm.plate.solid.reduced import reduced_class
 from squeezefilm.plate.solid.resonances import DrivenMode, driven_modes
 from squeezefilm.plate.solid.symmetry import Symmetry, drive_classes, drive_signs, symmetric_axes
 
@@ -51,21 +51,11 @@ def screened_modes(
     steps = _steps(plate, wide)
     found: list[DrivenMode] = []
     with one_blas_thread():
-        for parity in _driven_classes(plate, wide):
+        for parity in drive_classes(plate):
             part = reduced_class(plate, parity, wide, steps, [], SCREENING)
             if part.basis.shape[1]:
                 found += driven_modes(part, wide)
     return tuple(sorted(found, key=lambda mode: mode.frequency))
-
-
-def _driven_classes(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> list[Symmetry]:
-    """The classes in which the drive does anything: of two axes each of which it excites both
-    ways, it need not excite every pair."""
-    every = drive_classes(plate)
-    if len(every) < 4:
-        return every
-    models = (plate_model(plate, band[1], SCREENING, parity) for parity in every)
-    return [parity for parity, model in zip(every, models, strict=True) if class_drive(model).any()]
 
 
 def _steps(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> int:
