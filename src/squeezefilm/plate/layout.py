@@ -128,10 +128,10 @@ class RectangularPlate:
     `nodal_lines` picks the working mode: that many nodal lines across the length, none along it;
     with `lines_across` = "width" that many across the width, as strips along the long edges drive.
     Where several modes have these lines, the one nearest to `working_frequency` is taken (where
-    none there has them, the nearest that is driven), without one the most strongly driven. `quality_factor` is that of the whole assembly; it holds for
-    every material unless the substrate has its own, and then ceramic and glue have theirs too.
-    Edges are free but for `supports` and `clamped_edges` (left and right: x = 0 and x = length;
-    front and back: y).
+    none there has them, the nearest that is driven), without one the most strongly driven.
+    `quality_factor` is that of the whole assembly; it holds for every material unless the substrate
+    has its own, and then ceramic and glue have theirs too. Edges are free but for `supports` and
+    `clamped_edges` (left and right: x = 0 and x = length; front and back: y).
 
     Raises `GeometryError` for ceramics that overlap each other or overhang the plate.
     """
