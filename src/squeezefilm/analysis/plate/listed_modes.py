@@ -78,6 +78,7 @@ class Suggestion:
 
 
 def listed_mode(mode: DrivenMode) -> ListedMode:
+    """A screened mode as it is listed, its neighbours not looked at yet."""
     return ListedMode(
         label=mode.name,
         frequency=mode.frequency,

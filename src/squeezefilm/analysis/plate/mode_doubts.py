@@ -133,8 +133,9 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
             "ambiguous",
             f"{len(same) + 1} modes near have the label {mode.label}, at {listed} by screening: "
             "the most strongly driven was taken, at "
-            f"{si.format_quantity(mode.resonance_frequency, _HZ)}. To choose, write working_frequency beside nodal_lines. Modes that mix may be "
-            "labelled otherwise by the full solution.",
+            f"{si.format_quantity(mode.resonance_frequency, _HZ)}. To choose, write "
+            "working_frequency beside nodal_lines. Modes that mix may be labelled otherwise by the "
+            "full solution.",
         )
 
 

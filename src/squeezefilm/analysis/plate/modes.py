@@ -166,7 +166,7 @@ def _of_ring(
     tell: SayProgress,
 ) -> ModeList:
     tell("section")
-    body = ring_body(display.actuator)  # type: ignore[arg-type]  # what is no plate is round
+    body = ring_body(display.actuator)
     working = body.mode()
     found = modes_in_band(body, band, tell)
     capacitance = clamped_capacitance(body.section, body.drive)

@@ -65,7 +65,7 @@ def _steps(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> int:
     # Weyl's count of a free plate: k² area/4π, and what its rim adds.
     modes = (high**2 - low**2) * plate.area / (4 * math.pi) + (high - low) * rim / (2 * math.pi)
     require_within(BAND_MODES, math.ceil(modes), "band", enough="ask for a narrower band")
-    return _STEPS + math.ceil(2 * modes / copies)
+    return _STEPS + math.ceil(2 * float(modes) / copies)
 
 
 _SIDES, _ENDS = ("length", "width"), ("left and right", "front and back")

@@ -35,7 +35,7 @@ def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
     """One row a mode: label, frequency, amplitude per volt at an antinode, the neighbour that
     counts most, its distance in half-bandwidths, what it adds, and remarks."""
     working = result.working_mode
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for mode in result.modes:
         far = mode.neighbour_distance
         rows.append(
