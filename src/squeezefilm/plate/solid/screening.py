@@ -61,11 +61,11 @@ def screened_modes(
 def _steps(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> int:
     """Steps of the reduction for a band: by how many modes of bending one class has there."""
     low, high = (wave_number(plate, max(f, 1.0)) for f in band)
-    rim, copies = plate.length + plate.width, 2 ** sum(symmetric_axes(plate))
+    rim, copies = plate.length + plate.width, 1 << sum(symmetric_axes(plate))
     # Weyl's count of a free plate: k² area/4π, and what its rim adds.
     modes = (high**2 - low**2) * plate.area / (4 * math.pi) + (high - low) * rim / (2 * math.pi)
     require_within(BAND_MODES, math.ceil(modes), "band", enough="ask for a narrower band")
-    return _STEPS + math.ceil(2 * float(modes) / copies)
+    return _STEPS + math.ceil(2 * modes / copies)
 
 
 _SIDES, _ENDS = ("length", "width"), ("left and right", "front and back")
