@@ -29,6 +29,8 @@ _PER_VOLT, _SPEED = si.Unit("m/V"), si.Unit("m/s")
 _HEAD = ("mode", "frequency", "per volt", "neighbour", "away", "adds", "")
 # So many shapes are drawn: those that move most.
 _SHAPES = 12
+# So many labels have room side by side; between two, the higher mode gets its own.
+_LABELS = 30
 
 
 def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
@@ -161,7 +163,7 @@ def spectrum(result: ModeList) -> Figure:
     f = np.array([mode.frequency for mode in result.modes]) / 1e3
     per_volt = np.array([mode.amplitude_per_volt for mode in result.modes]) * 1e9
     floor = 0.5 * float(per_volt.min())
-    low, high = result.band[0] / 1e3, 1e-3 * max(result.band[1], 1e3 * float(f.max()))
+    low, high = result.band[0] / 1e3, max(result.band[1] / 1e3, 1.02 * float(f.max()))
     if low < HEARING / 1e3:
         axes.axvspan(low, min(HEARING / 1e3, high), color=style.BAND, lw=0, label="audible")
     axes.vlines(f, floor, per_volt, color=style.MUTED, lw=1.2)
@@ -176,8 +178,11 @@ def spectrum(result: ModeList) -> Figure:
             at = mode.frequency / 1e3, mode.amplitude_per_volt * 1e9
             axes.vlines(at[0], floor, at[1], color=color, lw=2.2)
             axes.plot(*at, "o", color=color, ms=8, label=name, mec=style.PAPER)
+    room = (high - low) / _LABELS
     for mode in result.modes:
-        if mode.amplitude_per_volt * 1e9 > 0.1 * per_volt.max():
+        beside = np.abs(f - mode.frequency / 1e3) < room
+        highest = mode.amplitude_per_volt * 1e9 >= per_volt[beside].max()
+        if highest and mode.amplitude_per_volt * 1e9 > 0.05 * per_volt.max():
             at = mode.frequency / 1e3, mode.amplitude_per_volt * 1e9
             axes.annotate(mode.label, at, (0, 6), textcoords="offset points", **style.SLANTED)
     axes.set(xlabel="frequency (kHz)", ylabel="amplitude (nm/V)", xlim=(low, high), yscale="log")
