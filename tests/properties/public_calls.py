@@ -47,6 +47,7 @@ NOT_CALLED = {
     film.transient.march.FilmTransient film.transient.march.MovedFilm
     film.validity.FilmValidity film.validity.ValidityCheck
     formats.hjif.HjifExport formats.hjif_read.HjifImport plate.ring.modes.AnnularMode
+    plate.solid.resonances.DrivenMode
     plate.beam.modes.BeamMode plate.solid.modes.PlateModes plate.solid.response.HarmonicResponse
     plate.heat.thermal.ThermalBody plate.heat.warming.Warming plate.heat.warming.WarmState
     plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
@@ -106,7 +107,8 @@ NOT_CALLED = {
     plate.elements.lobatto.lagrange plate.elements.sparse_modes.nearest_modes
     plate.elements.sparse_modes.entries plate.elements.sparse_modes.gathered
     plate.elements.sparse_modes.shifted_inverse plate.ring.elements.node_coordinates
-    plate.solid.model.PlateModel
+    plate.solid.model.PlateModel plate.solid.resonances.driven_modes
+    plate.solid.resonances.antinode plate.solid.screening.forbidden_by
     plate.solid.layers.Resolution plate.solid.layers.merged
     plate.solid.layers.nearest plate.solid.layers.snapped
     plate.solid.mesh.plate_model plate.solid.mesh.wave_number

@@ -95,3 +95,60 @@ def slice_unknowns(plate: RectangularPlate) -> int:
     parity = all_classes(plate)[0]
     model = plate_model(plate, 1.15 * guess(plate), REFINED, parity).model
     return max(Slabs(model).sizes)
+
+
+def screened_plate(seed: int) -> RectangularPlate:
+    """A metal plate covered with strips, or a metal or glass plate with strips on a part of it,
+    with glue or without, of random polarity: for what looks through the modes of a band."""
+    rng = np.random.default_rng([seed, 18])
+    length, width = rng.uniform(50e-3, 100e-3), rng.uniform(25e-3, 60e-3)
+    covered = seed % 3 == 0
+    substrate = (
+        SUBSTRATES[int(rng.integers(len(SUBSTRATES)))]
+        if covered or rng.random() < 0.3
+        else SUBSTRATES[1]
+    )
+    thickness, ceramic = rng.uniform(0.8e-3, 3e-3), rng.uniform(0.3e-3, 1e-3)
+    if covered:
+        strips = int(rng.integers(3, 8))
+        step = length / strips
+        gap = rng.uniform(0.02, 0.2) * step
+        places = [(k * step + gap / 2, 0.0, step - gap, width) for k in range(strips)]
+    else:
+        breadth, inset = rng.uniform(3e-3, 8e-3), rng.choice([0.0, rng.uniform(1e-3, 4e-3)])
+        short = rng.choice([0.0, rng.uniform(2e-3, 6e-3)])
+        ends = [
+            (inset, short, breadth, width - 2 * short),
+            (length - inset - breadth, short, breadth, width - 2 * short),
+        ]
+        sides = [
+            (short, inset, length - 2 * short, breadth),
+            (short, width - inset - breadth, length - 2 * short, breadth),
+        ]
+        places = [ends, sides, ends[:1]][int(rng.choice(3, p=[0.35, 0.35, 0.3]))]
+    pattern = int(rng.integers(3))
+    signs = [
+        1 if pattern == 0 else (-1) ** k if pattern == 1 else int(rng.choice([1, -1]))
+        for k in range(len(places))
+    ]
+    patches = tuple(
+        CeramicPatch(*place, ceramic, sign)  # type: ignore[arg-type]
+        for place, sign in zip(places, signs, strict=True)
+    )
+    return RectangularPlate(
+        length=length,
+        width=width,
+        thickness=thickness,
+        nodal_lines=6,
+        quality_factor=60,
+        substrate=dataclasses.replace(
+            substrate, quality_factor=1000.0 if substrate.name == "glass" else 300.0
+        )
+        if rng.random() < 0.5
+        else substrate,
+        ceramic=CERAMICS[int(rng.integers(len(CERAMICS)))],
+        patches=patches,
+        glue=GlueLayer(rng.uniform(10e-6, 60e-6), rng.uniform(1e9, 4e9))
+        if rng.random() < 0.5
+        else None,
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.film.models import FilmComparison
+from squeezefilm.analysis.plate.mode_doubts import mode_doubts
 from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
@@ -43,7 +44,35 @@ def verdict(
     unsure: UncertainFriction | None = None,
     why_not: str = "",
 ) -> Iterator[Finding]:
-    """What an analysis amounts to, in sentences; `why_not` says why no friction is `unsure`."""
+    """What an analysis amounts to, in sentences; `why_not` says why no friction is `unsure`.
+
+    What speaks against the working mode comes first, and nothing is good of one that is not driven.
+    """
+    doubts = () if p.voltage is None else mode_doubts(display, p.mode)
+    yield from (Finding("doubt", doubt.text) for doubt in doubts)
+    undriven = any(doubt.kind == "undriven" for doubt in doubts)
+    for finding in _findings(display, p, curves, table, films, unsure, why_not):
+        yield unless_undriven(finding, "") if undriven else finding
+
+
+def unless_undriven(finding: Finding, why: str | None) -> Finding:
+    """A finding that is not good where the working mode is not driven (`why`, added to it; None
+    where it is driven)."""
+    if why is None or finding.kind != "good":
+        return finding
+    return replace(finding, kind="limit", text=f"{finding.text} {why}".strip())
+
+
+def _findings(
+    display: Display,
+    p: Prediction,
+    curves: tuple[FrictionCurve, ...],
+    table: FidelityTable | None,
+    films: FilmComparison | None,
+    unsure: UncertainFriction | None,
+    why_not: str,
+) -> Iterator[Finding]:
+    """The sentences of a verdict but for those on the working mode."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
     yield friction_verdict(p, unsure, why_not)
     yield from _of_needed_amplitude(p, curves)

@@ -244,7 +244,7 @@ class PlateOptions:
     """What `plate` is asked for."""
 
     target: Target
-    band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz:45 kHz".')] = None
+    band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz..45 kHz".')] = None
     mode: Annotated[
         str | None,
         typer.Option(
@@ -315,3 +315,44 @@ def plate(asked: PlateOptions) -> None:
     show_plate(result)
     for path in written:
         typer.echo(f"wrote {path}")
+
+
+@dataclass(frozen=True)
+class ModesOptions:
+    """What `modes` is asked for."""
+
+    target: Target
+    band: Annotated[
+        str | None,
+        typer.Option(help='Where to look, like "20 kHz..60 kHz"; 15 to 60 kHz if not given.'),
+    ] = None
+    split: Annotated[
+        str | None,
+        In("Hz"),
+        typer.Option(help="Of rings: how far a mode's two orientations were measured apart."),
+    ] = None
+    out: Annotated[Path | None, written_to("Folder for modes.json and figures.")] = None
+    as_json: AsJson = False
+
+
+@app.command()
+@called_with(ModesOptions)
+def modes(asked: ModesOptions) -> None:
+    """List the modes that the drive can move, in seconds, and suggest which to work in."""
+    from squeezefilm.analysis.plate.command import parse_band
+    from squeezefilm.analysis.plate.modes import DEFAULT_BAND, list_modes
+    from squeezefilm.display import load_display
+    from squeezefilm.report.plate.modes import show_mode_list
+
+    display = load_display(asked.target)
+    band = DEFAULT_BAND if asked.band is None else parse_band(asked.band)
+    with working(asked.as_json) as step:
+        options = given(asked, leave="target band out as_json")
+        result = list_modes(display, band, **options, progress=step)
+        written = None
+        if asked.out is not None:
+            from squeezefilm.report.plate.modes import write_modes
+
+            step("figures")
+            written = write_modes(result, asked.out)
+    answer(asked.as_json, result, show_mode_list, figures=written)

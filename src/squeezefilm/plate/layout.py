@@ -127,9 +127,11 @@ class RectangularPlate:
 
     `nodal_lines` picks the working mode: that many nodal lines across the length, none along it;
     with `lines_across` = "width" that many across the width, as strips along the long edges drive.
-    `quality_factor` is that of the whole assembly; it holds for every material unless the
-    substrate has its own, and then ceramic and glue have theirs too. Edges are free but for
-    `supports` and `clamped_edges` (left and right: x = 0 and x = length; front and back: y).
+    Where several modes have these lines, the one nearest to `working_frequency` is taken (where
+    none there has them, the nearest that is driven), without one the most strongly driven.
+    `quality_factor` is that of the whole assembly; it holds for every material unless the substrate
+    has its own, and then ceramic and glue have theirs too. Edges are free but for `supports` and
+    `clamped_edges` (left and right: x = 0 and x = length; front and back: y).
 
     Raises `GeometryError` for ceramics that overlap each other or overhang the plate.
     """
@@ -147,6 +149,7 @@ class RectangularPlate:
     supports: tuple[FoamSupport, ...] = ()
     clamped_edges: tuple[Edge, ...] = ()
     lines_across: Literal["length", "width"] = "length"
+    working_frequency: Annotated[si.Hertz, hard.FREQUENCY] | None = None
 
     def __post_init__(self) -> None:
         hard.require_within(hard.PARTS_OF_A_PLATE, len(self.patches), "number of patches")

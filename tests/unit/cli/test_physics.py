@@ -13,7 +13,7 @@ from tests.e2e.program import run
 
 from squeezefilm.analysis.film.command import FilmRequest
 from squeezefilm.analysis.plate.tracking import TrackRequest
-from squeezefilm.cli.describe import film, friction, plate
+from squeezefilm.cli.describe import film, friction, modes, plate
 from squeezefilm.display import load_display
 
 PLATE, STATOR = "biet2008-plate", "biet2008-stator"
@@ -23,7 +23,7 @@ ANSWER = SimpleNamespace(summary=lambda: {"found": 1})
 
 def test_the_verbs_are_those_of_the_program() -> None:
     said = run("--help").stdout
-    for verb in (friction, film, plate):
+    for verb in (friction, film, modes, plate):
         assert verb.__name__ in said
 
 
@@ -196,3 +196,27 @@ def test_a_stator_has_a_page_and_no_volume(plates: SimpleNamespace, tmp_path: Pa
     assert "annular stator" in refused.stderr
     assert len(plates.solve.calls) == 2
     assert plates.volume.calls == []
+
+
+def test_modes_are_listed_in_a_band_and_shown(stands_in: StandsIn, tmp_path: Path) -> None:
+    asked = stands_in("analysis.plate.modes:list_modes", ANSWER)
+    shown = stands_in("report.plate.modes:show_mode_list")
+    written = stands_in("report.plate.modes:write_modes", "a/folder")
+    done = run("modes", PLATE)
+    assert done.returncode == 0, done.stderr
+    assert asked.given == (load_display(PLATE), (15e3, 60e3))
+    assert asked.named == {"split": None}
+    assert shown.given == (ANSWER,)
+    assert written.calls == []
+
+    done = run("modes", STATOR, "--band", "20 kHz..50 kHz", "--split", "20 Hz", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert asked.calls[-1][0][1] == (20e3, 50e3)
+    assert asked.calls[-1][1] == {"split": 20.0}
+    assert written.given == (ANSWER, tmp_path)
+    assert done.stdout == "figures: a/folder\n"
+
+    assert json.loads(run("modes", PLATE, "--json").stdout) == {"found": 1}
+    wrong = run("modes", PLATE, "--band", "20 kHz")
+    assert wrong.returncode != 0
+    assert "25 kHz..45 kHz" in wrong.stderr

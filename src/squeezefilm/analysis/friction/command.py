@@ -12,8 +12,9 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve, model_curves
 from squeezefilm.analysis.friction.tell_apart import ToldApart, tell_apart
+from squeezefilm.analysis.plate.mode_doubts import why_undriven
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
-from squeezefilm.analysis.verdict import Finding, friction_verdict
+from squeezefilm.analysis.verdict import Finding, friction_verdict, unless_undriven
 from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
@@ -216,7 +217,10 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         _ripple(prediction),
         wanted,
         Tapping(prediction.speed, without_gas(prediction.law, prediction.vibration_amplitude)),
-        friction_verdict(prediction, unsure, why_not),
+        unless_undriven(
+            friction_verdict(prediction, unsure, why_not),
+            None if prediction.voltage is None else why_undriven(display, prediction.mode),
+        ),
         apart,
     )
 

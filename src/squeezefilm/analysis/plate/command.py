@@ -295,12 +295,13 @@ def _row(modes: PlateModes, index: int) -> ModeRow:
 
 
 def parse_band(text: str) -> tuple[si.Hertz, si.Hertz]:
-    """A band from text such as ``"25 kHz:45 kHz"``. Raises `InputError` for anything else."""
+    """A band from text such as ``"25 kHz..45 kHz"`` (or with a colon between). Raises `InputError`
+    for anything else."""
     from squeezefilm.quantities import parse_quantity
 
-    parts = text.split(":")
+    parts = text.split(".." if ".." in text else ":")
     if len(parts) != 2:
-        raise InputError(f"--band '{text}' is no band; write two frequencies: 25 kHz:45 kHz")
+        raise InputError(f"--band '{text}' is no band; write two frequencies: 25 kHz..45 kHz")
     low, high = (parse_quantity(part.strip(), si.Unit("Hz")) for part in parts)
     if low >= high:
         raise InputError(

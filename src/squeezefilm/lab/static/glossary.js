@@ -51,6 +51,7 @@ export const DISPLAY = {
   nodal_circles: { name: "nodal circles", text: "Of the disc's working mode.", source: "plate theory, B(circles, diameters)" },
   nodal_diameters: { name: "nodal diameters", symbol: "m", text: "Of the disc's working mode; with any, the electrode is cut into sectors.", source: "plate theory, B(circles, diameters)" },
   sectors: { name: "sectors", text: "Of the electrode, neighbours poled in turn; 2m go all round, 0 for one electrode.", source: "the display's drawing" },
+  working_frequency: { name: "working frequency", text: "Which mode is meant where several have the same nodal lines, or modes mix: the one nearest to this frequency. squeezefilm modes lists them.", source: "the working mode" },
   lines_across: { name: "nodal lines across", text: "Which way the nodal lines lie one after the other: along the length, or along the width as strips at the long edges drive it.", source: "the working mode" },
   x: { name: "x", symbol: "x", text: "From the plate's corner to the near edge of the ceramic or support, along the length.", source: "the display's drawing" },
   y: { name: "y", symbol: "y", text: "From the plate's corner to the near edge of the ceramic or support, along the width.", source: "the display's drawing" },

@@ -252,7 +252,7 @@ def _mode(
     share = float(vector[axial] @ (system.mass @ vector)[axial])
     energies = np.array([vector @ (part @ vector) for part in system.layer_stiffness])
     total = float(energies.sum())
-    rigid = system.harmonic < 2 and square < 1e-5 * _elastic_scale(section)
+    rigid = _rigid_share(system, vector) > 0.5
     m, mean = system.harmonic, section.mean_diameter
     return AnnularMode(
         harmonic=m,
@@ -273,16 +273,27 @@ def _mode(
     )
 
 
-def _elastic_scale(section: AnnularSection) -> float:
-    """A low ω² of bending: (E/ρ) h²/R⁴ of the softest and heaviest that the section has."""
-    radius = max(layer.outer_radius for layer in section.layers)
-    thin = min(layer.thickness for layer in section.layers)
-    stiff = min(
-        layer.solid.stiffness[2, 2] / layer.solid.density
-        for layer in section.layers
-        if layer.solid.stiffness[0, 0] > 0
-    )
-    return float(stiff * thin**2 / radius**4)
+def _rigid_share(system: HarmonicSystem, vector: si.FloatArray) -> si.Dimensionless:
+    """The share of a mode (of unit modal mass) that is motion without deformation: 1 or 0 but for
+    rounding, since modes that deform have none of it.
+
+    Told by its shape, since the frequency of a rigid motion is rounding, and that of a thin ring is
+    hardly above it. Along z and around it for m = 0, across and a tilt for m = 1.
+    """
+    if system.harmonic > 1:
+        return 0.0
+    r, z, none = system.r, system.z, np.zeros_like(system.r)
+    one = np.ones_like(r)
+    around = ((none, none, one), (none, r, none))
+    across = ((one, -one, none), (-z, z, r))
+    fields = np.array(around if system.harmonic == 0 else across).transpose(0, 2, 1)
+    rows = system.unknown[:, :3]
+    motions = np.zeros((system.displacements, 2))
+    for column, field in enumerate(fields):
+        motions[rows[rows >= 0], column] = (field * system.sign[:, :3])[rows >= 0]
+    weighted = system.mass @ motions
+    moments = weighted.T @ vector
+    return float(moments @ np.linalg.solve(motions.T @ weighted, moments))
 
 
 def _label(m: int, axial_share: float, field: si.FloatArray, shape: si.FloatArray) -> str:

@@ -19,6 +19,8 @@ from squeezefilm.plate.solid.symmetry import Symmetry
 
 Label = tuple[int, int]
 MODEL = "piezoelectric_solid_3d"
+# So near to a frequency that is asked for nodal lines still decide which mode is meant.
+_NEAR_WANTED = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,15 +74,24 @@ class PlateModes(SolvedAgain):
     def index(self, label: Label) -> int:
         """The position of the mode with these nodal lines.
 
-        Of several the most strongly driven one is taken. Raises `InputError` where there is none.
+        Of several the most strongly driven one is taken. The working mode of a plate with a
+        `working_frequency` is the one nearest to that: of those with its nodal lines within 3 % of
+        it, and where there is none, of all that are driven. Raises `InputError` where there is
+        none.
         """
         found = [i for i, own in enumerate(self.labels) if own == tuple(label)]
+        wanted = self.plate.working_frequency
+        if wanted is not None and tuple(label) == self.plate.working_label:
+            away = np.abs(self.frequencies / wanted - 1)
+            near = [i for i in found if away[i] < _NEAR_WANTED]
+            driven = self.drive_forces > 1e-6 * np.max(self.drive_forces)
+            return min(near or np.flatnonzero(driven).tolist(), key=away.__getitem__)
         if not found:
             known = [str(own) for own in self.labels if own is not None]
             raise InputError(
                 f"no mode {label} is among those solved ({', '.join(known)})."
                 f"{si.did_you_mean(str(label), known)} Solve near another frequency or a wider "
-                "band",
+                "band; squeezefilm modes lists what is driven",
                 quantity="label",
             )
         return max(found, key=lambda i: abs(self.drive_forces[i]))

@@ -30,6 +30,8 @@ from squeezefilm.progress import ShareProgress
 
 # So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
 _WIDTHS = (8, 24)
+# So many around the frequency that a plate's description asks for: one of them is meant.
+_BY_FREQUENCY = 4
 
 
 @si.checked_numbers
@@ -97,8 +99,11 @@ def _solved(
 ) -> PlateModes:
     classes = drive_classes(plate) if driven_only else all_classes(plate)
     if mode is not None:
-        near = estimated_frequency(plate, mode)
         classes = [c for c in all_classes(plate) if class_fits(c, mode)]
+        if mode == plate.working_label and plate.working_frequency is not None:
+            near, mode, count = plate.working_frequency, None, _BY_FREQUENCY
+        else:
+            near = estimated_frequency(plate, mode)
     centre = near if near is not None else sum(band or (0.0, 0.0)) / 2
     highest = band[1] if band is not None else 1.15 * centre
     # What a coarse mesh takes for the mode may be another on a finer one: then look further.

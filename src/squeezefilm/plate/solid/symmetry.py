@@ -67,22 +67,19 @@ def drive_signs(plate: RectangularPlate) -> si.FloatArray:
 
 
 def drive_classes(plate: RectangularPlate) -> list[Symmetry]:
-    """The classes of symmetry that the drive excites."""
+    """The classes of symmetry that the drive excites: those on which its signs have a part, and the
+    first of all where nothing is driven."""
     signs = drive_signs(plate)
-
-    def excited(axis: int) -> list[Parity | None]:
-        mirror = mirror_map(plate, axis)
-        if mirror is None:
-            return [None]
-        image = signs[mirror]
-        some: list[Parity | None] = []
-        if np.any(signs + image != 0):
-            some.append("S")
-        if np.any(signs - image != 0):
-            some.append("A")
-        return some or ["S"]
-
-    return list(itertools.product(excited(0), excited(1)))
+    every, excited = all_classes(plate), []
+    for parity in every:
+        part = signs
+        for axis in (0, 1):
+            mirror = mirror_map(plate, axis)
+            if mirror is not None:
+                part = part + (1 if parity[axis] == "S" else -1) * part[mirror]
+        if np.any(part != 0):
+            excited.append(parity)
+    return excited or every[:1]
 
 
 def all_classes(plate: RectangularPlate) -> list[Symmetry]:

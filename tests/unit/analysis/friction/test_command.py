@@ -65,7 +65,7 @@ def prediction(**changes: Any) -> Any:
         "relative_friction_limits": (0.35, 0.45), "friction_reduction": 0.24,
         "friction_coefficient": 0.4, "tangential_force": 0.08, "heat": None,
         "warnings": ("mind this",),
-        "speed": 0.1,
+        "speed": 0.1, "mode": None,
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -130,6 +130,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     stand_in("interval_or_reason", ("the interval", "a reason"))
     stand_in("friction_verdict", "the verdict")
     stand_in("without_gas", 0.6)
+    monkeypatch.setattr(command, "why_undriven", lambda display, mode: None)
     return asked
 
 
@@ -234,3 +235,12 @@ def test_a_summary_says_none_where_there_is_nothing(stator: Display) -> None:
     for name in ("relative_friction_interval", "interval_level", "relative_friction_limits",
                  "load_shares", "standing_wave_ripple", "wanted", "uncertainty"):  # fmt: skip
         assert said[name] is None, name
+
+
+def test_a_verdict_on_a_mode_that_is_not_driven_is_not_good(
+    parts: list[Any], stator: Display, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command, "friction_verdict", lambda *about: Finding("good", "Fine."))
+    monkeypatch.setattr(command, "why_undriven", lambda display, mode: "It is not driven.")
+    found = analyze_friction(stator, samples=0)
+    assert found.verdict == Finding("limit", "Fine. It is not driven.")

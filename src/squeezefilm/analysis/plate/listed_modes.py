@@ -1,0 +1,193 @@
+"""Driven modes as they are listed: beside their neighbours, with what to write to choose one."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from squeezefilm import quantities as si
+from squeezefilm.plate.layout import Actuator, RectangularPlate
+from squeezefilm.plate.solid.resonances import DrivenMode
+from squeezefilm.plate.solid.screening import symmetry_in_words
+
+_HZ, _PER_VOLT = si.Unit("Hz"), si.Unit("m/V")
+
+HEARING: si.Hertz = 20e3
+"""Below it people hear a plate; the young and animals somewhat above it too."""
+
+CROWDED: si.Dimensionless = 0.2
+"""A mode is crowded if a neighbour adds at least this share of its amplitude at its resonance."""
+
+SAME_LABEL: si.Dimensionless = 0.1
+"""Two modes of one label are worth telling apart if the weaker has this share of the stronger."""
+
+# A product of one profile along and one across makes this share of a shape with straight lines.
+_STRAIGHT = 0.6
+
+
+@dataclass(frozen=True)
+class ListedMode:
+    """One driven mode: its label, frequency, Q and amplitude per volt on the drive at resonance.
+
+    `amplitude_per_volt` is at the highest antinode inside the face, `largest_per_volt` anywhere on
+    it; both of this mode alone, zero to peak, without a finger. `neighbour` is the mode that adds
+    most at this one's resonance, `neighbour_distance` how far it lies in half-bandwidths f/2Q of
+    its own, `neighbour_share` how much it adds, over this mode's amplitude. `unique` is whether no
+    other mode of the list with at least a tenth of its amplitude has the label. `straightness` is
+    the share of the shape that has straight nodal lines, `choice` what to write into the display's
+    file to work in this mode; None where there is no such thing.
+    """
+
+    label: str
+    frequency: si.Hertz
+    quality_factor: si.Dimensionless
+    amplitude_per_volt: si.MetrePerVolt
+    largest_per_volt: si.MetrePerVolt
+    symmetry: str
+    audible: bool
+    neighbour: str | None
+    neighbour_distance: si.Dimensionless | None
+    neighbour_share: si.Dimensionless
+    unique: bool
+    straightness: si.Dimensionless | None
+    choice: str | None
+
+    @property
+    def half_bandwidth(self) -> si.Hertz:
+        """f/2Q: so far from resonance the amplitude is down to 71 %."""
+        return self.frequency / (2 * self.quality_factor)
+
+    @property
+    def crowded(self) -> bool:
+        """Whether a neighbour takes part in what moves at this mode's resonance."""
+        return self.neighbour_share >= CROWDED
+
+    @property
+    def hidden(self) -> bool:
+        """Whether a neighbour moves more than this mode does at its own resonance."""
+        return self.neighbour_share >= 1
+
+
+@dataclass(frozen=True)
+class Suggestion:
+    """What to write into the display's file, and why; `mode` is None where nothing fits."""
+
+    mode: ListedMode | None
+    text: str
+
+
+def listed_mode(mode: DrivenMode) -> ListedMode:
+    """A screened mode as it is listed, its neighbours not looked at yet."""
+    return ListedMode(
+        label=mode.name,
+        frequency=mode.frequency,
+        quality_factor=mode.quality_factor,
+        amplitude_per_volt=mode.antinode_per_volt,
+        largest_per_volt=mode.largest_per_volt,
+        symmetry=symmetry_in_words(mode.parity),
+        audible=mode.frequency < HEARING,
+        neighbour=None,
+        neighbour_distance=None,
+        neighbour_share=0.0,
+        unique=True,
+        straightness=mode.straightness,
+        choice=_choice(mode.label),
+    )
+
+
+def _choice(label: tuple[int, int] | None) -> str | None:
+    """What to write to work in a mode: only lines across one side can be asked for."""
+    if label is None or min(label) > 0 or max(label) < 2:
+        return None
+    if label[1] == 0:
+        return f"nodal_lines = {label[0]}"
+    return f'nodal_lines = {label[1]}, lines_across = "width"'
+
+
+def with_neighbours(modes: Sequence[ListedMode]) -> tuple[ListedMode, ...]:
+    """Modes with what each has for its neighbour, and whether its label is its own.
+
+    A mode of amplitude A' and half-bandwidth b' adds A'/√(1 + n²) at a distance of n b'.
+    """
+    return tuple(_beside(mode, [other for other in modes if other is not mode]) for mode in modes)
+
+
+def _beside(mode: ListedMode, others: Iterable[ListedMode]) -> ListedMode:
+    best: tuple[float, float, str] | None = None
+    unique = True
+    for other in others:
+        distance = abs(other.frequency - mode.frequency) / other.half_bandwidth
+        share = other.amplitude_per_volt / (1 + distance**2) ** 0.5 / mode.amplitude_per_volt
+        if best is None or share > best[0]:
+            best = share, distance, other.label
+        same = other.label == mode.label and mode.label not in ("in plane",)
+        if same and other.amplitude_per_volt >= SAME_LABEL * mode.amplitude_per_volt:
+            unique = False
+    if best is None:
+        return mode
+    return dataclasses.replace(
+        mode,
+        neighbour=best[2],
+        neighbour_distance=best[1],
+        neighbour_share=best[0],
+        unique=unique,
+    )
+
+
+def shown_frequency(mode: ListedMode) -> str:
+    """A screened frequency in as many digits as it has."""
+    return si.format_quantity(mode.frequency, _HZ, 3)
+
+
+def chosen(
+    modes: Sequence[ListedMode], label: str, near: si.Hertz | None = None
+) -> ListedMode | None:
+    """Of the modes with a label the one nearest to a frequency (Hz), without one the strongest."""
+    found = [mode for mode in modes if mode.label == label]
+    if near is not None:
+        return min(found, key=lambda mode: abs(mode.frequency - near), default=None)
+    return max(found, key=lambda mode: mode.amplitude_per_volt, default=None)
+
+
+def wanted_frequency(actuator: Actuator) -> si.Hertz | None:
+    """The frequency (Hz) at which a described plate asks for its mode, where it does."""
+    return actuator.working_frequency if isinstance(actuator, RectangularPlate) else None
+
+
+def suggested(modes: Sequence[ListedMode]) -> Suggestion:
+    """The mode to work in: of those that can be asked for, are inaudible and have straight nodal
+    lines, the one that moves most when what its neighbours take part with is held against it."""
+    able = [
+        mode
+        for mode in modes
+        if mode.choice is not None
+        and not mode.audible
+        and (mode.straightness is None or mode.straightness >= _STRAIGHT)
+    ]
+    if not able:
+        return Suggestion(
+            None,
+            "No driven mode in this band is above the hearing range and has straight nodal lines "
+            "across one side only, so that none can be suggested: look in a wider band (--band), "
+            "or change the ceramics' polarity, place or size.",
+        )
+    best = max(able, key=lambda mode: mode.amplitude_per_volt / (1 + 4 * mode.neighbour_share))
+    straight = "" if best.straightness is None else ", its nodal lines cross one side only"
+    others = (
+        f", and of {len(able)} such modes it moves most for its neighbours"
+        if len(able) > 1
+        else ", the only such mode here"
+    )
+    said = (
+        f"Write {best.choice}"
+        + ("" if best.unique else f', working_frequency = "{shown_frequency(best)}"')
+        + f": at {shown_frequency(best)} {best.label} is above the hearing range{straight}{others} "
+        f"({si.format_quantity(best.amplitude_per_volt, _PER_VOLT, 3)} at an antinode"
+    )
+    if best.neighbour is not None and best.neighbour_distance is not None:
+        said += (
+            f"; {best.neighbour} lies {best.neighbour_distance:.3g} half-bandwidths away and adds "
+            f"{100 * best.neighbour_share:.2g} % of that"
+        )
+    return Suggestion(best, said + ").")

@@ -1,0 +1,101 @@
+"""The driven modes that a reduced plate holds: frequency, shape, loss and amplitude per volt.
+
+The space was grown from the drive, so that what the drive cannot move is not among them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+from scipy.linalg import eigh
+
+from squeezefilm import quantities as si
+from squeezefilm.plate.elements.blas_threads import one_blas_thread
+from squeezefilm.plate.solid.modes import Label, label_of, profiles, surface_shapes
+from squeezefilm.plate.solid.reduced import ReducedClass
+from squeezefilm.plate.solid.symmetry import Symmetry
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenMode:
+    """One mode that the drive can move, by itself.
+
+    `label` counts nodal lines across the length and across the width (None for motion in the
+    plane) on the shape's dominant product, whose share of the shape's square is `straightness`.
+    `parity` is the class of symmetry. Amplitudes are per volt on the drive at resonance, zero to
+    peak, of this mode alone: `antinode_per_volt` at the highest point of the upper face that has
+    lower ones all around it, `largest_per_volt` anywhere on it, edges and corners included.
+    `shape` is w on the upper face, (x, y) on the grid of `surface_shapes`, 1 at its largest.
+    """
+
+    frequency: si.Hertz
+    quality_factor: si.Dimensionless
+    label: Label | None
+    straightness: si.Dimensionless
+    parity: Symmetry
+    antinode_per_volt: si.MetrePerVolt
+    largest_per_volt: si.MetrePerVolt
+    shape: si.DimensionlessArray
+
+    @property
+    def name(self) -> str:
+        """The label as people write it, "(8,0)"."""
+        return "in plane" if self.label is None else f"({self.label[0]},{self.label[1]})"
+
+    @property
+    def half_bandwidth(self) -> si.Hertz:
+        """f/(2Q): so far from resonance the amplitude is down to 71 %."""
+        return self.frequency / (2 * self.quality_factor)
+
+
+def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[DrivenMode]:
+    """The modes of a reduced class in a band (Hz), ascending.
+
+    Electrodes that are driven or shorted count as shorted, open ones as open, shunted ones as
+    shorted. Amplitudes are Q F φ/ω² with Q from the materials' losses; valid where the reduced
+    space has converged, which is about the band it was made for.
+    """
+    with one_blas_thread():
+        opened = [number for number, resistance, _ in part.circuit if np.isinf(resistance)]
+        stiffness = part.stiffness
+        if opened:
+            pull = part.coupling[:, opened]
+            held = part.capacitance[np.ix_(opened, opened)]
+            stiffness = stiffness - pull @ np.linalg.solve(held, pull.T)
+        squares, turn = eigh(stiffness, part.mass)
+        inside = (squares > (2 * np.pi * band[0]) ** 2) & (squares < (2 * np.pi * band[1]) ** 2)
+        squares, turn = squares[inside], turn[:, inside]
+        if not squares.size:
+            return []
+        forces = turn.T @ (part.coupling @ part.drive)
+        losses = np.einsum("ij,ik,kj->j", turn, part.loss, turn) / squares
+        x, y, surface = surface_shapes(part.solved, part.basis @ turn)
+    found = []
+    for square, force, loss, top in zip(squares, forces, losses, surface, strict=True):
+        w = top[:, :, 2]
+        largest = float(np.max(np.abs(w)))
+        per_volt = float(abs(force) / (max(loss, 1e-30) * square))
+        found.append(
+            DrivenMode(
+                frequency=float(np.sqrt(square) / (2 * np.pi)),
+                quality_factor=float(1 / max(loss, 1e-30)),
+                label=label_of(top, x, y),
+                straightness=profiles(w)[2],
+                parity=part.solved.parity,
+                antinode_per_volt=per_volt * antinode(w),
+                largest_per_volt=per_volt * largest,
+                shape=w / max(largest, 1e-300),
+            )
+        )
+    return found
+
+
+def antinode(w: si.FloatArray) -> float:
+    """|w| at the highest point of a grid (x, y) that is inside it and not below its neighbours;
+    the highest of all where there is no such point."""
+    size = np.abs(w)
+    peaks = size == ndimage.maximum_filter(size, size=3, mode="nearest")
+    inner = np.where(peaks, size, 0.0)[1:-1, 1:-1]
+    return float(np.max(inner)) if np.any(inner > 0) else float(np.max(size))

@@ -1,0 +1,133 @@
+"""Which modes a drive is kept from, and what screening finds beside the solved plate."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.plate.layout import CeramicPatch, Electrode, RectangularPlate
+from squeezefilm.plate.solid.layers import SCREENING
+from squeezefilm.plate.solid.resonances import DrivenMode, antinode
+from squeezefilm.plate.solid.response import harmonic_response
+from squeezefilm.plate.solid.screening import (
+    SCREENING_ERROR,
+    forbidden_by,
+    screened_modes,
+    symmetry_in_words,
+)
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.symmetry import drive_classes
+
+GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
+CERAMIC = Piezoceramic("P1-91", 67.9e9, 0.2897, 23e9, 7700, -247e-12, 1900, 60)
+
+
+def strips(*signs: int, electrode: Electrode = "driven", **changes: Any) -> RectangularPlate:
+    """A small glass plate with strips of 4 mm across it, each with its sign."""
+    step = 30e-3 / len(signs)
+    patches = tuple(
+        CeramicPatch(k * step + (step - 4e-3) / 2, 0.0, 4e-3, 16e-3, 0.5e-3, sign)  # type: ignore[arg-type]
+        for k, sign in enumerate(signs)
+    )
+    last = dataclasses.replace(patches[-1], electrode=electrode)
+    return RectangularPlate(
+        30e-3, 16e-3, 1.2e-3, 4, 60, GLASS, CERAMIC, (*patches[:-1], last), **changes
+    )
+
+
+@pytest.mark.parametrize(
+    ("signs", "label", "kept"),
+    [
+        ((1, -1, 1, -1, 1), (5, 0), "length"),
+        ((1, -1, 1, -1, 1), (6, 0), None),
+        ((1, -1, 1, -1, 1), (6, 1), "width"),
+        ((1, -1), (6, 0), "length"),
+        ((1, -1), (5, 0), None),
+        ((1, 1, -1), (5, 0), None),
+        ((1, 1, -1), (6, 0), None),
+        ((1, 1, -1), (0, 3), "width"),
+    ],
+)
+def test_symmetry_says_which_modes_it_forbids(
+    signs: tuple[int, ...], label: tuple[int, int], kept: str | None
+) -> None:
+    said = forbidden_by(strips(*signs), label)
+    assert (said is None) == (kept is None)
+    if kept is not None:
+        assert said is not None
+        assert f"lines across the {kept}" in said
+        assert f"({label[0]},{label[1]})" in said
+
+
+@pytest.mark.parametrize("electrode", ["driven", "open", "shorted"])
+def test_screened_modes_are_those_of_the_solved_plate(electrode: Electrode) -> None:
+    plate, band = strips(1, -1, 1, electrode=electrode), (20e3, 70e3)
+    solved = solve_modes(plate, band=band, driven_only=True, tolerance=0.05)
+    screened = screened_modes(plate, band)
+    omega = 2 * np.pi * solved.frequencies
+    largest = np.max(np.abs(solved.shapes), axis=(1, 2))
+    per_volt = solved.quality_factors * solved.drive_forces * largest / omega**2
+    compared = 0
+    for i in np.flatnonzero(per_volt > 0.05 * per_volt.max()):
+        same = [mode for mode in screened if mode.label == solved.labels[i]]
+        near = min(same, key=lambda mode: abs(mode.frequency - solved.frequencies[i]))
+        assert near.frequency == pytest.approx(solved.frequencies[i], rel=SCREENING_ERROR)
+        assert near.largest_per_volt == pytest.approx(per_volt[i], rel=0.2)
+        assert near.quality_factor == pytest.approx(solved.quality_factors[i], rel=0.05)
+        compared += 1
+    assert compared >= 1
+
+
+def test_what_cannot_be_screened_is_refused() -> None:
+    with pytest.raises(InputError, match="driven"):
+        screened_modes(
+            dataclasses.replace(
+                strips(1),
+                patches=(dataclasses.replace(strips(1).patches[0], electrode="shorted"),),
+            ),
+            (20e3, 60e3),
+        )
+    with pytest.raises(InputError, match="lower and a higher"):
+        screened_modes(strips(1), (60e3, 20e3))
+
+
+def test_of_two_axes_driven_both_ways_not_every_pair_is() -> None:
+    # The corners, + − over − +, are odd along both sides, the middle is even along both.
+    signs = {(0, 0): 1, (1, 1): 1, (0, 1): -1, (1, 0): -1}
+    corners = tuple(
+        CeramicPatch(x * 26e-3, y * 12e-3, 4e-3, 4e-3, 0.5e-3, sign)  # type: ignore[arg-type]
+        for (x, y), sign in signs.items()
+    )
+    middle = CeramicPatch(13e-3, 6e-3, 4e-3, 4e-3, 0.5e-3)
+    plate = dataclasses.replace(strips(1), patches=(*corners, middle))
+    assert drive_classes(plate) == [("S", "S"), ("A", "A")]
+    found = screened_modes(plate, (20e3, 60e3))
+    assert {mode.parity for mode in found} == {("S", "S"), ("A", "A")}
+    assert harmonic_response(plate, np.array([30e3]), resolution=SCREENING).maximum[0] > 0
+
+
+def test_classes_have_words() -> None:
+    assert symmetry_in_words(("S", "A")) == "even along length, odd along width"
+    assert "no mirror along width" in symmetry_in_words(("S", None))
+
+
+def test_an_antinode_lies_inside_the_face() -> None:
+    x, y = np.linspace(-1, 1, 41)[:, None], np.linspace(-1, 1, 31)[None, :]
+    bump = 0.4 * np.exp(-20 * (x**2 + y**2)) + 0 * y
+    assert antinode(bump + 0.0) == pytest.approx(0.4)
+    # Higher at the edge, where no finger is: the bump counts all the same.
+    assert antinode(bump - 0.9 * (np.abs(x) > 0.95)) == pytest.approx(0.4)
+    # A plane has no antinode: then what is largest counts.
+    assert antinode(x + 0 * y) == pytest.approx(1.0)
+
+
+def test_a_driven_mode_has_a_name_and_a_bandwidth() -> None:
+    mode = DrivenMode(30e3, 60.0, (8, 0), 0.9, ("S", "S"), 1e-7, 2e-7, np.ones((3, 3)))
+    assert mode.name == "(8,0)"
+    assert mode.half_bandwidth == pytest.approx(250.0)
+    assert dataclasses.replace(mode, label=None).name == "in plane"
