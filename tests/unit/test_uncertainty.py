@@ -336,19 +336,20 @@ def _refusing(every: int) -> Callable[[Draw], float]:
 
 
 def test_refused_draws_are_counted_with_their_reason(made_up: Callable[..., Any]) -> None:
-    found = made_up(_refusing(64), samples=8)
+    found = made_up(_refusing(70), samples=8)
     refused = found.refused
-    assert (refused.count, refused.evaluations) == (3, 32 + 8 * 20)
+    # 17 inputs, each with a column of its own beside four.
+    assert (refused.count, refused.evaluations) == (3, 32 + 8 * 21)
     assert refused.reasons == Counter({"pressed through its asperities": 3})
     assert sum(refused.heights.values()) == 3
     assert refused.sentence.startswith(
-        "3 of 192 draws (1.6%) are refused: pressed through its asperities (3); by the law of"
+        "3 of 200 draws (1.5%) are refused: pressed through its asperities (3); by the law of"
     )
     assert np.all(np.isfinite(found.samples))
     assert found.samples.size == found.amplitudes.size == 31
     assert found.summary()["refused"] == 3
     # A refused draw is not below anything.
-    assert found.probability_below(2.0) == pytest.approx(1 - 3 / 192)
+    assert found.probability_below(2.0) == pytest.approx(1 - 3 / 200)
 
 
 def test_above_two_per_cent_there_is_no_interval(

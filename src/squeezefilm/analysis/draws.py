@@ -24,6 +24,7 @@ from squeezefilm.analysis.model_choices import (
 from squeezefilm.analysis.parameters import (
     FORCE,
     SKIN_COMPLIANCE,
+    TANGENTIAL_RATIO,
     Parameter,
     uncertain_parameters,
     with_values,
@@ -137,9 +138,11 @@ class Mixture:
         )
         sheared = law.kind.shear or not shared
         if not sheared:
-            # µ decides when what touches slips, and nothing else.
+            # µ and κ decide when what touches slips, and nothing else.
             parameters = tuple(
-                one for one in parameters if not one.path.endswith("friction_coefficient")
+                one
+                for one in parameters
+                if not one.path.endswith((TANGENTIAL_RATIO, "friction_coefficient"))
             )
         self.inputs: tuple[Input, ...] = parameters + model_choices(display, sheared=sheared)
         # Laws of contact are compared at what a plateau carries as described.
