@@ -10,7 +10,16 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis import draws, uncertainty
-from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, Refusals, friction_of
+from squeezefilm.analysis.draws import (
+    Draw,
+    FreeAmplitude,
+    Mixture,
+    Outcome,
+    Refusals,
+    outcome_of,
+)
+from squeezefilm.analysis.influences import GroupInfluence, Influence
+from squeezefilm.analysis.intervals import ends, quantiles
 from squeezefilm.analysis.model_choices import HEIGHT_LAW, MOISTURE, SHEAR, SLIP
 from squeezefilm.analysis.parameters import (
     FORCE,
@@ -21,13 +30,10 @@ from squeezefilm.analysis.parameters import (
     value_at,
 )
 from squeezefilm.analysis.uncertainty import (
-    GroupInfluence,
-    Influence,
     UncertainFriction,
     evaluate,
     friction_band,
     interval_or_reason,
-    quantiles,
     sobol_points,
     uncertain_friction,
 )
@@ -236,11 +242,11 @@ def made_up(
     """`uncertain_friction` with µ′/µ of a draw by a function of it."""
 
     def found(function: Callable[[Draw], float], **more: Any) -> Any:
-        def one(_: Any, draw: Draw, free: float) -> tuple[float, float]:
+        def one(_: Any, draw: Draw, free: float) -> Outcome:
             value = function(draw)
-            return value, 1e-6 * value + free
+            return Outcome(value, 1e-6 * value + free, np.nan)
 
-        monkeypatch.setattr(uncertainty, "friction_of", one)
+        monkeypatch.setattr(uncertainty, "outcome_of", one)
         return uncertain_friction(stator, point, **more)
 
     return found
@@ -355,7 +361,7 @@ def test_refused_draws_are_counted_with_their_reason(made_up: Callable[..., Any]
 def test_above_two_per_cent_there_is_no_interval(
     stator: Display, point: Prediction, made_up: Callable[..., Any]
 ) -> None:
-    with pytest.raises(OutOfRangeError, match=r"4 of 192 draws \(2.1%\) are refused.*Press less"):
+    with pytest.raises(OutOfRangeError, match=r"5 of 200 draws \(2.5%\) are refused.*Press less"):
         made_up(_refusing(48), samples=8)
 
 
@@ -395,6 +401,7 @@ def test_an_uncertain_friction_is_said_and_listed() -> None:
     assert found.summary() == {
         "relative_friction": 0.412, "relative_friction_median": 0.43,
         "relative_friction_interval": [0.281, 0.549], "interval_level": 0.9, "evaluations": 64,
+        "vibration_amplitude_interval_m": None, "power_W": None, "power_interval_W": None,
         "refused": 1, "refused_why": {"why": 1}, "seed": 5,
         "groups": {
             "measurable": {"first_order": 0.5, "total_order": 0.7, "total_order_error": 0.1}
@@ -512,7 +519,7 @@ def test_draws_beyond_the_range_of_their_law_count_without_a_warning_for_each() 
     # Warnings are errors in tests: under 2 N some draws of separate asperities are pressed flat.
     p = predict("biet2008-stator", vibration_amplitude=2e-6, normal_force=2.0)
     mixture = Mixture(load_display("biet2008-stator"), p, driven=False)
-    friction, _, _ = evaluate(mixture, sobol_points(mixture, 64, 3), lambda _: None)
-    assert np.isfinite(friction).mean() > 0.95
+    drawn, _ = evaluate(mixture, sobol_points(mixture, 64, 3), lambda _: None)
+    assert np.isfinite(drawn.friction).mean() > 0.95
     laws = [mixture.law(draw) for draw in mixture.draws(sobol_points(mixture, 64, 3))]
     assert any(law.finger.largest_force(law.surface.roughness) < law.normal_force for law in laws)

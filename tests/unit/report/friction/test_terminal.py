@@ -17,7 +17,8 @@ from squeezefilm.analysis.draws import Refusals
 from squeezefilm.analysis.friction.command import Tapping, Wanted
 from squeezefilm.analysis.model_choices import Choice, Option
 from squeezefilm.analysis.parameters import Parameter
-from squeezefilm.analysis.uncertainty import GroupInfluence, Influence, UncertainFriction
+from squeezefilm.analysis.influences import GroupInfluence, Influence
+from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.analysis.verdict import Finding
 from squeezefilm.chain.touch import Touch
 from squeezefilm.distributions import Uniform
