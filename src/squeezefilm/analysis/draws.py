@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import dataclasses
 import warnings
 from collections import Counter
@@ -151,6 +152,12 @@ class Mixture:
         # Laws of contact are compared at what a plateau carries as described.
         self._pressure = display.finger.plateau_pressure()
         self.paths = tuple(one.path for one in self.inputs)
+
+    def at(self, prediction: Prediction, display: Display) -> Mixture:
+        """The same inputs around another working point, of a display with another actuator."""
+        other = copy.copy(self)
+        other.prediction, other.display = prediction, display
+        return other
 
     def draws(self, points: si.DimensionlessArray) -> Iterator[Draw]:
         """The draws at points of the unit cube, shape (n, inputs)."""
