@@ -19,7 +19,7 @@ from squeezefilm.analysis.draws import (
     outcome_of,
 )
 from squeezefilm.analysis.influences import GroupInfluence, Influence
-from squeezefilm.analysis.intervals import ends, quantiles
+from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.model_choices import HEIGHT_LAW, MOISTURE, SHEAR, SLIP
 from squeezefilm.analysis.parameters import (
     FORCE,
@@ -178,7 +178,7 @@ def test_a_draw_mixes_the_limits_of_the_skin(
     monkeypatch.setattr(Mixture, "law", lambda *_: _Law())
     mixture = Mixture(stator, point, driven=False)
     draw = Draw(stator, 0.5, 0.25, "first", "persson")
-    value, amplitude = friction_of(mixture, draw, 3e-6)
+    value, amplitude, _ = outcome_of(mixture, draw, 3e-6)
     # At 3 µm 0.7 by each ridge's own balance, 0.4 at one gap.
     assert value == pytest.approx(0.25 * 0.7 + 0.75 * 0.4)
     assert amplitude == 3e-6
@@ -199,17 +199,25 @@ def test_a_finger_takes_its_share_of_a_driven_amplitude(
 
     def touch(mode: _Mode, _: Any, free: float) -> Any:
         touched.append((mode.quality_factor, free))
-        return SimpleNamespace(amplitude=0.5 * free)
+        return SimpleNamespace(amplitude=0.5 * free, mode=None)
 
     monkeypatch.setattr(draws, "touch", touch)
     other = replaced(stator, {"actuator.quality_factor": 150.0})
     draw = Draw(other, 0.5, 1.0, "first", "persson")
 
-    def found(**changes: Any) -> tuple[float, float]:
-        mixture: Any = SimpleNamespace(prediction=_predicted(**changes), law=lambda _: _Law())
-        return friction_of(mixture, draw, 3e-6)
+    def found(**changes: Any) -> Outcome:
+        mixture: Any = SimpleNamespace(
+            prediction=_predicted(**changes), law=lambda _: _Law(),
+            mode=lambda one: dataclasses.replace(
+                _Mode(), quality_factor=one.display.actuator.quality_factor
+            ),
+            power=lambda felt, volts: 2e6 * felt.amplitude * volts,
+        )  # fmt: skip
+        return outcome_of(mixture, draw, 3e-6)
 
-    assert found(voltage=140.0, mode=_Mode()) == pytest.approx((0.85, 1.5e-6))
+    volts = stator.drive.voltage
+    assert found(voltage=140.0, mode=_Mode()) == pytest.approx((0.85, 1.5e-6, 3 * volts))
+    assert np.isnan(found(mode=_Mode()).power)
     assert touched == [(150.0, 3e-6)]
     assert found(mode=_Mode())[1] == 3e-6
     assert found(voltage=140.0, mode=_Mode(modal_mass=None))[1] == 3e-6

@@ -1,8 +1,8 @@
 """What reaches the ear of somebody at a display, beside the published guidance.
 
 The level is that of the plate's face in a baffle, without a finger, in its loudest direction
-(`plate.sound`). It is uncertain by the amplitude's interval and by what the baffle stands for; where
-a limit lies inside, it is open whether it is kept.
+(`plate.sound`). It is uncertain by the amplitude's interval and by what the baffle stands for;
+where a limit lies inside, it is open whether it is kept.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ class EarLimit:
 class EarExposure:
     """The sound pressure level (dB re 20 µPa) at an ear at a distance (m) from the display.
 
-    `level_dB` while it is driven, between `low_dB` and `high_dB`; `mean_dB` is the level of the mean
-    square with the drive's `duty`. The lower end of the verdict has the duty in it and the upper
+    `level_dB` while it is driven, between `low_dB` and `high_dB`; `mean_dB` is the level of the
+    mean square with the drive's `duty`. The lower end of the verdict has the duty in it and the upper
     has not, since the texts were not read that say which of the two a limit is of.
     """
 

@@ -177,9 +177,7 @@ def _drawn(
     return found, ""
 
 
-def _felt_of(
-    mixture: Mixture, draw: Draw, free: si.Metre, senses: Observer
-) -> list[si.Metre]:
+def _felt_of(mixture: Mixture, draw: Draw, free: si.Metre, senses: Observer) -> list[si.Metre]:
     law, high = mixture.law(draw), outcome_of(mixture, draw, free).amplitude
     knots = high * np.linspace(0.0, 1.0, _KNOTS) ** 2
     speeds = np.array(EXPLORING_SPEEDS)

@@ -12,7 +12,6 @@ MOST_REFUSED: si.Dimensionless = 0.02
 nobody asked for."""
 
 
-@si.checked_numbers
 def quantiles(friction: si.DimensionlessArray) -> si.DimensionlessArray:
     """The lower end of the interval, the median and the upper end, of draws along the first axis.
 

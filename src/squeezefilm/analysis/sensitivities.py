@@ -234,7 +234,9 @@ class _Bench:
 
     def _of_plate(self, changed: Display, path: str, value: float) -> Shift:
         if self.by_beam and path.startswith("actuator.glue."):
-            return Shift(value, None, None, None, "the beam knows no glue: ask for the solved plate")
+            return Shift(
+                value, None, None, None, "the beam knows no glue: ask for the solved plate"
+            )
         try:
             frequency, amplitude, mode = self._moved(changed)
         except SqueezefilmError as error:

@@ -251,7 +251,7 @@ def evaluate(
 ) -> tuple[Outcome, Refusals]:
     """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
     where refused; and what was refused. `tell` is told some twenty times."""
-    found = np.full((len(points), len(Outcome._fields)), np.nan)
+    found = np.full((len(points), 3), np.nan)
     scale, tally = FreeAmplitude(mixture.display, mixture.prediction), Tally()
     every = max(len(points) // 20, 1)
     for number, draw in enumerate(mixture.draws(points)):

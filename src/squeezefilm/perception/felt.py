@@ -1,11 +1,11 @@
-"""Which gratings of a display are felt: the rhythm of a square grating through an observer's senses.
+"""Which gratings of a display are felt: a square grating's rhythm through an observer's senses.
 
 A grating that survives the resonator need not be felt, and one that the resonator flattens may
 be. A finger slides steadily at a speed v over a square grating of period λ, the vibration switched
 between two amplitudes with the first-order envelope of the resonator. The friction over one
 passage has the lines µF c_h at the frequencies h v/λ; the skin moves by each of them as the
-fingerpad's mass, spring and damper have it (`contact.finger.fingerpad`), and the channels make d′ of
-that as in `senses`: thresholds, Weber fraction of the mean stretch, and the sum over harmonics.
+fingerpad's mass, spring and damper have it (`contact.finger.fingerpad`), and the channels make d′
+of that as in `senses`: thresholds, Weber fraction of the mean stretch, and the sum over harmonics.
 
 What a stroke adds (it speeds up and slows down, the pad lies on the standing wave, the sensor is
 late) is left out; `percepts.percept` has it, a second for each grating.

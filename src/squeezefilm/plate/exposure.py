@@ -5,7 +5,7 @@ What the texts agree about: a limit in one-third-octave bands that rises by 30 d
 not: who it is for (the public has the lower values, workers the higher), how levels that last less
 than a working day count, and whether a limit may be 30 dB higher where the source does not touch
 the body (Howard, Hansen and Zander 2004 report that the American recommendations were raised by as
-much "under certain conditions"; a display that is touched hardly meets such a condition). The ICNIRP
+much "under certain conditions", which were not read: it is not counted on here). The ICNIRP
 reviewed the oldest ones in 2024 and found that they may be "too low or too high":
 10.1097/HP.0000000000001800. Canada's Safety Code 24 (1991) and the reports of the British HSE
 (CRR 343/2001) have tables too, whose numbers could not be read and are not here.

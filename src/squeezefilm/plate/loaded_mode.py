@@ -42,7 +42,6 @@ class LoadedMode:
         Q, x = self.free_quality_factor, frequency / self.free_frequency
         return float(1 / abs(Q * (1 + self.load_ratio - x**2) + 1j))
 
-
     @si.checked_numbers
     def power(
         self,

@@ -229,9 +229,7 @@ def uncertain_voltage(
     )
 
 
-def _amplitude(
-    law: FrictionLaw, draw: Draw, wanted: si.Dimensionless, first: si.Metre
-) -> si.Metre:
+def _amplitude(law: FrictionLaw, draw: Draw, wanted: si.Dimensionless, first: si.Metre) -> si.Metre:
     """The amplitude (m) at which a draw has a wanted µ′/µ, looked for around a `first` one;
     infinite where none has. Raises what the balance raises where even the least is refused."""
     from scipy.interpolate import PchipInterpolator

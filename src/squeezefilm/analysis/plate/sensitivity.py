@@ -232,7 +232,7 @@ def _text(value: float, unit: str) -> str:
 
 
 def with_ceramic_stiffness(plate: _Plate, share: si.Dimensionless) -> _Plate:
-    """The plate or disc with all stiffnesses of its ceramic multiplied, d31 (or the printed e31) kept."""
+    """The plate or disc with all stiffnesses of its ceramic multiplied, d31 (or printed e31) kept."""
     ceramic = plate.ceramic
     constants = ceramic.constants
     if constants is not None:

@@ -97,7 +97,8 @@ class FilmTable:
     def over_pressure(self, mean_gap: si.MetreLike, amplitude: si.MetreLike) -> si.PascalLike:
         """⟨p_gas⟩ − p0 (Pa), mean over plateau and period; broadcasts.
 
-        Raises `InputError` for an amplitude above `DEEPEST_EXCURSION` of the gap or a gap off the table.
+        Raises `InputError` for an amplitude above `DEEPEST_EXCURSION` of the gap or a gap off
+        the table.
         """
         from squeezefilm.contact.sharing.kernel import film_value
 

@@ -1,5 +1,5 @@
-"""What one decides from, as rows: intervals of the drive, the wanted voltage, what is felt, and what
-each value does."""
+"""What one decides from, as rows: intervals of the drive, the wanted voltage, what is felt, what each
+value does."""
 
 from __future__ import annotations
 
@@ -84,11 +84,12 @@ def felt_rows(felt: FeltGratings | None) -> list[Row]:
 
 
 def _felt_remark(felt: FeltGratings, one: FeltAt) -> str:
+    survives = f"; {shown(one.survives, M, 2)} survives the resonator"
     if one.interval is None:
-        return f"by the observer '{felt.observer}', whose senses are assumed"
+        return f"by assumed senses ('{felt.observer}'){survives}"
     low, high = (_period(end) for end in one.interval)
     said = f"{100 * felt.level:.0f} % interval {low} to {high}" if low != high else "in all draws"
-    return said + (f"; in {100 * one.never:.0f} % none" if one.never else "")
+    return said + (f"; in {100 * one.never:.0f} % none" if one.never else "") + survives
 
 
 def _period(value: si.Metre | None) -> str:
