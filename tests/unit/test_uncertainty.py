@@ -207,12 +207,13 @@ def test_a_finger_takes_its_share_of_a_driven_amplitude(
 
     def found(**changes: Any) -> Outcome:
         mixture: Any = SimpleNamespace(
-            prediction=_predicted(**changes), law=lambda _: _Law(),
+            prediction=_predicted(**changes),
+            law=lambda _: _Law(),
             mode=lambda one: dataclasses.replace(
                 _Mode(), quality_factor=one.display.actuator.quality_factor
             ),
             power=lambda felt, volts: 2e6 * felt.amplitude * volts,
-        )  # fmt: skip
+        )
         return outcome_of(mixture, draw, 3e-6)
 
     volts = stator.drive.voltage

@@ -46,8 +46,8 @@ class EarExposure:
     """The sound pressure level (dB re 20 µPa) at an ear at a distance (m) from the display.
 
     `level_dB` while it is driven, between `low_dB` and `high_dB`; `mean_dB` is the level of the
-    mean square with the drive's `duty`. The lower end of the verdict has the duty in it and the upper
-    has not, since the texts were not read that say which of the two a limit is of.
+    mean square with the drive's `duty`. The lower end of the verdict has the duty in it and the
+    upper has not, since the texts were not read that say which of the two a limit is of.
     """
 
     frequency: si.Hertz

@@ -7,6 +7,7 @@ they are: an interval says what the display leaves open, not how people differ.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -97,8 +98,7 @@ def felt_gratings(
     seed: int = 1,
     progress: SayProgress | None = None,
 ) -> FeltGratings | None:
-    """The finest gratings that are felt on a display where a prediction was made, at `EXPLORING_
-    SPEEDS`.
+    """The finest gratings that are felt where a prediction was made, at `EXPLORING_SPEEDS`.
 
     `draws` is a power of two (0: no interval); the observer is the preset "fingertip" if none is
     given. None where nothing vibrates. Raises what the friction's law raises at the amplitude.
@@ -109,18 +109,16 @@ def felt_gratings(
     senses = observer or load_observer()
     tau = p.envelope_time_constant
 
-    def described(amplitude: si.MetreArray, speed: si.MetrePerSecond) -> si.DimensionlessArray:
+    def described(
+        amplitude: si.MetreArray, speed: si.MetrePerSecond = 0.0
+    ) -> si.DimensionlessArray:
         return np.asarray(p.friction(amplitude, np.full(amplitude.shape, speed)))
 
-    base = p.friction_coefficient * p.normal_force
-    pad = display.finger.fingerpad
-    nominal = [
-        _finest(
-            senses, tau, p.vibration_amplitude,
-            lambda a, v=speed: described(a, v), Rubbed(base, pad, speed),
-        )
-        for speed in EXPLORING_SPEEDS
-    ]  # fmt: skip
+    base, pad = p.friction_coefficient * p.normal_force, display.finger.fingerpad
+    nominal = []
+    for speed in EXPLORING_SPEEDS:
+        law = functools.partial(described, speed=speed)
+        nominal.append(_finest(senses, tau, p.vibration_amplitude, law, Rubbed(base, pad, speed)))
     found, why = (None, "no draws were asked for")
     if draws and p.touch.sharing is not None:
         found, why = _drawn(display, p, senses, draws, seed, progress or (lambda _: None))
@@ -187,13 +185,11 @@ def _felt_of(mixture: Mixture, draw: Draw, free: si.Metre, senses: Observer) -> 
     tau = float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
     base = law.friction_coefficient * draw.normal_force
     pad = draw.display.finger.fingerpad
-    return [
-        _finest(
-            senses, tau, high,
-            lambda a, row=row: np.interp(a, knots, row), Rubbed(base, pad, float(speed)),
-        )
-        for speed, row in zip(speeds, friction, strict=True)
-    ]  # fmt: skip
+    found = []
+    for speed, row in zip(EXPLORING_SPEEDS, friction, strict=True):
+        known: Felt = functools.partial(np.interp, xp=knots, fp=row)
+        found.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
+    return found
 
 
 def _known(value: si.Metre) -> si.Metre | None:

@@ -188,8 +188,12 @@ def _with(display: Display, value: float, *, path: str) -> Display:
     """The display with another value at a path; ceramics and supports keep to the plate's size."""
     actuator, nominal = display.actuator, value_at(display, path)[0]
     if path == _STIFFNESS and not isinstance(actuator, AnnularStator):
-        changed = with_ceramic_stiffness(actuator, value / nominal)
-        return dataclasses.replace(display, actuator=changed)
+        share = value / nominal
+        if isinstance(actuator, DiscPlate):
+            stiffer: Actuator = with_ceramic_stiffness(actuator, share)
+        else:
+            stiffer = with_ceramic_stiffness(actuator, share)
+        return dataclasses.replace(display, actuator=stiffer)
     return with_values(display, {path: value, **_along(actuator, path, value / nominal)})
 
 

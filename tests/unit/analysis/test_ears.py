@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis import ears
-from squeezefilm.analysis.ears import MODEL_ERROR_dB, EarExposure, ear_exposure, moving_surface
+from squeezefilm.analysis.ears import EarExposure, MODEL_ERROR_dB, ear_exposure, moving_surface
 from squeezefilm.analysis.verdict import ears_finding
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display, load_display

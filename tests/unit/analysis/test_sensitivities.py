@@ -128,7 +128,9 @@ def test_the_beam_moves_as_the_solved_plate_does() -> None:
         if not row.path.startswith("actuator."):
             continue
         for mine, its in zip(
-            (_row(quick, row.path).low, _row(quick, row.path).high), (row.low, row.high), strict=True
+            (_row(quick, row.path).low, _row(quick, row.path).high),
+            (row.low, row.high),
+            strict=True,
         ):
             assert mine.frequency_shift == pytest.approx(its.frequency_shift, rel=1 / 3, abs=2e-3)
             assert mine.relative_friction == pytest.approx(its.relative_friction, abs=0.02)

@@ -58,11 +58,14 @@ def test_one_channel_and_a_slow_grating_are_a_closed_form(observer: Observer) ->
     blunt = dataclasses.replace(plain, friction_weber_fraction=0.5)
     weak, strong = (
         grating_evidence(
-            blunt, np.array([2e-3]), amplitude, lambda a: 1 - 0.3 * a / 2e-6,
+            blunt,
+            np.array([2e-3]),
+            amplitude,
+            lambda a: 1 - 0.3 * a / 2e-6,
             dataclasses.replace(rubbed, friction=force),
         )
         for force in (0.3, 3.0)
-    )  # fmt: skip
+    )
     assert weak == pytest.approx(strong, rel=1e-2)
 
 
@@ -92,7 +95,10 @@ def test_it_is_what_the_whole_chain_gives_a_steady_finger(
         np.array([period]) / 0.08, p.envelope_time_constant, q.vibration_amplitude
     )
     found = grating_evidence(
-        observer, np.array([period]), amplitude, lambda a: q.friction(a, np.full(a.shape, 0.08)),
+        observer,
+        np.array([period]),
+        amplitude,
+        lambda a: q.friction(a, np.full(a.shape, 0.08)),
         Rubbed(q.friction_coefficient * 0.5, own.fingerpad, 0.08),
-    )  # fmt: skip
+    )
     assert found[0] == pytest.approx(whole.evidence.at(period), rel=0.15)

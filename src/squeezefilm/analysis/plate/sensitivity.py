@@ -196,10 +196,10 @@ def usual_changes(plate: RectangularPlate) -> Iterator[Change]:
     yield from _both("plate Poisson's ratio", "substrate.poisson_ratio", "1", low, high)
     yield Change("ceramics open", "each on its own", with_open_ceramics, frequency_only=True)
     if plate.glue is not None:
-        glued = plate.glue
+        own_glue = plate.glue
         for name, path, unit, value in (
-            ("glue thickness", "glue.thickness", "m", glued.thickness),
-            ("glue Young's modulus", "glue.young_modulus", "Pa", glued.young_modulus),
+            ("glue thickness", "glue.thickness", "m", own_glue.thickness),
+            ("glue Young's modulus", "glue.young_modulus", "Pa", own_glue.young_modulus),
         ):
             yield from _both(name, path, unit, 0.5 * value, 1.5 * value)
     else:
@@ -232,7 +232,7 @@ def _text(value: float, unit: str) -> str:
 
 
 def with_ceramic_stiffness(plate: _Plate, share: si.Dimensionless) -> _Plate:
-    """The plate or disc with all stiffnesses of its ceramic multiplied, d31 (or printed e31) kept."""
+    """The plate or disc with all stiffnesses of its ceramic multiplied, d31 (or e31) kept."""
     ceramic = plate.ceramic
     constants = ceramic.constants
     if constants is not None:

@@ -1,5 +1,4 @@
-"""What one decides from, as rows: intervals of the drive, the wanted voltage, what is felt, what each
-value does."""
+"""What one decides from, as rows: intervals, the wanted voltage, what is felt, what each value does."""
 
 from __future__ import annotations
 
