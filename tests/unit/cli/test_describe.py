@@ -127,8 +127,8 @@ def test_every_option_of_an_analysis_arrives(analysis: SimpleNamespace, tmp_path
     done = run("analyze", DISPLAY, *options)
     assert analysis.asked.named == {
         "voltage": 15.0, "frequency": 34e3, "vibration_amplitude": pytest.approx(2e-6),
-        "normal_force": 0.3, "surface": "copper", "samples": 8, "wanted_friction": 0.5, "sensitivities": "solved",
-         "theory": "timoshenko",
+        "normal_force": 0.3, "surface": "copper", "samples": 8, "wanted_friction": 0.5,
+        "sensitivities": "solved", "theory": "timoshenko",
         "model": "film-open", "speed": pytest.approx(0.05), "strict": True,
     }  # fmt: skip
     assert analysis.written.given == (ANSWER, tmp_path)

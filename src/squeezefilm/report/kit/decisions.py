@@ -1,4 +1,4 @@
-"""What one decides from, as rows: intervals, the wanted voltage, what is felt, what each value does."""
+"""What one decides from, as rows: intervals, voltages, what is felt, what each value does."""
 
 from __future__ import annotations
 
