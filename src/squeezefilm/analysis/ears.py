@@ -29,6 +29,7 @@ from squeezefilm.plate.sound import (
 MODEL_ERROR_dB: si.Dimensionless = 6.0
 """Of the level either way, assumed: a wall or a table may double the pressure, and a thin plate
 without a baffle, whose back moves against its front, may halve it."""
+_AIR: si.MetrePerSecond = 343.2
 AUDIBLE: si.Hertz = 17.8e3
 """The lower edge of the one-third-octave band around 20 kHz: below it limits of noise hold."""
 
@@ -146,7 +147,11 @@ def moving_surface(display: Display, prediction: Prediction) -> RadiatingSurface
     free = p.touch.free_amplitude
     if mode.solid is not None:
         plate, response = mode.solid.modes.plate, mode.solid.response
-        x, y = np.linspace(0, plate.length, 84), np.linspace(0, plate.width, 50)
+        step = min(p.mode.half_wavelength / 7, _AIR / p.frequency / 5)
+        x, y = (
+            np.linspace(0, side, max(round(side / step), 8) + 1)
+            for side in (plate.length, plate.width)
+        )
         # The shape at resonance; off it as much as its lobe moves less.
         share = free / (mode.solid.amplitude_per_volt)
         w = response.displacement(x, y)[response.resonance] * share

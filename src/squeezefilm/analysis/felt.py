@@ -187,9 +187,15 @@ def _felt_of(mixture: Mixture, draw: Draw, free: si.Metre, senses: Observer) -> 
     pad = draw.display.finger.fingerpad
     found = []
     for speed, row in zip(EXPLORING_SPEEDS, friction, strict=True):
-        known: Felt = functools.partial(np.interp, xp=knots, fp=row)
+        known = functools.partial(_tabulated, knots=knots, row=row)
         found.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
     return found
+
+
+def _tabulated(
+    amplitude: si.MetreArray, knots: si.MetreArray, row: si.DimensionlessArray
+) -> si.DimensionlessArray:
+    return np.asarray(np.interp(amplitude, knots, row))
 
 
 def _known(value: si.Metre) -> si.Metre | None:
