@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.plate.command import PlateAnalysis
     from squeezefilm.analysis.plate.ring import RingAnalysis
     from squeezefilm.analysis.plate.tracking import TrackRequest
+    from squeezefilm.analysis.sensitivities import Effort
     from squeezefilm.bench.play import PlayResult
     from squeezefilm.chain.friction_models import FrictionModel
     from squeezefilm.chain.prediction import Prediction
@@ -176,6 +177,8 @@ if TYPE_CHECKING:
         speed: MetrePerSecond | str | None = ...,
         strict: bool = ...,
         samples: int = ...,
+        wanted_friction: Dimensionless | str | None = ...,
+        sensitivities: Effort = ...,
         progress: SayProgress | None = ...,
     ) -> Analysis:
         """The whole analysis of a display at one working point."""

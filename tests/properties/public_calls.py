@@ -52,7 +52,7 @@ NOT_CALLED = {
     plate.heat.thermal.ThermalBody plate.heat.warming.Warming plate.heat.warming.WarmState
     plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
     plate.ring.response.RingResponse
-    plate.shear.modes.ShearMode plate.solid.working.SolidMode plate.sound.ExposureGuidance
+    plate.shear.modes.ShearMode plate.solid.working.SolidMode plate.exposure.ExposureGuidance
     plate.sound.SoundField plate.working_mode.ModeLine plate.working_mode.WorkingMode
     plate.ring.stator.StatorFit
     chain.prediction.Prediction render.resonator.compensation.CompensatedDrive

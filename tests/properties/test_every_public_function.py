@@ -39,7 +39,7 @@ QUICK = (
     "contact.sharing.wedge", "contact.sharing.tapping.tapping_number", "distributions", "film.gap",
     "film.closed.limits", "film.closed.linear", "film.planar.gap", "film.validity.knudsen_number",
     "formats.wav", "formats.pictures", "materials", "plate.beam.modes.euler", "plate.laminate",
-    "plate.layout", "plate.loaded_mode", "plate.ring.pair", "plate.sound.exposure_guidance",
+    "plate.layout", "plate.loaded_mode", "plate.ring.pair", "plate.exposure.exposure_guidance",
     "plate.working_mode.resonance_factor", "render.resonator.envelope.e",
     "render.resonator.envelope.f",
     "render.texture.levels", "render.motion.estimator.MotionModel",

@@ -10,7 +10,16 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis import draws, uncertainty
-from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, Refusals, friction_of
+from squeezefilm.analysis.draws import (
+    Draw,
+    FreeAmplitude,
+    Mixture,
+    Outcome,
+    Refusals,
+    outcome_of,
+)
+from squeezefilm.analysis.influences import GroupInfluence, Influence
+from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.model_choices import HEIGHT_LAW, MOISTURE, SHEAR, SLIP
 from squeezefilm.analysis.parameters import (
     FORCE,
@@ -21,13 +30,10 @@ from squeezefilm.analysis.parameters import (
     value_at,
 )
 from squeezefilm.analysis.uncertainty import (
-    GroupInfluence,
-    Influence,
     UncertainFriction,
     evaluate,
     friction_band,
     interval_or_reason,
-    quantiles,
     sobol_points,
     uncertain_friction,
 )
@@ -172,7 +178,7 @@ def test_a_draw_mixes_the_limits_of_the_skin(
     monkeypatch.setattr(Mixture, "law", lambda *_: _Law())
     mixture = Mixture(stator, point, driven=False)
     draw = Draw(stator, 0.5, 0.25, "first", "persson")
-    value, amplitude = friction_of(mixture, draw, 3e-6)
+    value, amplitude, _ = outcome_of(mixture, draw, 3e-6)
     # At 3 µm 0.7 by each ridge's own balance, 0.4 at one gap.
     assert value == pytest.approx(0.25 * 0.7 + 0.75 * 0.4)
     assert amplitude == 3e-6
@@ -193,17 +199,26 @@ def test_a_finger_takes_its_share_of_a_driven_amplitude(
 
     def touch(mode: _Mode, _: Any, free: float) -> Any:
         touched.append((mode.quality_factor, free))
-        return SimpleNamespace(amplitude=0.5 * free)
+        return SimpleNamespace(amplitude=0.5 * free, mode=None)
 
     monkeypatch.setattr(draws, "touch", touch)
     other = replaced(stator, {"actuator.quality_factor": 150.0})
     draw = Draw(other, 0.5, 1.0, "first", "persson")
 
-    def found(**changes: Any) -> tuple[float, float]:
-        mixture: Any = SimpleNamespace(prediction=_predicted(**changes), law=lambda _: _Law())
-        return friction_of(mixture, draw, 3e-6)
+    def found(**changes: Any) -> Outcome:
+        mixture: Any = SimpleNamespace(
+            prediction=_predicted(**changes),
+            law=lambda _: _Law(),
+            mode=lambda one: dataclasses.replace(
+                _Mode(), quality_factor=one.display.actuator.quality_factor
+            ),
+            power=lambda felt, volts: 2e6 * felt.amplitude * volts,
+        )
+        return outcome_of(mixture, draw, 3e-6)
 
-    assert found(voltage=140.0, mode=_Mode()) == pytest.approx((0.85, 1.5e-6))
+    volts = stator.drive.voltage
+    assert found(voltage=140.0, mode=_Mode()) == pytest.approx((0.85, 1.5e-6, 3 * volts))
+    assert np.isnan(found(mode=_Mode()).power)
     assert touched == [(150.0, 3e-6)]
     assert found(mode=_Mode())[1] == 3e-6
     assert found(voltage=140.0, mode=_Mode(modal_mass=None))[1] == 3e-6
@@ -236,11 +251,11 @@ def made_up(
     """`uncertain_friction` with µ′/µ of a draw by a function of it."""
 
     def found(function: Callable[[Draw], float], **more: Any) -> Any:
-        def one(_: Any, draw: Draw, free: float) -> tuple[float, float]:
+        def one(_: Any, draw: Draw, free: float) -> Outcome:
             value = function(draw)
-            return value, 1e-6 * value + free
+            return Outcome(value, 1e-6 * value + free, np.nan)
 
-        monkeypatch.setattr(uncertainty, "friction_of", one)
+        monkeypatch.setattr(uncertainty, "outcome_of", one)
         return uncertain_friction(stator, point, **more)
 
     return found
@@ -336,25 +351,26 @@ def _refusing(every: int) -> Callable[[Draw], float]:
 
 
 def test_refused_draws_are_counted_with_their_reason(made_up: Callable[..., Any]) -> None:
-    found = made_up(_refusing(64), samples=8)
+    found = made_up(_refusing(70), samples=8)
     refused = found.refused
-    assert (refused.count, refused.evaluations) == (3, 32 + 8 * 20)
+    # 17 inputs, each with a column of its own beside four.
+    assert (refused.count, refused.evaluations) == (3, 32 + 8 * 21)
     assert refused.reasons == Counter({"pressed through its asperities": 3})
     assert sum(refused.heights.values()) == 3
     assert refused.sentence.startswith(
-        "3 of 192 draws (1.6%) are refused: pressed through its asperities (3); by the law of"
+        "3 of 200 draws (1.5%) are refused: pressed through its asperities (3); by the law of"
     )
     assert np.all(np.isfinite(found.samples))
     assert found.samples.size == found.amplitudes.size == 31
     assert found.summary()["refused"] == 3
     # A refused draw is not below anything.
-    assert found.probability_below(2.0) == pytest.approx(1 - 3 / 192)
+    assert found.probability_below(2.0) == pytest.approx(1 - 3 / 200)
 
 
 def test_above_two_per_cent_there_is_no_interval(
     stator: Display, point: Prediction, made_up: Callable[..., Any]
 ) -> None:
-    with pytest.raises(OutOfRangeError, match=r"4 of 192 draws \(2.1%\) are refused.*Press less"):
+    with pytest.raises(OutOfRangeError, match=r"5 of 200 draws \(2.5%\) are refused.*Press less"):
         made_up(_refusing(48), samples=8)
 
 
@@ -394,6 +410,7 @@ def test_an_uncertain_friction_is_said_and_listed() -> None:
     assert found.summary() == {
         "relative_friction": 0.412, "relative_friction_median": 0.43,
         "relative_friction_interval": [0.281, 0.549], "interval_level": 0.9, "evaluations": 64,
+        "vibration_amplitude_interval_m": None, "power_W": None, "power_interval_W": None,
         "refused": 1, "refused_why": {"why": 1}, "seed": 5,
         "groups": {
             "measurable": {"first_order": 0.5, "total_order": 0.7, "total_order_error": 0.1}
@@ -511,7 +528,7 @@ def test_draws_beyond_the_range_of_their_law_count_without_a_warning_for_each() 
     # Warnings are errors in tests: under 2 N some draws of separate asperities are pressed flat.
     p = predict("biet2008-stator", vibration_amplitude=2e-6, normal_force=2.0)
     mixture = Mixture(load_display("biet2008-stator"), p, driven=False)
-    friction, _, _ = evaluate(mixture, sobol_points(mixture, 64, 3), lambda _: None)
-    assert np.isfinite(friction).mean() > 0.95
+    drawn, _ = evaluate(mixture, sobol_points(mixture, 64, 3), lambda _: None)
+    assert np.isfinite(drawn.friction).mean() > 0.95
     laws = [mixture.law(draw) for draw in mixture.draws(sobol_points(mixture, 64, 3))]
     assert any(law.finger.largest_force(law.surface.roughness) < law.normal_force for law in laws)

@@ -22,6 +22,8 @@ from squeezefilm.film.transient.settling import settle_to_periodic
         (20.0, 0.5, 1.0, 0.05, "second"),
         (20.0, 0.5, 1.0, 0.1, "fukui-kaneko"),
         (20.0, 0.5, 1.3, 0.1, "veijola"),
+        # As deep as the table of load balances goes (`gas_table.DEEPEST_EXCURSION`).
+        (5.0, 0.993, 1.0, 0.02, "first"),
     ],
 )
 @pytest.mark.parametrize("shape", ["strip", "disc"])

@@ -98,6 +98,28 @@ def test_the_table_is_within_its_bound_of_films_solved_elsewhere(ambient: float,
     assert 0 < table.relative_error <= table.tolerance
 
 
+@pytest.mark.parametrize("slip", ["first", "veijola", "fukui-kaneko"])
+def test_the_deepest_panels_are_within_their_bound(slip: str) -> None:
+    """Where the gap closes to 0.7 % of its mean, against films solved there with a tolerance of
+    their own (`test_film_agreement` has one as deep by marching in time)."""
+    table = FilmTable(40.5e3, 250e-6, GAS, slip)
+    rng = np.random.default_rng(8)
+    for _ in range(8):
+        u, eps = rng.uniform(2e-6, 8e-6), rng.uniform(0.985, DEEPEST_EXCURSION)
+        found = float(table.over_pressure(u, eps * u))
+        solved = solve_uniform(
+            (table.length / u) ** 2,
+            eps,
+            knudsen_number=GAS.mean_free_path / u,
+            slip=slip,
+            tolerance=1e-4,
+        ).over_pressure
+        assert found == pytest.approx(1e5 * solved, rel=table.relative_error + 1e-4)
+    assert 0 < table.relative_error <= table.tolerance
+    with pytest.raises(InputError, match="amplitude / mean_gap"):
+        table.over_pressure(4e-6, 4e-6 * (DEEPEST_EXCURSION + 1e-3))
+
+
 def test_a_finer_table_changes_the_friction_by_less_than_the_coarse_bound() -> None:
     coarse, fine = (FilmTable(40.5e3, 250e-6, GAS, tolerance=t) for t in (2e-3, 2e-5))
     a = np.linspace(0.2e-6, 4e-6, 9)

@@ -7,9 +7,8 @@ import pytest
 from scipy import special
 
 from squeezefilm.errors import InputError
+from squeezefilm.plate.exposure import GUIDANCE, exposure_guidance
 from squeezefilm.plate.sound import (
-    GUIDANCE,
-    exposure_guidance,
     pressure_level,
     rectangular_surface,
     ring_surface,

@@ -11,7 +11,8 @@ import pytest
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Mixture
-from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, evaluate, quantiles, sobol_points
+from squeezefilm.analysis.intervals import quantiles
+from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, evaluate, sobol_points
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 
@@ -23,9 +24,9 @@ def _mixture(name: str, force: float) -> Mixture:
 
 
 def _frictions(mixture: Mixture, points: si.FloatArray) -> si.FloatArray:
-    friction, _, refused = evaluate(mixture, points, lambda _: None)
+    drawn, refused = evaluate(mixture, points, lambda _: None)
     assert refused.share <= 0.02
-    return friction
+    return np.asarray(drawn.friction)
 
 
 def _coverage(mixture: Mixture, truths: int, intervals: int, seed: int) -> float:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
+import functools
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,7 +23,17 @@ from squeezefilm.analysis.curves import (
     pressure_profiles,
     wavelength_curves,
 )
+from squeezefilm.analysis.ears import EarExposure, ear_exposure
+from squeezefilm.analysis.felt import DRAWS as FELT_DRAWS
+from squeezefilm.analysis.felt import FeltGratings, felt_gratings
 from squeezefilm.analysis.film.models import FilmComparison, compare_film_models
+from squeezefilm.analysis.friction.wanted import Wanted
+from squeezefilm.analysis.friction.wanted import wanted_friction as friction_wanted
+from squeezefilm.analysis.sensitivities import (
+    DisplaySensitivities,
+    Effort,
+    display_sensitivities,
+)
 from squeezefilm.analysis.textures import (
     CompensatedGrating,
     TextureSurvival,
@@ -34,7 +46,7 @@ from squeezefilm.analysis.uncertainty import (
     UncertainFriction,
     interval_or_reason,
 )
-from squeezefilm.analysis.verdict import Finding, verdict
+from squeezefilm.analysis.verdict import Finding, ears_finding, verdict
 from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
@@ -89,11 +101,38 @@ class Analysis(Result):
     compensated: CompensatedGrating | None
     survival: TextureSurvival | None
     verdict: tuple[Finding, ...]
+    wanted: Wanted | None = None
+    effort: Effort = "quick"
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.frequency "
         "prediction.vibration_amplitude prediction.relative_friction uncertainty.interval "
         "envelope_time_constant"
     )
+
+    @functools.cached_property
+    def ears(self) -> EarExposure | None:
+        """What reaches an ear, beside the guidance; about a second, when it is first asked for."""
+        return ear_exposure(self.display, self.prediction, self.uncertainty)
+
+    @property
+    def ears_finding(self) -> Finding:
+        """What that amounts to."""
+        return ears_finding(self.ears)
+
+    @functools.cached_property
+    def felt(self) -> FeltGratings | None:
+        """The finest grating that is felt, by finger speed; about a second, when first asked for.
+        Without an interval of the friction this has none either."""
+        draws = 0 if self.uncertainty is None else FELT_DRAWS
+        return felt_gratings(self.display, self.prediction, draws=draws)
+
+    @functools.cached_property
+    def sensitivities(self) -> DisplaySensitivities | None:
+        """What each uncertain or toleranced value does, with the `effort` asked for: about a
+        second, or twice a solve for each value; None where nothing vibrates."""
+        if self.prediction.touch.sharing is None:
+            return None
+        return display_sensitivities(self.display, self.prediction, self.effort)
 
     def finest_period(self) -> dict[str, float]:
         """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""
@@ -115,6 +154,11 @@ class Analysis(Result):
             "relative_friction_median": None
             if self.uncertainty is None
             else self.uncertainty.median,
+            **_intervals(self.uncertainty),
+            "wanted": None if self.wanted is None else self.wanted.summary(),
+            "felt": None if self.felt is None else self.felt.summary(),
+            "sound_at_ear": to_json(self.ears),
+            "sensitivities": None if self.sensitivities is None else self.sensitivities.summary(),
             "envelope_bandwidth_Hz": self.envelope_bandwidth,
             "finest_period_m": self.finest_period(),
             "finest_period_keeps": None
@@ -146,7 +190,7 @@ class Analysis(Result):
                 "plateau_balance": to_json(self.film_models.balance),
             },
             "other_models": to_json(self.other_models),
-            "verdict": to_json(self.verdict),
+            "verdict": to_json((*self.verdict, self.ears_finding)),
             "provenance": stamp(self.display),
         }
 
@@ -165,12 +209,16 @@ def analyze(
     speed: si.MetrePerSecond | None = None,
     strict: bool = False,
     samples: int = SAMPLES,
+    wanted_friction: si.Dimensionless | None = None,
+    sensitivities: Effort = "quick",
     progress: SayProgress | None = None,
 ) -> Analysis:
     """The whole analysis of a display at one working point.
 
     Arguments and errors are those of `prediction.predict`; `samples` (0: none) is the base of the
-    uncertainty's design, see `uncertain_friction`; `progress` is told each step.
+    uncertainty's design, see `uncertain_friction`; `wanted_friction` asks for the voltage that
+    reaches it, `sensitivities` how a plate with one thing different is computed, see
+    `display_sensitivities`; `progress` is told each step.
     """
     tell = progress or (lambda _: None)
     tell("resonance, amplitude and friction")
@@ -186,7 +234,23 @@ def analyze(
         speed=speed,
         strict=strict,
     )
-    return _what_follows(display, prediction, samples, tell)
+    found = _what_follows(display, prediction, samples, tell)
+    if wanted_friction is None:
+        return dataclasses.replace(found, effort=sensitivities)
+    tell("the voltage for the friction wanted")
+    wanted = friction_wanted(
+        display, prediction, wanted_friction, samples=samples, strict=False, progress=tell
+    )
+    return dataclasses.replace(found, wanted=wanted, effort=sensitivities)
+
+
+def _intervals(unsure: UncertainFriction | None) -> dict[str, Any]:
+    """Those of what the drive does, for ``--json``."""
+    if unsure is None:
+        return {}
+    found = unsure.summary()
+    names = ("vibration_amplitude_interval_m", "power_W", "power_interval_W")
+    return {name: found[name] for name in names}
 
 
 def _what_follows(

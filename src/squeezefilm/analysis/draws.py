@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import dataclasses
 import warnings
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,6 +26,7 @@ from squeezefilm.analysis.model_choices import (
 from squeezefilm.analysis.parameters import (
     FORCE,
     SKIN_COMPLIANCE,
+    TANGENTIAL_RATIO,
     Parameter,
     uncertain_parameters,
     with_values,
@@ -31,12 +34,14 @@ from squeezefilm.analysis.parameters import (
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction
-from squeezefilm.chain.touch import touch
+from squeezefilm.chain.touch import Touch, touch
 from squeezefilm.display import Display
 from squeezefilm.errors import OutOfRangeWarning, SqueezefilmError
 from squeezefilm.plate.beam.response import beam_response
+from squeezefilm.plate.heat.warming import heat_source
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.plate.loaded_mode import LoadedMode
+from squeezefilm.plate.working_mode import WorkingMode, working_mode
 
 Input = Parameter | Choice
 
@@ -137,14 +142,22 @@ class Mixture:
         )
         sheared = law.kind.shear or not shared
         if not sheared:
-            # µ decides when what touches slips, and nothing else.
+            # µ and κ decide when what touches slips, and nothing else.
             parameters = tuple(
-                one for one in parameters if not one.path.endswith("friction_coefficient")
+                one
+                for one in parameters
+                if not one.path.endswith((TANGENTIAL_RATIO, "friction_coefficient"))
             )
         self.inputs: tuple[Input, ...] = parameters + model_choices(display, sheared=sheared)
         # Laws of contact are compared at what a plateau carries as described.
         self._pressure = display.finger.plateau_pressure()
         self.paths = tuple(one.path for one in self.inputs)
+
+    def at(self, prediction: Prediction, display: Display) -> Mixture:
+        """The same inputs around another working point, of a display with another actuator."""
+        other = copy.copy(self)
+        other.prediction, other.display = prediction, display
+        return other
 
     def draws(self, points: si.DimensionlessArray) -> Iterator[Draw]:
         """The draws at points of the unit cube, shape (n, inputs)."""
@@ -184,6 +197,31 @@ class Mixture:
         here = dataclasses.replace(here, finger=finger)
         return Draw(here, force, compliance, chosen.get(SLIP, p.law.slip), heights)
 
+    def mode(self, draw: Draw) -> WorkingMode:
+        """The working mode of a draw: as described, but for its quality factor."""
+        mode = self.prediction.mode
+        quality = getattr(draw.display.actuator, "quality_factor", mode.quality_factor)
+        return dataclasses.replace(mode, quality_factor=float(quality))
+
+    def power(self, felt: Touch, drawn_voltage: si.Volt | None = None) -> si.Watt | None:
+        """What plate and finger take of the drive (W, mean), cold: lost in the materials of the
+        plate as `LoadedMode.power` has it, in the ceramics' capacitance (`heat_source`), and in the
+        finger. Modal mass and frequency are as described. None where nothing is driven or the modal
+        mass is not known. A `drawn_voltage` stands for the description's own, where that is
+        uncertain."""
+        p = self.prediction
+        mass, nominal = p.mode.modal_mass, self.display.drive.voltage
+        if p.voltage is None or mass is None:
+            return None
+        volts = p.voltage
+        if drawn_voltage is not None and nominal > 0:
+            volts *= drawn_voltage / nominal
+        loaded = felt.mode or LoadedMode(p.mode.resonance_frequency, p.mode.quality_factor, 0j)
+        source = heat_source(
+            self.display.actuator, volts, p.frequency, p.mode.quality_factor, felt.amplitude, 0.0
+        )
+        return loaded.power(mass, p.frequency, felt.amplitude) + source.dielectric_power
+
     def law(self, draw: Draw) -> FrictionLaw:
         """The friction law of a draw, at the prediction's frequency, place and speed."""
         p = self.prediction
@@ -201,15 +239,24 @@ class Mixture:
         )
 
 
-def friction_of(mixture: Mixture, draw: Draw, free_amplitude: si.Metre) -> tuple[float, si.Metre]:
-    """µ′/µ of a draw at an amplitude (m) without its finger, and the amplitude with it."""
-    p, law = mixture.prediction, mixture.law(draw)
-    amplitude = free_amplitude
-    if p.voltage is not None and p.mode.modal_mass is not None:
-        quality = getattr(draw.display.actuator, "quality_factor", p.mode.quality_factor)
-        mode = dataclasses.replace(p.mode, quality_factor=float(quality))
-        amplitude = touch(mode, law, free_amplitude).amplitude
-    return float(between_limits(law, draw, np.array([amplitude]))[0]), amplitude
+class Outcome(NamedTuple):
+    """What comes of a draw, or of many: µ′/µ, the amplitude with the finger (m), and the power that
+    plate and finger take, cold (W; NaN where the modal mass is not known)."""
+
+    friction: Any
+    amplitude: Any
+    power: Any
+
+
+def outcome_of(mixture: Mixture, draw: Draw, free_amplitude: si.Metre) -> Outcome:
+    """What comes of a draw at an amplitude (m) without its finger."""
+    law = mixture.law(draw)
+    amplitude, power = free_amplitude, None
+    if mixture.prediction.voltage is not None and mixture.prediction.mode.modal_mass is not None:
+        felt = touch(mixture.mode(draw), law, free_amplitude)
+        amplitude, power = felt.amplitude, mixture.power(felt, draw.display.drive.voltage)
+    friction = float(between_limits(law, draw, np.array([amplitude]))[0])
+    return Outcome(friction, amplitude, np.nan if power is None else power)
 
 
 def between_limits(law: FrictionLaw, draw: Draw, amplitude: si.MetreArray) -> si.DimensionlessArray:

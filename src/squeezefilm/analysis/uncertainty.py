@@ -12,53 +12,30 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import (
     FreeAmplitude,
-    Input,
     Mixture,
+    Outcome,
     Refusals,
     Tally,
     as_drawn,
     between_limits,
-    friction_of,
+    outcome_of,
 )
-from squeezefilm.analysis.parameters import Knowledge
+from squeezefilm.analysis.influences import (
+    GroupInfluence,
+    Influence,
+    groups_of,
+    influences_of,
+)
+from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends, quantiles
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.progress import SayProgress
+from squeezefilm.results import to_json
 
-LEVEL: si.Dimensionless = 0.9
-MOST_REFUSED: si.Dimensionless = 0.02
-"""Of the draws: where more have no friction, an interval of the others would be a condition that
-nobody asked for."""
 SAMPLES, POINTS = 32, 4
 """Base samples where none are asked for, and how many points make the interval for each: chosen by
 `tests/verification/test_uncertainty_coverage.py`."""
-
-
-@dataclass(frozen=True)
-class Influence:
-    """How much of the variance of µ′/µ one input explains, alone and with all its company.
-
-    First-order and total Sobol' indices with the half width of their 95 % confidence interval.
-    """
-
-    parameter: Input
-    first_order: si.Dimensionless
-    first_order_error: si.Dimensionless
-    total: si.Dimensionless
-    total_error: si.Dimensionless
-
-
-@dataclass(frozen=True)
-class GroupInfluence:
-    """How much of the variance of µ′/µ goes away if all of a group were known (`alone`), and how
-    much would be left if all but the group were (`total`), with the half width of the latter's 95 %
-    confidence interval."""
-
-    knowledge: Knowledge
-    alone: si.Dimensionless
-    total: si.Dimensionless
-    error: si.Dimensionless
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +46,9 @@ class UncertainFriction:
     `influences` are ranked, the most important to know better first; `groups` are what could be
     measured and what nobody knows. Draws that are `refused` (asperities pressed through) have no
     place in `samples` and count as outside of the interval, at both of its ends.
+    `amplitude_interval` (m) and `power_interval` (W) are those of the same draws: None where the
+    amplitude was given or the power is not known; `power` is that as described, see
+    `draws.Outcome`.
     """
 
     nominal: si.Dimensionless
@@ -82,6 +62,9 @@ class UncertainFriction:
     refused: Refusals
     seed: int
     model: str
+    amplitude_interval: tuple[si.Metre, si.Metre] | None = None
+    power: si.Watt | None = None
+    power_interval: tuple[si.Watt, si.Watt] | None = None
 
     @property
     def sentence(self) -> str:
@@ -115,6 +98,9 @@ class UncertainFriction:
             "relative_friction_median": self.median,
             "relative_friction_interval": list(self.interval),
             "interval_level": self.level,
+            "vibration_amplitude_interval_m": to_json(self.amplitude_interval),
+            "power_W": self.power,
+            "power_interval_W": to_json(self.power_interval),
             "evaluations": self.refused.evaluations,
             "refused": self.refused.count,
             "refused_why": dict(self.refused.reasons),
@@ -173,25 +159,30 @@ def uncertain_friction(
     points = np.concatenate(
         [sobol_points(mixture, count, seed), design.reshape(rows * columns, -1)]
     )
-    friction, amplitude, refused = evaluate(mixture, points, progress or (lambda _: None))
+    drawn, refused = evaluate(mixture, points, progress or (lambda _: None))
     if refused.share > MOST_REFUSED:
         raise OutOfRangeError(refusal_words(refused))
-    drawn, blocks = friction[:count], friction[count:].reshape(rows, columns)
-    known = np.isfinite(drawn)
-    low, middle, high = (float(one) for one in quantiles(drawn))
+    friction, blocks = drawn.friction[:count], drawn.friction[count:].reshape(rows, columns)
+    known = np.isfinite(friction)
+    low, middle, high = (float(one) for one in quantiles(friction))
     kept = blocks[np.isfinite(blocks).all(axis=1)]
+    driven = prediction.voltage is not None
+    power = mixture.power(mixture.prediction.touch)
     return UncertainFriction(
         nominal=_nominal(mixture),
         median=middle,
         interval=(low, high),
         level=LEVEL,
-        samples=drawn[known],
-        amplitudes=amplitude[:count][known],
-        influences=_influences(mixture.inputs, kept),
-        groups=_groups(kept),
+        samples=friction[known],
+        amplitudes=drawn.amplitude[:count][known],
+        influences=influences_of(mixture.inputs, kept),
+        groups=groups_of(kept),
         refused=refused,
         seed=seed,
         model="film and asperities share the load; laws and mechanisms by their assumed weights",
+        amplitude_interval=_interval(drawn.amplitude[:count]) if driven else None,
+        power=power,
+        power_interval=None if power is None else _interval(drawn.power[:count]),
     )
 
 
@@ -257,79 +248,26 @@ def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
 @as_drawn()
 def evaluate(
     mixture: Mixture, points: si.DimensionlessArray, tell: SayProgress
-) -> tuple[si.DimensionlessArray, si.MetreArray, Refusals]:
-    """µ′/µ and amplitudes (m) at points of the unit cube, shape (n, inputs), NaN where refused; and
-    what was refused. `tell` is told some twenty times."""
-    friction, amplitude = np.full((2, len(points)), np.nan)
+) -> tuple[Outcome, Refusals]:
+    """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
+    where refused; and what was refused. `tell` is told some twenty times."""
+    found = np.full((len(points), 3), np.nan)
     scale, tally = FreeAmplitude(mixture.display, mixture.prediction), Tally()
     every = max(len(points) // 20, 1)
     for number, draw in enumerate(mixture.draws(points)):
         if number % every == 0:
             tell(f"friction of draw {number + 1} of {len(points)}")
         try:
-            friction[number], amplitude[number] = friction_of(mixture, draw, scale(draw.display))
+            found[number] = outcome_of(mixture, draw, scale(draw.display))
         except SqueezefilmError as error:
             tally.refuse(draw.heights, error)
-    return friction, amplitude, tally.found(len(points))
+    return Outcome(*found.T), tally.found(len(points))
 
 
-def quantiles(friction: si.DimensionlessArray) -> si.DimensionlessArray:
-    """The lower end of the interval, the median and the upper end, of draws along the first axis.
-
-    A refused draw (NaN) may be anything: it counts as 0 at the lower end and as 1 at the upper.
-    Positions k/(n + 1), with which an interval of independent draws holds its level in the mean.
-    """
-    tails = (1 - LEVEL) / 2
-    lost = np.isnan(friction)
-    ends = [
-        np.quantile(np.where(lost, fill, friction), at, axis=0, method="weibull")
-        for fill, at in ((0.0, tails), (1.0, 1 - tails))
-    ]
-    return np.stack([ends[0], np.nanmedian(friction, axis=0), ends[1]])
-
-
-def _influences(
-    inputs: tuple[Input, ...], friction: si.DimensionlessArray
-) -> tuple[Influence, ...]:
-    """What each input explains of the design's frictions, shape (samples, inputs + 4); the most
-    important first."""
-    a, b = friction[:, 0], friction[:, -3]
-    whole = (a - b) ** 2
-    found = []
-    for k, item in enumerate(inputs):
-        with_b = friction[:, k + 1]
-        total, total_error = _ratio((a - with_b) ** 2, whole)
-        rest, rest_error = _ratio((b - with_b) ** 2, whole)
-        found.append(Influence(item, 1 - rest, rest_error, total, total_error))
-    return tuple(sorted(found, key=lambda item: -item.total))
-
-
-def _groups(friction: si.DimensionlessArray) -> tuple[GroupInfluence, ...]:
-    """What could be measured, and what nobody knows, of the design's frictions.
-
-    Its last two columns share with A, and with B, what nobody knows; alone is what the other group
-    leaves.
-    """
-    a, b, like_a, like_b = friction[:, [0, -3, -2, -1]].T
-    whole = (a - b) ** 2 + (like_a - like_b) ** 2
-    measurable = _ratio((a - like_a) ** 2 + (b - like_b) ** 2, whole)
-    unknown = _ratio((b - like_a) ** 2 + (a - like_b) ** 2, whole)
-    return (
-        GroupInfluence("measurable", 1 - unknown[0], *measurable),
-        GroupInfluence("unknown", 1 - measurable[0], *unknown),
-    )
-
-
-def _ratio(part: si.FloatArray, whole: si.FloatArray) -> tuple[float, float]:
-    """Jansen's estimator of a share of the variance, and the half width of its 95 % interval.
-
-    Half the mean square of what differs where only some inputs do over that where all do: as a
-    ratio of the same rows, in which most of the noise cancels. Jansen 1999,
-    10.1016/S0010-4655(98)00154-4.
-    """
-    scale = float(np.mean(whole)) or 1.0
-    share = float(np.mean(part)) / scale
-    return share, 1.96 * float(np.std(part - share * whole)) / scale / len(part) ** 0.5
+def _interval(values: si.FloatArray) -> tuple[float, float] | None:
+    """Both ends of an interval; None where refused draws leave no upper one."""
+    low, _, high = ends(values)
+    return (low, high) if np.isfinite(high) else None
 
 
 def _nominal(mixture: Mixture) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
+from squeezefilm.analysis.ears import AUDIBLE, EarExposure
 from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.analysis.plate.mode_doubts import mode_doubts
 from squeezefilm.analysis.uncertainty import UncertainFriction
@@ -27,11 +28,14 @@ NOTICED_DIFFERENCE: si.Dimensionless = 0.2
 PLAUSIBLE_AMPLITUDE: si.Metre = 10e-6
 
 
+Kind = Literal["good", "limit", "doubt"]
+
+
 @dataclass(frozen=True)
 class Finding:
     """One sentence of the verdict: good news, a limit to know, or a reason not to believe."""
 
-    kind: Literal["good", "limit", "doubt"]
+    kind: Kind
     text: str
 
 
@@ -95,6 +99,21 @@ def _findings(
         "Friction against amplitude is not validated against measurements: no measured curve "
         "of an ultrasonic display could be read anywhere.",
     )
+
+
+def ears_finding(ears: EarExposure | None) -> Finding:
+    """What reaches an ear, beside the guidance: good where it is surely below the one for the
+    public, a limit where it is surely above or audible, a doubt where that is open or unknown."""
+    if ears is None:
+        return Finding(
+            "doubt",
+            "The sound at an ear is not known here: the shape of what moves was not solved, or its "
+            "amplitude was given. squeezefilm plate computes it for plates, discs and stators.",
+        )
+    if ears.frequency < AUDIBLE:
+        return Finding("limit", ears.sentence)
+    kind: dict[str, Kind] = {"below": "good", "above": "limit"}
+    return Finding(kind.get(ears.standing, "doubt"), ears.sentence)
 
 
 def friction_verdict(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:

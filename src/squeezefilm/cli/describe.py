@@ -91,6 +91,17 @@ class AnalyzeOptions:
     samples: Annotated[
         int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
     ] = 32
+    wanted_friction: Annotated[
+        float | None,
+        typer.Option("--wanted", help="A relative friction: which voltage reaches it?"),
+    ] = None
+    sensitivities: Annotated[
+        str,
+        typer.Option(
+            help="How a plate with one thing different is computed: quick (a beam, a second for "
+            "all values) or solved (in three dimensions, two solves for each value)."
+        ),
+    ] = "quick"
     theory: Annotated[
         str | None,
         typer.Option(

@@ -42,6 +42,23 @@ class LoadedMode:
         Q, x = self.free_quality_factor, frequency / self.free_frequency
         return float(1 / abs(Q * (1 + self.load_ratio - x**2) + 1j))
 
+    @si.checked_numbers
+    def power(
+        self,
+        modal_mass: Annotated[si.Kilogram, si.Above(0.0)],
+        frequency: Annotated[si.Hertz, si.Above(0.0)],
+        amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
+    ) -> si.Watt:
+        """What mode and load lose (W, mean over a period) at an amplitude (m) and frequency (Hz).
+
+        ½ ω M ω0² (1/Q + Im δ) A², the loss of a stiffness M ω0² with structural damping. At the
+        resonance it goes with the amplitude times the force that drives it: with a load that takes
+        half of the amplitude, half of the power is drawn.
+        """
+        own, omega = 2 * np.pi * self.free_frequency, 2 * np.pi * frequency
+        loss = 1 / self.free_quality_factor + self.load_ratio.imag
+        return float(0.5 * omega * modal_mass * own**2 * loss * amplitude**2)
+
 
 @si.checked_numbers
 def mean_square_wave(

@@ -20,6 +20,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SOUND_SPEED, require_within
+from squeezefilm.plate.exposure import ExposureGuidance, exposure_guidance
 
 REFERENCE_PRESSURE = 20e-6
 """0 dB of sound pressure level in air, r.m.s., in Pa (ISO 1683)."""
@@ -29,55 +30,6 @@ DISTANCES: tuple[si.Metre, ...] = (0.3, 0.5, 1.0)
 
 _COARSEST = 4
 """Points per wavelength in air below which a surface is refused."""
-
-
-@dataclass(frozen=True)
-class ExposureGuidance:
-    """A recommended limit of sound pressure level, with how well we know it.
-
-    It holds in one-third-octave bands between `low` and `high`. `evidence` says what was seen:
-    a limit marked "to be checked" was not read in its own text.
-    """
-
-    level_dB: float
-    low: si.Hertz
-    high: si.Hertz
-    audience: Literal["public", "occupational"]
-    source: str
-    evidence: str
-
-
-_IRPA = (
-    "IRPA/INIRC 1984, Interim guidelines on limits of human exposure to airborne ultrasound, "
-    "Health Physics 46(4), 969-974; still the guideline in 2024: 10.1097/HP.0000000000001800",
-    "to be checked: quoted second-hand, the guideline's own text was not read",
-)
-GUIDANCE = (
-    ExposureGuidance(70.0, 17.8e3, 22.4e3, "public", *_IRPA),
-    ExposureGuidance(100.0, 22.4e3, 112e3, "public", *_IRPA),
-    ExposureGuidance(
-        110.0,
-        22.4e3,
-        56e3,
-        "occupational",
-        "Howard, Hansen and Zander 2004, A review of current ultrasound exposure limits: the "
-        "consensus of the limits reviewed, 25 to 50 kHz bands, below 4 hours",
-        "to be checked: read as a quotation of the review, not in the limits themselves",
-    ),
-)
-"""Published guidance, one entry per band and audience; the reviews call its basis thin."""
-
-
-@si.checked_numbers
-def exposure_guidance(
-    frequency: Annotated[si.Hertz, si.Above(0.0)],
-    audience: Literal["public", "occupational"] = "public",
-) -> ExposureGuidance | None:
-    """The guidance for a tone, or None where there is none."""
-    for entry in GUIDANCE:
-        if entry.audience == audience and entry.low <= frequency < entry.high:
-            return entry
-    return None
 
 
 @si.checked_numbers
@@ -256,11 +208,7 @@ def sound_field(
     if not distances:
         raise InputError("distances is empty; name at least one", quantity="distances")
     si.require("distances", distances, si.Unit("m"), above=surface.extent)
-    # A lobe is about a wavelength over the extent wide: look at it at least four times.
-    lobe = sound_speed / surface.frequency / (2 * surface.extent)
-    steps = max(36, math.ceil(2 * math.pi / lobe))
-    polar = np.linspace(0, math.pi / 2, max(36, steps // 2) + 1)
-    azimuth = 2 * math.pi * np.arange(steps) / steps
+    polar, azimuth = _directions(surface, sound_speed)
 
     def at(distance: float, theta: si.FloatArray, phi: si.FloatArray) -> si.FloatArray:
         up = np.cos(theta) * distance
@@ -290,6 +238,42 @@ def sound_field(
         directivity_dB=directivity,
         guidance=exposure_guidance(surface.frequency, audience),
     )
+
+
+@si.checked_numbers
+def loudest_level(
+    surface: RadiatingSurface,
+    distance: si.Metre,
+    *,
+    density: si.KilogramPerCubicMetre = 1.204,
+    sound_speed: si.MetrePerSecond = 343.2,
+) -> si.Dimensionless:
+    """The sound pressure level (dB re 20 µPa) in the loudest direction at one distance (m) from the
+    surface's middle, as `sound_field` has it, without absorption; a third of its work. Raises
+    `InputError` for a distance within the surface's extent."""
+    require_within(SOUND_SPEED, sound_speed, "sound_speed")
+    si.require("distance", distance, si.Unit("m"), above=surface.extent)
+    polar, azimuth = _directions(surface, sound_speed)
+
+    def at(theta: si.FloatArray, phi: si.FloatArray) -> si.FloatArray:
+        out = np.sin(theta) * distance
+        place = [out * np.cos(phi), out * np.sin(phi), np.maximum(np.cos(theta) * distance, 0)]
+        points = np.stack(place, axis=-1)
+        pressure = sound_pressure(surface, points, density=density, sound_speed=sound_speed)
+        return pressure_level(pressure)
+
+    return _loudest(at, at(*np.meshgrid(polar, azimuth, indexing="ij")), polar, azimuth)[0]
+
+
+def _directions(
+    surface: RadiatingSurface, sound_speed: si.MetrePerSecond
+) -> tuple[si.FloatArray, si.FloatArray]:
+    """Polar angles and azimuths (rad) that miss no lobe of a surface."""
+    # A lobe is about a wavelength over the extent wide: look at it at least four times.
+    lobe = sound_speed / surface.frequency / (2 * surface.extent)
+    steps = max(36, math.ceil(2 * math.pi / lobe))
+    polar = np.linspace(0, math.pi / 2, max(36, steps // 2) + 1)
+    return polar, 2 * math.pi * np.arange(steps) / steps
 
 
 def _loudest(

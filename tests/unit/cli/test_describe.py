@@ -119,7 +119,8 @@ def test_an_analysis_is_the_displays_own_unless_asked(analysis: SimpleNamespace)
     assert analysis.asked.given == (load_display(DISPLAY),)
     assert analysis.asked.named == {
         "voltage": None, "frequency": None, "vibration_amplitude": None, "normal_force": None,
-        "surface": None, "samples": 32, "theory": None, "model": None, "strict": False,
+        "surface": None, "samples": 32, "wanted_friction": None, "sensitivities": "quick",
+        "theory": None, "model": None, "strict": False,
         "speed": None,
     }  # fmt: skip
     assert analysis.shown.given == (ANSWER,)
@@ -131,13 +132,15 @@ def test_an_analysis_is_the_displays_own_unless_asked(analysis: SimpleNamespace)
 def test_every_option_of_an_analysis_arrives(analysis: SimpleNamespace, tmp_path: Path) -> None:
     options = (
         "--voltage", "15 V", "--frequency", "34 kHz", "--amplitude", "2 um", "--force", "0.3 N",
-        "--surface", "copper", "--samples", "8", "--theory", "timoshenko", "--model", "film-open",
+        "--surface", "copper", "--samples", "8", "--wanted", "0.5", "--sensitivities", "solved",
+         "--theory", "timoshenko", "--model", "film-open",
         "--speed", "50 mm/s", "--strict", "--out", tmp_path,
     )  # fmt: skip
     done = run("analyze", DISPLAY, *options)
     assert analysis.asked.named == {
         "voltage": 15.0, "frequency": 34e3, "vibration_amplitude": pytest.approx(2e-6),
-        "normal_force": 0.3, "surface": "copper", "samples": 8, "theory": "timoshenko",
+        "normal_force": 0.3, "surface": "copper", "samples": 8, "wanted_friction": 0.5,
+        "sensitivities": "solved", "theory": "timoshenko",
         "model": "film-open", "speed": pytest.approx(0.05), "strict": True,
     }  # fmt: skip
     assert analysis.written.given == (ANSWER, tmp_path)

@@ -30,6 +30,22 @@ def test_a_load_adds_its_stiffness_to_the_modes_own() -> None:
         assert found.amplitude_ratio(f) == pytest.approx(moved / free)
 
 
+def test_the_power_is_what_a_force_does_on_the_motion() -> None:
+    """½ Re(F v*) of the force that moves the mode so far, on resonance and off it."""
+    found = loaded_mode(**GOOD)
+    own = 4e-3 * (2 * math.pi * 30e3) ** 2
+    whole = own * (1 + 1j / 60) + (2e10 + 3e9j) * 1e-4 * 0.4
+    for f in (28e3, 30e3, found.resonance_frequency):
+        omega, moved = 2 * math.pi * f, 1.5e-6
+        force = (whole - 4e-3 * omega**2) * moved
+        velocity = 1j * omega * moved
+        assert found.power(4e-3, f, moved) == pytest.approx(0.5 * (force * np.conj(velocity)).real)
+    # A force that stands still does less on a mode that its load keeps from moving.
+    alone = LoadedMode(30e3, 60.0, 0j)
+    damped = LoadedMode(30e3, 60.0, 1j / 60)
+    assert damped.power(4e-3, 30e3, 0.5e-6) == pytest.approx(0.5 * alone.power(4e-3, 30e3, 1e-6))
+
+
 def test_without_a_load_it_is_the_mode_itself() -> None:
     free = LoadedMode(30e3, 60.0, 0j)
     assert free.resonance_frequency == 30e3

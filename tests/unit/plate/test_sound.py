@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
+from squeezefilm.plate.exposure import GUIDANCE, exposure_guidance
 from squeezefilm.plate.sound import (
-    GUIDANCE,
     REFERENCE_PRESSURE,
     RadiatingSurface,
-    exposure_guidance,
     pressure_level,
     rectangular_surface,
     ring_surface,
@@ -41,7 +40,8 @@ def points(places: list[tuple[float, float]], velocity: list[complex]) -> Radiat
         (22.4e3, "public", 100.0),
         (111e3, "public", 100.0),
         (112e3, "public", None),
-        (22.3e3, "occupational", None),
+        (17.7e3, "occupational", None),
+        (22.3e3, "occupational", 75.0),
         (22.4e3, "occupational", 110.0),
         (55e3, "occupational", 110.0),
         (56e3, "occupational", None),
@@ -188,7 +188,7 @@ def test_two_points_in_step_beam_upward_and_in_turn_along_the_line_between_them(
     # 6 dB from 1 m to 2 m.
     assert np.diff(up.sound_pressure_level_dB)[0] == pytest.approx(-6.0206, abs=0.01)
     assert up.guidance is GUIDANCE[1]
-    assert along.guidance is GUIDANCE[2]
+    assert along.guidance is GUIDANCE[3]
     assert along.above_guidance_dB == pytest.approx((along.sound_pressure_level_dB[0] - 110,))
     assert dataclasses.replace(up, guidance=None).above_guidance_dB is None
 

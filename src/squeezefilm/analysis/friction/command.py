@@ -12,13 +12,14 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve, model_curves
 from squeezefilm.analysis.friction.tell_apart import ToldApart, tell_apart
+from squeezefilm.analysis.friction.wanted import Wanted, wanted_friction
 from squeezefilm.analysis.plate.mode_doubts import why_undriven
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
 from squeezefilm.analysis.verdict import Finding, friction_verdict, unless_undriven
 from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
-from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
+from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.display import Display, NamedDisplay
@@ -39,15 +40,6 @@ class FrictionMap:
     normal_force: si.NewtonArray
     relative_friction: si.DimensionlessArray
     model: str
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """What a wanted friction takes: amplitude with the finger on it (m) and voltage (V)."""
-
-    relative_friction: si.Dimensionless
-    vibration_amplitude: si.Metre
-    voltage: si.Volt
 
 
 @dataclass(frozen=True)
@@ -125,7 +117,7 @@ class FrictionAnalysis(Result):
             },
             "heat": to_json(p.heat),
             "standing_wave_ripple": None if self.ripple is None else self.ripple.ripple,
-            "wanted": to_json(self.wanted),
+            "wanted": None if self.wanted is None else self.wanted.summary(),
             "intermittent_contact": to_json(self.tapping),
             "models": [
                 {
@@ -194,7 +186,18 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         position=asked.position,
         speed=asked.speed,
     )
-    wanted = _wanted(display, asked)
+    wanted = (
+        None
+        if asked.wanted_friction is None
+        else wanted_friction(
+            display,
+            prediction,
+            asked.wanted_friction,
+            samples=asked.samples,
+            seed=asked.seed,
+            progress=asked.progress,
+        )
+    )
     tell("models side by side")
     curves = model_curves(prediction)
     tell("map over amplitude and force")
@@ -253,22 +256,6 @@ def _missed(model: str) -> list[dict[str, str]] | None:
     if found is None:
         return None
     return [{"says": one.says, "where": one.where, "why": one.why} for one in found]
-
-
-def _wanted(display: Display, asked: FrictionRequest) -> Wanted | None:
-    """What the wanted friction takes on a display, if one is asked for."""
-    if asked.wanted_friction is None:
-        return None
-    volts, amplitude = voltage_for_friction(
-        display,
-        asked.wanted_friction,
-        frequency=asked.frequency,
-        normal_force=asked.normal_force,
-        surface=asked.surface,
-        model=asked.model,
-        speed=asked.speed,
-    )
-    return Wanted(asked.wanted_friction, amplitude, volts)
 
 
 def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:

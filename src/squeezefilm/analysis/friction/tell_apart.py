@@ -20,9 +20,10 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Mixture, as_drawn
+from squeezefilm.analysis.intervals import MOST_REFUSED
 from squeezefilm.analysis.model_choices import HEIGHT_LAW, SHEAR, Choice
 from squeezefilm.analysis.parameters import SKIN_COMPLIANCE
-from squeezefilm.analysis.uncertainty import MOST_REFUSED, sobol_points
+from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.pad import Limit

@@ -11,7 +11,7 @@ import functools
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.parameters import with_values
 from squeezefilm.analysis.plate.solved import sweep_around
 from squeezefilm.errors import InputError
-from squeezefilm.plate.layout import GlueLayer, RectangularPlate
+from squeezefilm.plate.layout import DiscPlate, GlueLayer, RectangularPlate
 from squeezefilm.plate.solid.modes import Label, PlateModes, tracked
 from squeezefilm.plate.solid.response import harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
@@ -27,6 +27,8 @@ from squeezefilm.plate.solid.symmetry import drive_signs
 from squeezefilm.progress import SayProgress
 
 Quantity = Literal["frequency", "amplitude"]
+
+_Plate = TypeVar("_Plate", RectangularPlate, DiscPlate)
 
 # Less alike than this (modal assurance criterion) is another mode under the same label.
 _ALIKE = 0.6
@@ -193,7 +195,14 @@ def usual_changes(plate: RectangularPlate) -> Iterator[Change]:
     low, high = nu - 0.03, min(nu + 0.03, 0.49)
     yield from _both("plate Poisson's ratio", "substrate.poisson_ratio", "1", low, high)
     yield Change("ceramics open", "each on its own", with_open_ceramics, frequency_only=True)
-    if plate.glue is None:
+    if plate.glue is not None:
+        own_glue = plate.glue
+        for name, path, unit, value in (
+            ("glue thickness", "glue.thickness", "m", own_glue.thickness),
+            ("glue Young's modulus", "glue.young_modulus", "Pa", own_glue.young_modulus),
+        ):
+            yield from _both(name, path, unit, 0.5 * value, 1.5 * value)
+    else:
         for modulus, thickness in itertools.product((3e9, 1e9), (0.02 * tp, 0.05 * tp)):
             glued = functools.partial(with_glue, thickness=thickness, young_modulus=modulus)
             yield Change(f"glue of {_text(modulus, 'Pa')}", _text(thickness, "m"), glued)
@@ -222,8 +231,8 @@ def _text(value: float, unit: str) -> str:
     return si.format_quantity(value, si.Unit(unit), 4).replace(" um", " µm").replace("m3", "m³")
 
 
-def with_ceramic_stiffness(plate: RectangularPlate, share: si.Dimensionless) -> RectangularPlate:
-    """The plate with all stiffnesses of its ceramic multiplied, d31 (or the printed e31) kept."""
+def with_ceramic_stiffness(plate: _Plate, share: si.Dimensionless) -> _Plate:
+    """The plate or disc with all stiffnesses of its ceramic multiplied, d31 (or e31) kept."""
     ceramic = plate.ceramic
     constants = ceramic.constants
     if constants is not None:

@@ -70,7 +70,7 @@ def share_load(
 
     Without a `skin` the finger is rigid at the ultrasonic frequency. Raises `InputError` for
     values that cannot be used, `OutOfRangeError` where the asperities are pressed through (the gap
-    would close beyond 98.5 % of its mean, or below nothing), `ConvergenceError` where no balance
+    would close beyond 99.3 % of its mean, or below nothing), `ConvergenceError` where no balance
     is found. Warns `OutOfRangeWarning` of a pressure above the law's `largest_pressure`.
     """
     from squeezefilm.contact.sharing import kernel

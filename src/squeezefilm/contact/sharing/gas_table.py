@@ -25,11 +25,11 @@ from squeezefilm.materials import Gas
 if TYPE_CHECKING:
     from squeezefilm.contact.sharing.kernel import CompiledFilms
 
-DEEPEST_EXCURSION: si.Dimensionless = 0.985
-"""The deepest excursion a/u the table holds; the gap then closes to 1.5 % of its mean."""
+DEEPEST_EXCURSION: si.Dimensionless = 0.993
+"""The deepest excursion a/u the table holds; the gap then closes to 0.7 % of its mean."""
 
 _SHALLOWEST = 3e-3
-_EXCURSIONS = (_SHALLOWEST, 0.8, 0.95, DEEPEST_EXCURSION)
+_EXCURSIONS = (_SHALLOWEST, 0.8, 0.95, 0.985, DEEPEST_EXCURSION)
 _FIRST_COLUMN, _COLUMNS = -6, 10
 _START = (8, 8)
 _MOST = (41, 38)
@@ -97,7 +97,8 @@ class FilmTable:
     def over_pressure(self, mean_gap: si.MetreLike, amplitude: si.MetreLike) -> si.PascalLike:
         """⟨p_gas⟩ − p0 (Pa), mean over plateau and period; broadcasts.
 
-        Raises `InputError` for an amplitude above 0.985 of the gap or a gap off the table.
+        Raises `InputError` for an amplitude above `DEEPEST_EXCURSION` of the gap or a gap off
+        the table.
         """
         from squeezefilm.contact.sharing.kernel import film_value
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
 from squeezefilm.report.friction.told_apart import show_told_apart
+from squeezefilm.report.kit.decisions import interval_rows, wanted_rows
 from squeezefilm.report.kit.numbers import (
     HZ,
     M,
@@ -67,6 +68,7 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     drive = "amplitude given" if p.voltage is None else f"at {shown(p.voltage, V)}"
     rows = [
         ("Vibration amplitude", shown(p.vibration_amplitude, M), f"with the finger, {drive}"),
+        *interval_rows(result.uncertainty),
         ("Drive frequency", shown(p.frequency, HZ), ""),
     ]
     if p.voltage is not None and p.touch.mode is not None:
@@ -124,11 +126,7 @@ def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     if (wave := result.ripple) is not None:
         remark = f"every {shown(wave.half_wavelength, M, 3)}, at constant amplitude"
         rows.append(("Ripple of the wave", f"{100 * wave.ripple:.2g} %", remark))
-    if (wanted := result.wanted) is not None:
-        amplitude = shown(wanted.vibration_amplitude, M, 3)
-        label = f"For µ′/µ = {wanted.relative_friction:.3g}"
-        rows.append((label, shown(wanted.voltage, V, 3), amplitude))
-    return rows
+    return rows + wanted_rows(result.wanted)
 
 
 def _ranking(unsure: UncertainFriction) -> None:

@@ -15,8 +15,9 @@ from squeezefilm.analysis.claims.record import missed_by
 
 if typing.TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.influences import GroupInfluence
     from squeezefilm.analysis.parameters import Knowledge
-    from squeezefilm.analysis.uncertainty import GroupInfluence, UncertainFriction
+    from squeezefilm.analysis.uncertainty import UncertainFriction
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.display import Display
     from squeezefilm.plate.heat.warming import Warming

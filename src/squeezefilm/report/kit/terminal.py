@@ -7,6 +7,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from squeezefilm.report.kit.decisions import (
+    felt_rows,
+    interval_rows,
+    sensitivity_rows,
+    wanted_rows,
+)
 from squeezefilm.report.kit.numbers import (
     MISSED_HEADING,
     film_rows,
@@ -136,6 +142,7 @@ def show_analysis(analysis: Analysis) -> None:
     """Print an analysis: verdict last, where the eye rests, after numbers, models and warnings."""
     display = analysis.display
     console = show_rows(f"{display.title} [{display.name}]", key_numbers(analysis))
+    _show_decisions(console, analysis)
     heading(console, "Models")
     table(console, ("", ""), models(analysis), fixed=(0,))
     show_missed(console, analysis.prediction.model)
@@ -151,6 +158,28 @@ def show_analysis(analysis: Analysis) -> None:
         heading(console, "Warnings")
         bullets(console, [("!", text, "yellow") for text in warned])
     heading(console, "Verdict")
-    verdict = [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in analysis.verdict]
+    verdict = [
+        (_KINDS[item.kind], item.text, _STYLES[item.kind])
+        for item in (*analysis.verdict, analysis.ears_finding)
+    ]
     bullets(console, verdict)
     console.print()
+
+
+def _show_decisions(console: Console, analysis: Analysis) -> None:
+    """Print the intervals of what one decides from, and what each value does."""
+    rows = interval_rows(analysis.uncertainty) + wanted_rows(analysis.wanted)
+    rows += felt_rows(analysis.felt)
+    if rows:
+        heading(console, "How sure it is")
+        table(console, ("", "", ""), rows, fixed=(0,))
+    found = analysis.sensitivities
+    if found is not None:
+        heading(console, "What each value does, from the 5 % to the 95 % end of its range")
+        head = ("value", "from, to", "frequency", "amplitude", "µ′/µ", "range")
+        table(console, head, sensitivity_rows(found), fixed=(0,))
+        console.print(
+            f"µ′/µ is {found.relative_friction:.2f} as described. Plates with one thing different "
+            f"by {found.plate_model}; the drive follows the resonance. --json has all "
+            f"{len(found.rows)} values."
+        )

@@ -21,6 +21,7 @@ from squeezefilm import __version__
 from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
+from squeezefilm.plate.exposure import EAR_DISTANCE
 from squeezefilm.plate.sound import SoundField
 from squeezefilm.results import to_json
 from squeezefilm.study.conduct.study_device import DeviceVerification, StudyDevice
@@ -93,10 +94,6 @@ class SessionConditions:
             )
 
 
-HEAD_DISTANCE: si.Metre = 0.5
-"""From the plate to the ear of somebody seated at it (assumed)."""
-
-
 @dataclass(frozen=True)
 class Exposure:
     """The strongest level a session can bring to a head, and what it is compared with.
@@ -140,7 +137,7 @@ def exposure(
     display: Display,
     duration: si.Second,
     *,
-    distance: si.Metre = HEAD_DISTANCE,
+    distance: si.Metre = EAR_DISTANCE,
     progress: Callable[[str], None] | None = None,
 ) -> Exposure:
     """The exposure of a session of `duration` (s) on a display at its own voltage.

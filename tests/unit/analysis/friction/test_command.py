@@ -124,7 +124,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         monkeypatch.setattr(command, name, asked_for)
 
     stand_in("predict", PREDICTION)
-    stand_in("voltage_for_friction", (12.0, 1.4e-6))
+    stand_in("wanted_friction", "the wanted")
     for name in ("model_curves", "friction_map", "_ripple", "tell_apart"):
         stand_in(name, f"the {name}")
     stand_in("interval_or_reason", ("the interval", "a reason"))
@@ -150,7 +150,10 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     more = {"voltage": 100.0, "vibration_amplitude": None, "position": 1e-3}
     assert parts == [
         ("predict", (thin,), point | more | {"speed": 0.1}),
-        ("voltage_for_friction", (thin, 0.6), point | {"speed": 0.1}),
+        (
+            "wanted_friction", (thin, PREDICTION, 0.6),
+            {"samples": 16, "seed": 9, "progress": said},
+        ),
         ("model_curves", (PREDICTION,), {}),
         ("friction_map", (PREDICTION, 7), {}),
         (
@@ -166,7 +169,7 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     assert (found.curves, found.map, found.uncertainty, found.ripple) == (
         "the model_curves", "the friction_map", "the interval", "the _ripple",
     )  # fmt: skip
-    assert found.wanted == Wanted(0.6, 1.4e-6, 12.0)
+    assert found.wanted == "the wanted"
     assert found.tapping == Tapping(0.1, 0.6)
     assert (found.verdict, found.apart) == ("the verdict", "the tell_apart")
     assert told == [
@@ -214,7 +217,10 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
             "relative_friction_error": 1e-3,
         },
         "heat": None, "standing_wave_ripple": 0.07,
-        "wanted": {"relative_friction": 0.6, "vibration_amplitude_m": 1.4e-6, "voltage_V": 12.0},
+        "wanted": {
+            "relative_friction": 0.6, "vibration_amplitude_m": 1.4e-6, "voltage_V": 12.0,
+            "why_not": "", "why_no_interval": "",
+        },
         "intermittent_contact": {"speed_m_per_s": 0.08, "relative_friction": 0.7},
         # In the middle of 0.8 at 1 µm and 0.4 at 3 µm.
         "models": [{"model": "paper2008", "relative_friction": pytest.approx(0.6)}],

@@ -16,8 +16,9 @@ from matplotlib.colors import to_hex
 from squeezefilm.analysis.curves import ModelCurve
 from squeezefilm.analysis.draws import Refusals
 from squeezefilm.analysis.friction.command import FrictionMap
+from squeezefilm.analysis.influences import Influence
 from squeezefilm.analysis.parameters import Knowledge, Parameter
-from squeezefilm.analysis.uncertainty import Influence, UncertainFriction
+from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.display import load_display

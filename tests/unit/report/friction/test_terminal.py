@@ -15,9 +15,10 @@ from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve
 from squeezefilm.analysis.draws import Refusals
 from squeezefilm.analysis.friction.command import Tapping, Wanted
+from squeezefilm.analysis.influences import GroupInfluence, Influence
 from squeezefilm.analysis.model_choices import Choice, Option
 from squeezefilm.analysis.parameters import Parameter
-from squeezefilm.analysis.uncertainty import GroupInfluence, Influence, UncertainFriction
+from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.analysis.verdict import Finding
 from squeezefilm.chain.touch import Touch
 from squeezefilm.distributions import Uniform
@@ -133,7 +134,7 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "Tangential force 43.2 mN sliding steadily",
         "A softer, a stiffer pad 0.410, 0.490 each ridge at its own balance, all at one mean gap",
         "Ripple of the wave 1.2 % every 9.88 mm, at constant amplitude",
-        "For µ′/µ = 0.7 12.3 V 1.23 µm",
+        "For µ′/µ = 0.7 12.3 V 1.23 µm, as described",
         *WARM_LINES,
         "The same finger by other models",
         "model µ′/µ",

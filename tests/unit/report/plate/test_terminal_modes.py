@@ -10,7 +10,7 @@ import pytest
 from tests.unit.report.printed import printed
 
 from squeezefilm.analysis.plate.solved import ModeRow
-from squeezefilm.plate.sound import GUIDANCE
+from squeezefilm.plate.exposure import GUIDANCE
 from squeezefilm.report.kit.terminal import plain_console
 from squeezefilm.report.plate.terminal import show_guidance, show_modes, sound_rows
 

@@ -12,7 +12,8 @@ import pytest
 
 from squeezefilm import config
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.plate.sound import SoundField, exposure_guidance
+from squeezefilm.plate.exposure import exposure_guidance
+from squeezefilm.plate.sound import SoundField
 from squeezefilm.study.conduct.sessions import (
     SessionConditions,
     begin_session,

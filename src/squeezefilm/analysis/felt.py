@@ -1,0 +1,202 @@
+"""The finest grating that is felt, beside the finest that survives the resonator, by finger speed.
+
+As described, and over the draws of a friction's interval: of each draw µ′/µ over amplitude and
+speed, its amplitude, envelope, force and friction without vibration. The observer's senses stay as
+they are: an interval says what the display leaves open, not how people differ.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, outcome_of
+from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
+from squeezefilm.analysis.uncertainty import sobol_points
+from squeezefilm.chain.prediction import Prediction
+from squeezefilm.display import Display
+from squeezefilm.errors import SqueezefilmError
+from squeezefilm.perception.felt import (
+    Rubbed,
+    finest_felt,
+    grating_evidence,
+    switched_amplitude,
+    tried_periods,
+)
+from squeezefilm.perception.observer import Observer, load_observer
+from squeezefilm.progress import SayProgress
+from squeezefilm.render.fidelity.survival import EXPLORING_SPEEDS
+from squeezefilm.render.resonator.envelope import envelope_time_constant, finest_period
+
+DRAWS = 64
+_KNOTS = 17
+
+Felt = Callable[[si.MetreArray], si.DimensionlessArray]
+
+
+@dataclass(frozen=True)
+class FeltAt:
+    """At one finger speed (m/s): the finest period (m) that keeps 90 % of its swing of amplitude
+    (`survives`), the finest that is `felt` as described (None: none), and the `interval` of that
+    over the draws (None at an end where so many of them have none; None without draws). `never` is
+    the share of the draws in which no period is felt."""
+
+    speed: si.MetrePerSecond
+    survives: si.Metre
+    felt: si.Metre | None
+    interval: tuple[si.Metre | None, si.Metre | None] | None = None
+    never: si.Dimensionless | None = None
+
+
+@dataclass(frozen=True)
+class FeltGratings:
+    """The finest square grating that is felt, by speed: friction switched between that without
+    vibration and that at the display's amplitude. `observer` felt it, with a d′ of `criterion`;
+    `why_no_interval` says why there is none."""
+
+    observer: str
+    criterion: si.Dimensionless
+    at: tuple[FeltAt, ...]
+    level: si.Dimensionless = LEVEL
+    draws: int = 0
+    why_no_interval: str = ""
+    model: str = "steady strokes, first-order envelope, the pad's three constants; senses assumed"
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers for ``--json``, with units in the keys."""
+        return {
+            "observer": self.observer,
+            "detection_criterion_d_prime": self.criterion,
+            "interval_level": self.level,
+            "draws": self.draws,
+            "why_no_interval": self.why_no_interval,
+            "model": self.model,
+            "by_speed": [
+                {
+                    "finger_speed_m_per_s": one.speed,
+                    "finest_period_survives_m": one.survives,
+                    "finest_period_felt_m": one.felt,
+                    "finest_period_felt_interval_m": one.interval and list(one.interval),
+                    "share_never_felt": one.never,
+                }
+                for one in self.at
+            ],
+        }
+
+
+def felt_gratings(
+    display: Display,
+    prediction: Prediction,
+    observer: Observer | None = None,
+    *,
+    draws: int = DRAWS,
+    seed: int = 1,
+    progress: SayProgress | None = None,
+) -> FeltGratings | None:
+    """The finest gratings that are felt where a prediction was made, at `EXPLORING_SPEEDS`.
+
+    `draws` is a power of two (0: no interval); the observer is the preset "fingertip" if none is
+    given. None where nothing vibrates. Raises what the friction's law raises at the amplitude.
+    """
+    p = prediction
+    if p.vibration_amplitude == 0 or p.relative_friction == 1:
+        return None
+    senses = observer or load_observer()
+    tau = p.envelope_time_constant
+
+    def described(
+        amplitude: si.MetreArray, speed: si.MetrePerSecond = 0.0
+    ) -> si.DimensionlessArray:
+        return np.asarray(p.friction(amplitude, np.full(amplitude.shape, speed)))
+
+    base, pad = p.friction_coefficient * p.normal_force, display.finger.fingerpad
+    nominal = []
+    for speed in EXPLORING_SPEEDS:
+        law = functools.partial(described, speed=speed)
+        nominal.append(_finest(senses, tau, p.vibration_amplitude, law, Rubbed(base, pad, speed)))
+    found, why = (None, "no draws were asked for")
+    if draws and p.touch.sharing is not None:
+        found, why = _drawn(display, p, senses, draws, seed, progress or (lambda _: None))
+    rows = []
+    for k, speed in enumerate(EXPLORING_SPEEDS):
+        column = None if found is None else found[:, k]
+        low, _, high = (np.nan,) * 3 if column is None else ends(column)
+        rows.append(
+            FeltAt(
+                speed,
+                float(finest_period(speed, tau)),
+                _known(nominal[k]),
+                None if column is None else (_known(low), _known(high)),
+                None if column is None else float(np.mean(np.isinf(column))),
+            )
+        )
+    count = 0 if found is None else draws
+    return FeltGratings(senses.name, senses.detection_criterion, tuple(rows), LEVEL, count, why)
+
+
+def _finest(
+    senses: Observer, tau: si.Second, high: si.Metre, law: Felt, rubbed: Rubbed
+) -> si.Metre:
+    period = tried_periods()
+    amplitude = switched_amplitude(period / rubbed.speed, tau, high)
+    return finest_felt(senses, period, grating_evidence(senses, period, amplitude, law, rubbed))
+
+
+@as_drawn()
+def _drawn(
+    display: Display,
+    p: Prediction,
+    senses: Observer,
+    count: int,
+    seed: int,
+    tell: SayProgress,
+) -> tuple[si.MetreArray | None, str]:
+    """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
+    none is, NaN where the draw is refused; None with the reason where too many are."""
+    mixture = Mixture(display, p, driven=p.voltage is not None)
+    scale = FreeAmplitude(display, p)
+    found = np.full((count, len(EXPLORING_SPEEDS)), np.nan)
+    points = sobol_points(mixture, count, seed)
+    for number, draw in enumerate(mixture.draws(points)):
+        if number % max(count // 20, 1) == 0:
+            tell(f"what is felt of draw {number + 1} of {count}")
+        try:
+            found[number] = _felt_of(mixture, draw, scale(draw.display), senses)
+        except SqueezefilmError:
+            continue
+    lost = float(np.mean(np.isnan(found[:, 0])))
+    if lost > MOST_REFUSED:
+        return None, f"{lost:.1%} of the draws are refused, more than {MOST_REFUSED:.0%}"
+    return found, ""
+
+
+def _felt_of(mixture: Mixture, draw: Draw, free: si.Metre, senses: Observer) -> list[si.Metre]:
+    law, high = mixture.law(draw), outcome_of(mixture, draw, free).amplitude
+    knots = high * np.linspace(0.0, 1.0, _KNOTS) ** 2
+    speeds = np.array(EXPLORING_SPEEDS)
+    own, tied = (law.over_speeds(knots, speeds, one) for one in ("own", "one-gap"))
+    friction = draw.skin_compliance * own + (1 - draw.skin_compliance) * tied
+    mode = mixture.mode(draw)
+    tau = float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
+    base = law.friction_coefficient * draw.normal_force
+    pad = draw.display.finger.fingerpad
+    found = []
+    for speed, row in zip(EXPLORING_SPEEDS, friction, strict=True):
+        known = functools.partial(_tabulated, knots=knots, row=row)
+        found.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
+    return found
+
+
+def _tabulated(
+    amplitude: si.MetreArray, knots: si.MetreArray, row: si.DimensionlessArray
+) -> si.DimensionlessArray:
+    return np.asarray(np.interp(amplitude, knots, row))
+
+
+def _known(value: si.Metre) -> si.Metre | None:
+    return float(value) if np.isfinite(value) else None
