@@ -72,9 +72,7 @@ def require_plausible(
         raise ConfigError(wrong[0].text, file=file, line=line, key=wrong[0].key)
     if wrong:
         lines = [f"  {one.sentence}{_line(text, one)}" for one in wrong]
-        raise ConfigError(
-            f"{len(wrong)} values cannot be right:\n" + "\n".join(lines), file=file
-        )
+        raise ConfigError(f"{len(wrong)} values cannot be right:\n" + "\n".join(lines), file=file)
     return tuple(one.sentence for one in found)
 
 
@@ -121,7 +119,9 @@ def _said(display: Display, bound: Bound, path: Path, value: float) -> Implausib
     meant = _meant(display, bound, path, value) if own else _meant_of_part(display, path)
     if meant:
         said += f" Did you mean {meant}?"
-    return Implausible(key, path, said + (" Mend the value" if refused and not meant else ""), refused)
+    return Implausible(
+        key, path, said + (" Mend the value" if refused and not meant else ""), refused
+    )
 
 
 def _meant(display: Display, bound: Bound, path: Path, value: float) -> str:
@@ -143,5 +143,3 @@ def _meant_of_part(display: Display, path: Path) -> str:
     if bound is None or not isinstance(value, float) or bound.is_usual(value):
         return ""
     return _meant(display, bound, path, value)
-
-

@@ -196,9 +196,7 @@ def _of_expected(display: Display, seen: Expectation | None, volts: si.Volt) -> 
         amplitude = volts * seen.amplitude_per_volt
         yield Ratio("expected amplitude", ("drive", "voltage"), amplitude)
     if seen.power_per_mass is not None:
-        yield Ratio(
-            "expected power per mass", ("drive", "voltage"), volts**2 * seen.power_per_mass
-        )
+        yield Ratio("expected power per mass", ("drive", "voltage"), volts**2 * seen.power_per_mass)
 
 
 def _of_finger(display: Display) -> Iterator[Ratio]:
@@ -217,5 +215,7 @@ def _of_gas(gas: Gas) -> Iterator[Ratio]:
     # Kinetic theory with Maxwell's viscosity: Bird 1994, 10.1093/oso/9780198561958.001.0001.
     kinetic = gas.viscosity * math.sqrt(math.pi / (2 * gas.density * pressure))
     yield Ratio(
-        "mean free path over the kinetic one", ("gas", "mean_free_path"), gas.mean_free_path / kinetic
+        "mean free path over the kinetic one",
+        ("gas", "mean_free_path"),
+        gas.mean_free_path / kinetic,
     )
