@@ -171,8 +171,8 @@ def analyze(
     """The whole analysis of a display at one working point.
 
     Arguments and errors are those of `prediction.predict`; `samples` (0: none) is the base of the
-    uncertainty's design, see `uncertain_friction`; `progress` is told each step. With a `budget` (s)
-    half of it bounds the plate's solve, and the interval and the other films are left out where
+    uncertainty's design, see `uncertain_friction`; `progress` is told each step. With a `budget`
+    (s) half of it bounds the plate's solve, and the interval and the other films are left out where
     nothing is left for them: what is missing is said.
     """
     if budget is not None:

@@ -41,8 +41,8 @@ class Bound:
 
     @property
     def usual_text(self) -> str:
-        """The usual range in words: ``"900 kg/m3 to 2e+04 kg/m3"``."""
-        low, high = (si.format_quantity(end, self.unit) for end in self.usual)
+        """The usual range in words: ``"900 kg/m³ to 20 000 kg/m³"``."""
+        low, high = (shown(end, self.unit) for end in self.usual)
         if self.usual[1] == inf:
             return f"{low} or more"
         return f"{high} or less" if self.usual[0] in (0, -inf) else f"{low} to {high}"
@@ -54,6 +54,31 @@ class Bound:
         # A rounding of units is no slip.
         slack = 1e-9 * abs(size)
         return span[0] - slack <= size <= span[1] + slack
+
+
+# Units that people do not think in, and what they do, with the scale.
+_READ_AS = {"W/kg": (1e-3, "W/g"), "V/m": (1e-6, "kV/mm")}
+_MARKS = {" um": " µm", "kg/m3": "kg/m³", "m2/N": "m²/N", "C/m2": "C/m²", "s2/m2": "s²/m²"}
+
+
+def shown(value: float, unit: si.Unit) -> str:
+    """A value (SI) for people: ``"20 000 kg/m³"``, ``"30 µm"``, ``"0.4 W/g"``."""
+    if unit.symbol in _READ_AS:
+        scale, name = _READ_AS[unit.symbol]
+        return f"{_plain(value * scale)} {name}"
+    text = si.format_quantity(value, unit, 3)
+    if "e" in text.partition(" ")[0]:
+        text = " ".join([_plain(value), *([unit.symbol] if unit.symbol != "1" else [])])
+    for ascii_text, mark in _MARKS.items():
+        text = text.replace(ascii_text, mark)
+    return text
+
+
+def _plain(value: float) -> str:
+    """Three digits, with no power of ten where a few zeros will do."""
+    if 1e3 <= abs(value) < 1e7:
+        return f"{float(f'{value:.3g}'):,.0f}".replace(",", " ")
+    return f"{value:.3g}"
 
 
 @functools.cache

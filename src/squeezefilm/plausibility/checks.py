@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,8 +11,8 @@ from squeezefilm import quantities as si
 from squeezefilm.config.lines import locate
 from squeezefilm.display import Display
 from squeezefilm.errors import ConfigError
-from squeezefilm.plausibility.bounds import Bound, bounds
-from squeezefilm.plausibility.ratios import Path, ratios
+from squeezefilm.plausibility.bounds import Bound, bounds, shown
+from squeezefilm.plausibility.ratios import Path, Ratio, ratios
 
 # Slips of unit that people make: milli and kilo, micro and mega, centimetres, nano and giga; in
 # the order in which they are offered.
@@ -43,18 +43,34 @@ def implausibilities(display: Display, voltage: si.Volt | None = None) -> tuple[
     not usual, those that cannot be right first.
 
     What is usual stands in ``usual.toml`` with its reasons. Only closed forms are computed, in a
-    few milliseconds. One key is told of once.
+    few milliseconds. One key is told of once, and where single values cannot be right their ratios,
+    which follow from them, are not told.
     """
-    found: dict[str, Implausible] = {}
-    for of, path, value in _compared(display, voltage):
-        bound = bounds()[of]
-        if bound.is_usual(value):
-            continue
-        one = _said(display, bound, path, value)
-        known = found.get(one.key)
-        if known is None or (one.refused and not known.refused):
-            found[one.key] = one
+    known = bounds()
+    single = [
+        Ratio(of, path, value)
+        for owner, path, value in _values(display, ())
+        if (of := f"{owner}.{path[-1]}") in known
+    ]
+    found = _outside(display, single)
+    if not any(one.refused for one in found.values()):
+        for key, one in _outside(display, ratios(display, voltage)).items():
+            if key not in found or (one.refused and not found[key].refused):
+                found[key] = one
     return tuple(sorted(found.values(), key=lambda one: not one.refused))
+
+
+def _outside(display: Display, values: Iterable[Ratio]) -> dict[str, Implausible]:
+    """Of these values what is not usual, by key."""
+    found: dict[str, Implausible] = {}
+    for value in values:
+        bound = bounds()[value.of]
+        if bound.is_usual(value.value):
+            continue
+        one = _said(display, bound, value)
+        if one.key not in found or (one.refused and not found[one.key].refused):
+            found[one.key] = one
+    return found
 
 
 def require_plausible(
@@ -81,15 +97,6 @@ def _line(text: str, one: Implausible) -> str:
     return "" if line is None else f" (line {line})"
 
 
-def _compared(display: Display, voltage: si.Volt | None) -> Iterator[tuple[str, Path, float]]:
-    known = bounds()
-    for owner, path, value in _values(display, ()):
-        of = f"{owner}.{path[-1]}"
-        if of in known:
-            yield of, path, value
-    yield from ratios(display, voltage)
-
-
 def _values(owner: Any, path: Path) -> Iterator[tuple[str, Path, float]]:
     """Every number of a description with the class that holds it and its path."""
     if isinstance(owner, tuple):
@@ -108,23 +115,24 @@ def _values(owner: Any, path: Path) -> Iterator[tuple[str, Path, float]]:
             yield from _values(value, (*path, field.name))
 
 
-def _said(display: Display, bound: Bound, path: Path, value: float) -> Implausible:
+def _said(display: Display, bound: Bound, value: Ratio) -> Implausible:
+    path = value.path
     key = ".".join(str(part + 1) if isinstance(part, int) else part for part in path)
-    shown = si.format_quantity(value, bound.unit)
+    told = shown(value.value if value.told is None else value.told, bound.unit)
     own = bound.of.rpartition(".")[2] == path[-1]
-    refused = not bound.is_possible(value)
-    what = shown if own else f"the {bound.of} is {shown}"
+    refused = not bound.is_possible(value.value)
     verb = "cannot be right" if refused else "is doubtful"
-    said = f"{what}, which {verb}: usual is {bound.usual_text} ({bound.reason})."
-    meant = _meant(display, bound, path, value) if own else _meant_of_part(display, path)
+    said = f"{told} {verb}" if own else f"the {bound.of} is {told}, which {verb}"
+    said += f": usual is {bound.usual_text} ({bound.reason})."
+    meant = _meant(bound, value.value) if own else _meant_of_part(display, path)
     if meant:
         said += f" Did you mean {meant}?"
-    return Implausible(
-        key, path, said + (" Mend the value" if refused and not meant else ""), refused
-    )
+    elif refused:
+        said += " Mend what is wrong."
+    return Implausible(key, path, said, refused)
 
 
-def _meant(display: Display, bound: Bound, path: Path, value: float) -> str:
+def _meant(bound: Bound, value: float) -> str:
     """The value in another unit that would be usual, in words; empty where there is none."""
     for factor in _SLIPS:
         if bound.is_usual(value * factor) and value != 0:
@@ -142,4 +150,4 @@ def _meant_of_part(display: Display, path: Path) -> str:
     value = getattr(owner, str(path[-1]), None)
     if bound is None or not isinstance(value, float) or bound.is_usual(value):
         return ""
-    return _meant(display, bound, path, value)
+    return _meant(bound, value)

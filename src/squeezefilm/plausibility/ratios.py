@@ -22,11 +22,15 @@ Path = tuple[str | int, ...]
 
 
 class Ratio(NamedTuple):
-    """A value (SI) that the bound `of` holds for, at the key `path` of the description."""
+    """A value (SI) that the bound `of` holds for, at the key `path` of the description.
+
+    `told` is the estimate that people are told, where a doubt is taken off what is compared.
+    """
 
     of: str
     path: Path
     value: float
+    told: float | None = None
 
 
 def ratios(display: Display, voltage: si.Volt | None = None) -> Iterator[Ratio]:
@@ -181,17 +185,11 @@ def _of_expected(display: Display, seen: Expectation | None, volts: si.Volt) -> 
     """What a closed estimate says of the vibration, where it says it well enough to doubt it."""
     if seen is None:
         return
-    at: Path = ("actuator", "thickness")
-    if isinstance(display.actuator, AnnularStator):
-        at = ("actuator", "wavelength")
-    yield Ratio("expected frequency", at, seen.nearest_frequency)
+    by_kind = {"rectangular_plate": "nodal_lines", "disc": "nodal_circles"}
+    at: Path = ("actuator", by_kind.get(display.actuator.type, "resonance_frequency"))
+    yield Ratio("expected frequency", at, seen.nearest_frequency, seen.frequency)
     if seen.half_wavelength_over_thickness is not None:
-        lines = "nodal_lines" if isinstance(display.actuator, RectangularPlate) else "nodal_circles"
-        yield Ratio(
-            "half wave over plate thickness",
-            ("actuator", lines),
-            seen.half_wavelength_over_thickness,
-        )
+        yield Ratio("half wave over plate thickness", at, seen.half_wavelength_over_thickness)
     if seen.amplitude_per_volt is not None:
         amplitude = volts * seen.amplitude_per_volt
         yield Ratio("expected amplitude", ("drive", "voltage"), amplitude)
