@@ -6,11 +6,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from contextlib import AbstractContextManager
-    from pathlib import Path
-    from typing import Literal
-
     from numpy.typing import ArrayLike
-
+    from pathlib import Path
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.film.command import FilmAnswer
     from squeezefilm.analysis.friction.command import FrictionAnalysis
@@ -21,8 +18,7 @@ if TYPE_CHECKING:
     from squeezefilm.chain.friction_models import FrictionModel
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.chain.rendered_texture import RenderAnalysis
-    from squeezefilm.display import Display, NamedDisplay
-    from squeezefilm.display import load_display as load_display
+    from squeezefilm.display import Display, NamedDisplay, load_display as load_display
     from squeezefilm.errors import SqueezefilmError as SqueezefilmError
     from squeezefilm.film.periodic.profile import GapFunction, GapProfile
     from squeezefilm.formats.trajectories import NamedMotion
@@ -30,14 +26,10 @@ if TYPE_CHECKING:
     from squeezefilm.plate.working_mode import PlateTheory
     from squeezefilm.presets import (
         display_names as display_names,
-    )
-    from squeezefilm.presets import (
         study_names as study_names,
-    )
-    from squeezefilm.presets import (
         texture_names as texture_names,
     )
-    from squeezefilm.progress import SayProgress
+    from squeezefilm.progress import Pace, SayProgress
     from squeezefilm.quantities import (
         Dimensionless,
         FloatArray,
@@ -55,22 +47,15 @@ if TYPE_CHECKING:
     from squeezefilm.render.motion.stroke import Stroke as _Stroke
     from squeezefilm.render.texture.coordinate import Coordinate, Length, Place
     from squeezefilm.render.texture.gates import speed as speed
-    from squeezefilm.render.texture.image import Image as _Image
-    from squeezefilm.render.texture.image import Share
+    from squeezefilm.render.texture.image import Image as _Image, Share
     from squeezefilm.render.texture.levels import (
         Amplitude as _Amplitude,
-    )
-    from squeezefilm.render.texture.levels import (
         FrictionShare,
-        VibrationAmplitude,
-    )
-    from squeezefilm.render.texture.levels import (
         RelativeFriction as _RelativeFriction,
+        VibrationAmplitude,
     )
     from squeezefilm.render.texture.noise import (
         Noise as _Noise,
-    )
-    from squeezefilm.render.texture.noise import (
         Octaves,
         Persistence,
         Seed,
@@ -79,61 +64,41 @@ if TYPE_CHECKING:
     from squeezefilm.render.texture.pattern import Pattern
     from squeezefilm.render.texture.shapes import (
         Band as _Band,
-    )
-    from squeezefilm.render.texture.shapes import (
         Bump as _Bump,
-    )
-    from squeezefilm.render.texture.shapes import (
         SineWave as _SineWave,
-    )
-    from squeezefilm.render.texture.shapes import (
         SquareWave as _SquareWave,
     )
     from squeezefilm.report.subjects import (
         plot as plot,
-    )
-    from squeezefilm.report.subjects import (
         write_mode as write_mode,
-    )
-    from squeezefilm.report.subjects import (
         write_report as write_report,
     )
     from squeezefilm.session.play.plan import PlayView
     from squeezefilm.session.record.trace import read_trace as read_trace
     from squeezefilm.study.adaptive.bayesian import (
         AdaptiveDesign as _AdaptiveDesign,
-    )
-    from squeezefilm.study.adaptive.bayesian import (
         BayesianAdaptive as BayesianAdaptive,
-    )
-    from squeezefilm.study.adaptive.bayesian import (
         Interest,
     )
     from squeezefilm.study.conduct.trial_by_trial import Examiner
     from squeezefilm.study.design.plan import StudyPlan
-    from squeezefilm.study.design.study_design import NamedDesign
-    from squeezefilm.study.design.study_design import load_design as load_design
+    from squeezefilm.study.design.study_design import NamedDesign, load_design as load_design
     from squeezefilm.study.identification.recorded import analyze_study as analyze_study
     from squeezefilm.study.psychometric.fit import PsychometricFit
     from squeezefilm.study.psychometric.function import (
         Axis,
-        Shape,
-    )
-    from squeezefilm.study.psychometric.function import (
         PsychometricFunction as _PsychometricFunction,
+        Shape,
     )
     from squeezefilm.study.psychometric.prior import PsychometricPrior as PsychometricPrior
     from squeezefilm.study.simulated.chain_tables import ChainTables
     from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.texture_file import (
         NamedTexture,
-    )
-    from squeezefilm.texture_file import (
         load_texture as load_texture,
-    )
-    from squeezefilm.texture_file import (
         save_texture as save_texture,
     )
+    from typing import Literal
     def replaced(display: NamedDisplay | str | Path, values: Mapping[str, float | str]) -> Display:
         """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``."""
     def predict(
@@ -149,6 +114,7 @@ if TYPE_CHECKING:
         model: FrictionModel | None = ...,
         speed: MetrePerSecond | str | None = ...,
         strict: bool = ...,
+        pace: Pace = ...,
     ) -> Prediction:
         """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz)."""
     def voltage_for_friction(
@@ -177,6 +143,7 @@ if TYPE_CHECKING:
         strict: bool = ...,
         samples: int = ...,
         progress: SayProgress | None = ...,
+        budget: Second | str | None = ...,
     ) -> Analysis:
         """The whole analysis of a display at one working point."""
     def analyze_friction(
@@ -208,6 +175,7 @@ if TYPE_CHECKING:
         sensitivity: bool = ...,
         track: TrackRequest | None = ...,
         progress: SayProgress | None = ...,
+        budget: Second | str | None = ...,
     ) -> PlateAnalysis | RingAnalysis:
         """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's"""
     def solve_film(

@@ -180,19 +180,29 @@ def read_option(text: str | None, name: str, unit: str) -> float | None:
     return value
 
 
-def to_be_solved(target: str, voltage: str | None = None) -> Display:
+def to_be_solved(
+    target: str,
+    voltage: str | None = None,
+    *,
+    amplitude: str | None = None,
+    theory: str | None = None,
+    quiet: bool = False,
+) -> Display:
     """The display that a verb will solve, refused before any work where it cannot be right.
 
-    What is doubtful of it, what to expect and how long that takes is told on standard error.
-    Raises what `foreseen` raises.
+    What is doubtful of it, what to expect and how long its solve takes (where a `theory` does not
+    go without) is told on standard error; `quiet` as in `working`. A vibration of a given
+    `amplitude` needs no voltage. Raises what `foreseen` raises.
     """
     from squeezefilm.plausibility.foreseen import foreseen
 
-    seen = foreseen(target, read_option(voltage, "voltage", "V"))
-    for doubt in seen.doubts:
-        typer.echo(f"doubtful: {doubt}", err=True)
-    if seen.sentence:
-        typer.echo(seen.sentence, err=True)
+    volts = read_option(voltage, "voltage", "V") if amplitude is None else 0.0
+    seen = foreseen(target, volts)
+    if sys.stderr.isatty() or not quiet:
+        for doubt in seen.doubts:
+            typer.echo(f"doubtful: {doubt}", err=True)
+        if seen.sentence and theory in (None, "solid"):
+            typer.echo(seen.sentence, err=True)
     return seen.display
 
 

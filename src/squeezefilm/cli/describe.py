@@ -99,7 +99,13 @@ def analyze(asked: AnalyzeOptions) -> None:
     from squeezefilm.analysis.analyze import analyze as run
     from squeezefilm.report.kit import terminal
 
-    display = to_be_solved(asked.target, asked.voltage)
+    display = to_be_solved(
+        asked.target,
+        asked.voltage,
+        amplitude=asked.vibration_amplitude,
+        theory=asked.theory,
+        quiet=asked.as_json,
+    )
     with working(asked.as_json) as step:
         result = run(display, **given(asked, leave="target out as_json"), progress=step)
         written = None
@@ -157,7 +163,9 @@ def friction(asked: FrictionOptions) -> None:
     from squeezefilm.analysis.friction.command import analyze_friction
     from squeezefilm.report.friction.terminal import show_friction
 
-    display = to_be_solved(asked.target, asked.voltage)
+    display = to_be_solved(
+        asked.target, asked.voltage, amplitude=asked.vibration_amplitude, quiet=asked.as_json
+    )
     with working(asked.as_json) as step:
         result = analyze_friction(
             display, **given(asked, leave="target out as_json"), progress=step
@@ -270,7 +278,7 @@ def plate(asked: PlateOptions) -> None:
     from squeezefilm.analysis.plate.tracking import parse_track
     from squeezefilm.report.plate.terminal import show_plate
 
-    display, out, vtu = to_be_solved(asked.target), asked.out, asked.vtu
+    display, out, vtu = to_be_solved(asked.target, quiet=asked.as_json), asked.out, asked.vtu
     budget = read_option(asked.budget, "budget", "s")
     mode = None if asked.mode is None else parse_mode(asked.mode)
     band = None if asked.band is None else parse_band(asked.band)

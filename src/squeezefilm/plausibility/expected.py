@@ -44,9 +44,8 @@ class Expectation:
     def nearest_frequency(self) -> si.Hertz:
         """The frequency within the estimate's doubt that is nearest to what displays work at."""
         low, high = _USUAL_BAND
-        return max(
-            min(max(self.frequency, low), self.frequency * self.off), self.frequency / self.off
-        )
+        wanted = min(max(self.frequency, low), high)
+        return min(max(wanted, self.frequency / self.off), self.frequency * self.off)
 
     @property
     def sentence(self) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from verification.random_plates import SUBSTRATES, random_plate
+from tests.verification.random_plates import SUBSTRATES, random_plate
 
 from squeezefilm import presets
 from squeezefilm.display import Display, load_display
