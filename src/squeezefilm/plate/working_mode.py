@@ -109,8 +109,9 @@ def working_mode(
 
     A plate is solved in three dimensions (see `solid_mode`), or taken as a beam of `cross_section`
     (see `beam_response` for its range and error); a disc is solved by Fourier harmonics; a stator
-    is taken as measured, linear in the voltage. `pace` says how long a solid may take. Raises `InputError` for another theory or a disc's
-    mode that crosses no two nodal lines, and what the solvers raise.
+    is taken as measured, linear in the voltage. `pace` says how long a solid may take. Raises
+    `InputError` for another theory or a disc's mode that crosses no two nodal lines, and what the
+    solvers raise.
     """
     if isinstance(actuator, AnnularStator):
         return WorkingMode(

@@ -10,6 +10,7 @@ from tests.verification.random_plates import SUBSTRATES, random_plate
 from squeezefilm import presets
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
+from squeezefilm.plate.beam.response import beam_response
 
 Path = tuple[str | int, ...]
 # Signs and places are no sizes.
@@ -54,18 +55,23 @@ def displays() -> list[Display]:
 
 def plausible_display(rng: np.random.Generator) -> Display:
     """A preset's surroundings with a plate such as is built: strips of one size, one or two faces,
-    of metal or glass, glued or not, driven with some volts per mm of ceramic."""
+    of metal or glass, glued or not, working above what is heard, and driven to a few µm with no
+    more than 20 V per mm of ceramic, as far as a beam says so."""
     base = load_display("biet2008-plate")
     while True:
         try:
             plate = random_plate(int(rng.integers(1_000_000)))
+            plate = dataclasses.replace(
+                plate,
+                substrate=SUBSTRATES[int(rng.integers(len(SUBSTRATES)))],
+                quality_factor=float(rng.uniform(20, 400)),
+            )
+            beam = beam_response(plate)
         except InputError:
             continue
-        plate = dataclasses.replace(
-            plate,
-            substrate=SUBSTRATES[int(rng.integers(len(SUBSTRATES)))],
-            quality_factor=float(rng.uniform(20, 400)),
-        )
-        field = rng.uniform(5e3, 20e3)
-        drive = dataclasses.replace(base.drive, voltage=field * plate.ceramic_thickness)
+        if not 25e3 < beam.mode.frequency < 150e3 or beam.amplitude_per_volt == 0:
+            continue
+        enough = rng.uniform(0.5e-6, 3e-6) / beam.amplitude_per_volt
+        most = 20e3 * plate.ceramic_thickness
+        drive = dataclasses.replace(base.drive, voltage=float(np.clip(enough, 1.0, most)))
         return dataclasses.replace(base, actuator=plate, drive=drive)

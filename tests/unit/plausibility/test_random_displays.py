@@ -141,13 +141,9 @@ def test_presets_pass_without_a_word() -> None:
         assert implausibilities(display) == (), display.name
 
 
+@pytest.mark.slow
 def test_two_hundred_plausible_plates_are_not_refused() -> None:
     doubted = [found for one in built(7, 200) if (found := implausibilities(one))]
     assert not [one for found in doubted for one in found if one.refused]
-    # What is doubted of them is true: they are heard, or move too far or are too hot at this voltage.
     texts = {one.text.partition(" is ")[0] for found in doubted for one in found}
-    assert texts <= {
-        f"the expected {what}" for what in ("frequency", "power per mass", "amplitude")
-    }
-    print(f"{len(doubted)} of 200 plausible plates are doubted")
-    assert len(doubted) < 60
+    assert len(doubted) <= 10, texts

@@ -137,8 +137,8 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
     `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. `sensitivity`
     adds what other materials and dimensions would change, `track` the modes against a parameter;
     both take a minute. `alone` in the result is the working mode solved by itself. Within a
-    `budget` (s) meshes are left coarser, with larger errors, and the other modes of the band left out, as
-    time asks. Raises `InputError` for a display without a rectangular plate or one that cannot be
+    `budget` (s) meshes are left coarser, with larger errors, and the other modes of the band left
+    out, as time asks. Raises `InputError` for a display without a rectangular plate or one that cannot be
     right (see `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and what
     `solve_modes` raises: a band with no mode, a mode that is not found.
     """

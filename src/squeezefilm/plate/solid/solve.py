@@ -54,8 +54,8 @@ def solve_modes(
     across length and width. With none of them the plate's working mode is solved. `driven_only`
     leaves out the classes of symmetry that the drive does not excite. Where the estimated error of
     a mode exceeds `tolerance` (relative) finer meshes are used, and `status` says if that was not
-    enough. `progress` is called with a text and a fraction. A mesh that would end after the `deadline`
-    is not begun: the modes are those of the last one then, with its larger error.
+    enough. `progress` is called with a text and a fraction. A mesh that would end after the
+    `deadline` is not begun: the modes are those of the last one then, with its larger error.
 
     Electrodes are shorted or driven (the same for free vibration) unless a patch says open or
     shunted: a resistor's stiffening counts in `frequencies`, its loss in `quality_factors`; shapes
