@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 SayProgress = Callable[[str], None]
 """Told in words what is being done."""
@@ -19,18 +19,28 @@ ShareProgress = Callable[[str, float], None]
 
 @dataclass(frozen=True, slots=True)
 class Deadline:
-    """A time (s, of `clock`) after which nothing more is begun."""
+    """A time (s, of `clock`) by which work must have ended.
+
+    `reserved` is what is expected to come after it (s), `slowness` how many times longer than
+    expected work takes here.
+    """
 
     ends: float
     clock: Callable[[], float] = field(default=time.monotonic, compare=False, repr=False)
+    reserved: float = 0.0
+    slowness: float = 1.0
 
     def allows(self, seconds: float) -> bool:
-        """Whether work that takes so long (s) would end in time."""
-        return self.clock() + seconds <= self.ends
+        """Whether work that is expected to take so long (s) would end in time."""
+        return self.clock() + self.slowness * (seconds + self.reserved) <= self.ends
 
     def earlier(self, seconds: float) -> Deadline:
-        """The same, so much (s) earlier."""
-        return Deadline(self.ends - seconds, self.clock)
+        """The same with time (s) reserved for what comes after."""
+        return replace(self, reserved=self.reserved + seconds)
+
+    def slower(self, slowness: float) -> Deadline:
+        """The same where work takes this many times as long as is expected of it."""
+        return replace(self, slowness=slowness)
 
 
 @dataclass(frozen=True, slots=True)

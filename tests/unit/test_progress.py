@@ -20,6 +20,10 @@ def test_a_deadline_allows_what_ends_in_time() -> None:
     assert deadline.allows(10.0)
     assert not deadline.allows(10.5)
     assert not deadline.earlier(3.0).allows(8.0)
+    assert deadline.slower(2.0).allows(5.0)
+    assert not deadline.slower(2.0).allows(5.5)
+    assert deadline.earlier(3.0).slower(2.0).allows(2.0)
+    assert not deadline.earlier(3.0).slower(2.0).allows(2.5)
     clock.now = 108.0
     assert deadline.allows(2.0)
     assert not deadline.allows(2.5)

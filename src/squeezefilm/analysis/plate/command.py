@@ -67,6 +67,7 @@ class PlateAnalysis(SolvedBody):
     sound: SoundField
     sensitivities: SensitivityTable | None = None
     tracks: ModeTracks | None = None
+    left_out: tuple[str, ...] = ()
     remarks = Remarks(
         "(estimated)",
         "largest, upper face",
@@ -192,6 +193,7 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         beam_amplitude_per_volt=beam.amplitude_per_volt,
         shear_frequency=_shear_frequency(plate, label, frequency),
         sound=sound,
+        left_out=hurry.left_out(alone, modes),
         sensitivities=plate_sensitivity(plate, label=label, progress=tell)
         if asked.sensitivity
         else None,

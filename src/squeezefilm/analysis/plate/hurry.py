@@ -65,6 +65,13 @@ class Hurry:
         before = self._before_response()
         return before is None or before.allows(band_seconds(plate, band[1]))
 
+    def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:
+        """What the budget left out of the working mode and the band's modes, in sentences."""
+        said = () if not alone.coarseness else (alone.coarseness,)
+        if self.whole is not None and modes is alone:
+            said += ("the budget left no time for the other modes of the band",)
+        return said
+
     def response_mesh(self, alone: PlateModes) -> Resolution:
         """How fine the response is meshed: as the mode, or coarser where time has run short."""
         if self.whole is None or self.size is None or self.whole.allows(self.size.response):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import time
 from typing import Annotated
 
 from squeezefilm import quantities as si
@@ -17,6 +18,7 @@ from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import (
+    CoarseModes,
     chosen_modes,
     class_fits,
     coarse_modes,
@@ -25,6 +27,7 @@ from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.mode_table import collected_modes
 from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.plate.solid.refined_modes import RefinedModes, refined_modes, with_label
+from squeezefilm.plate.solid.size import expected_seconds
 from squeezefilm.plate.solid.symmetry import Symmetry, all_classes, drive_classes
 from squeezefilm.progress import Deadline, ShareProgress
 
@@ -108,10 +111,12 @@ def _solved(
     highest = band[1] if band is not None else 1.15 * centre
     # What a coarse mesh takes for the mode may be another on a finer one: then look further.
     for nearest in _WIDTHS if mode is not None else (count,):
-        found = []
+        found, begun = [], time.monotonic()
         for number, parity in enumerate(classes):
             tell(f"coarse mesh, symmetry {_name(parity)}", _COARSE * number / len(classes))
             found.append(coarse_modes(plate, parity, centre, highest, band, nearest))
+        if deadline is not None:
+            deadline = deadline.slower(_slowness(found, time.monotonic() - begun))
         last = nearest == _WIDTHS[-1]
         try:
             chosen = chosen_modes(found, near, band, mode, count)
@@ -132,6 +137,15 @@ def _solved(
             pieces = labelled
             break
     return collected_modes(plate, pieces, tolerance, band)
+
+
+def _slowness(found: list[CoarseModes], took: si.Second) -> float:
+    """How many times as long as expected the coarse meshes took: another machine, or a busy one.
+
+    Between 1 and 4: what is compiled for the first time is no measure of the next mesh.
+    """
+    expected = sum(expected_seconds(one.solved) for one in found)
+    return min(max(1.0, took / expected), 4.0)
 
 
 def _name(parity: Symmetry) -> str:
