@@ -67,7 +67,7 @@ class PlateAnalysis(SolvedBody):
     sound: SoundField
     sensitivities: SensitivityTable | None = None
     tracks: ModeTracks | None = None
-    left_out: tuple[str, ...] = ()
+    objections: tuple[str, ...] = ()
     remarks = Remarks(
         "(estimated)",
         "largest, upper face",
@@ -139,9 +139,9 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
     adds what other materials and dimensions would change, `track` the modes against a parameter;
     both take a minute. `alone` in the result is the working mode solved by itself. Within a
     `budget` (s) meshes are left coarser, with larger errors, and the other modes of the band left
-    out, as time asks. Raises `InputError` for a display without a rectangular plate or one that cannot be
-    right (see `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and what
-    `solve_modes` raises: a band with no mode, a mode that is not found.
+    out, as time asks. Raises `InputError` for a display without a rectangular plate or one that
+    cannot be right (see `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and
+    what `solve_modes` raises: a band with no mode, a mode that is not found.
     """
     display, band, track = asked.display, asked.band, asked.track
     plate = _driven_plate(display)
@@ -193,7 +193,7 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         beam_amplitude_per_volt=beam.amplitude_per_volt,
         shear_frequency=_shear_frequency(plate, label, frequency),
         sound=sound,
-        left_out=hurry.left_out(alone, modes),
+        objections=(*require_plausible(display), *hurry.left_out(alone, modes)),
         sensitivities=plate_sensitivity(plate, label=label, progress=tell)
         if asked.sensitivity
         else None,

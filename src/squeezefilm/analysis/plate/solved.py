@@ -13,7 +13,6 @@ from squeezefilm.display import Display
 from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.heat.warming import Warming, heat_source, warming
 from squeezefilm.plate.sound import SoundField
-from squeezefilm.plausibility.checks import implausibilities
 from squeezefilm.results import Result, stamp, to_json
 
 
@@ -46,7 +45,10 @@ class Remarks:
 
 
 class SolvedBody(Result):
-    """What a solved plate, disc or stator has: its modes, the working one, response and sound."""
+    """What a solved plate, disc or stator has: its modes, the working one, response and sound.
+
+    `objections` say what of its description is doubtful, and what a budget left out.
+    """
 
     display: Display
     rows: tuple[ModeRow, ...]
@@ -60,7 +62,7 @@ class SolvedBody(Result):
     model: Any
     status: Any
     remarks: Any
-    left_out: Any = ()
+    objections: Any = ()
     _shown: ClassVar[str] = (
         "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
         "model"
@@ -82,13 +84,6 @@ class SolvedBody(Result):
             float(self.response.input_power(volts)[at]),
         )
         return warming(source, self.display.actuator, self.display.thermal)
-
-    @property
-    def doubts(self) -> tuple[str, ...]:
-        """What speaks against these numbers: values that are not usual, what a budget left out, and
-        what warmth does."""
-        unusual = tuple(one.sentence for one in implausibilities(self.display))
-        return (*unusual, *self.left_out, *self.heat.doubts)
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
@@ -116,7 +111,7 @@ class SolvedBody(Result):
             "sound_guidance": to_json(self.sound.guidance),
             "model": self.model,
             "status": self.status,
-            "warnings": list(self.doubts),
+            "objections": list(self.objections),
             "provenance": stamp(self.display),
         }
 
