@@ -38,6 +38,7 @@ class Implausible:
         return f"{self.key}: {self.text}"
 
 
+@si.checked_numbers
 def implausibilities(display: Display, voltage: si.Volt | None = None) -> tuple[Implausible, ...]:
     """Every value of a display, driven with a voltage (V, zero-to-peak; None: its own), that is
     not usual, those that cannot be right first.
@@ -73,6 +74,7 @@ def _outside(display: Display, values: Iterable[Ratio]) -> dict[str, Implausible
     return found
 
 
+@si.checked_numbers
 def require_plausible(
     display: Display, voltage: si.Volt | None = None, *, text: str = "", file: str | None = None
 ) -> tuple[str, ...]:

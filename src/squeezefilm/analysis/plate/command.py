@@ -139,9 +139,11 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
     adds what other materials and dimensions would change, `track` the modes against a parameter;
     both take a minute. `alone` in the result is the working mode solved by itself. Within a
     `budget` (s) meshes are left coarser, with larger errors, and the other modes of the band left
-    out, as time asks. Raises `InputError` for a display without a rectangular plate or one that
-    cannot be right (see `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and
-    what `solve_modes` raises: a band with no mode, a mode that is not found.
+    out, as time asks.
+
+    Raises `InputError` for a display without a rectangular plate or one that cannot be right (see
+    `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and what `solve_modes`
+    raises: a band with no mode, a mode that is not found.
     """
     display, band, track = asked.display, asked.band, asked.track
     plate = _driven_plate(display)

@@ -67,10 +67,10 @@ class Hurry:
 
     def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:
         """What the budget left out of the working mode and the band's modes, in sentences."""
-        said = () if not alone.coarseness else (alone.coarseness,)
+        said = [alone.coarseness] if alone.coarseness else []
         if self.whole is not None and modes is alone:
-            said += ("the budget left no time for the other modes of the band",)
-        return said
+            said.append("the budget left no time for the other modes of the band")
+        return tuple(said)
 
     def response_mesh(self, alone: PlateModes) -> Resolution:
         """How fine the response is meshed: as the mode, or coarser where time has run short."""

@@ -57,6 +57,7 @@ def _counted(solved: PlateModel) -> tuple[int, int]:
     return int(model.x.nodes.size), 4 * int(np.count_nonzero(kept))
 
 
+@si.checked_numbers
 def solve_size(plate: RectangularPlate, label: Label, frequency: si.Hertz) -> SolveSize:
     """The size of a solve for the mode with the nodal lines of `label`, expected near a frequency
     (Hz).
@@ -88,8 +89,12 @@ def solve_size(plate: RectangularPlate, label: Label, frequency: si.Hertz) -> So
     return SolveSize(max(unknowns, others), coarse, refined, rough, response + rough)
 
 
+@si.checked_numbers
 def band_seconds(plate: RectangularPlate, highest: si.Hertz) -> si.Second:
     """How long the coarse meshes of all classes of symmetry take up to a frequency (Hz), each
-    counted twice more to know how many modes there are (s)."""
+    counted twice more to know how many modes there are (s).
+
+    Raises what `solve_size` raises.
+    """
     meshes = [plate_model(plate, highest, COARSE, parity) for parity in all_classes(plate)]
     return 3 * sum(expected_seconds(mesh) for mesh in meshes)
