@@ -22,6 +22,7 @@ from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.lab.worker import tell
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid.working import response_frequencies, solid_mode
+from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.progress import Pace
 from squeezefilm.results import stamp, to_json
 
@@ -78,6 +79,7 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
     """
     text = point.edited()
     display = display_of(text)
+    require_plausible(display)
     if quality == "solved" and isinstance(display.actuator, RectangularPlate):
         # What takes the time, told while it is solved; it is kept for what is asked of it below.
         solid_mode(display.actuator, pace=Pace(tell=tell))
