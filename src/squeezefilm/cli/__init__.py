@@ -16,7 +16,6 @@ from squeezefilm.cli import study  # noqa: F401 # isort: skip
 from squeezefilm.cli.app import app
 from squeezefilm.errors import SqueezefilmError
 
-
 # What a shell expects of a program that Ctrl-C ended.
 _INTERRUPTED = 130
 
