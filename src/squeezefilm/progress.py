@@ -95,12 +95,12 @@ def _left(passed: float, fraction: float) -> str:
         return ""
     left = passed * (1 - fraction) / fraction
     share = f"{100 * fraction:.0f} %"
-    return f" ({share})" if left < _TOO_SHORT else f" ({share}, about {duration(left)} left)"
+    return f" ({share})" if left < _TOO_SHORT else f" ({share}, {about(left)} left)"
 
 
-def duration(seconds: float) -> str:
-    """A time for people: ``"12 s"``, ``"3 min"``, ``"2 h"``."""
+def about(seconds: float) -> str:
+    """An estimated time for people: ``"about 12 s"``, ``"about 3 min"``, ``"about 2 h"``."""
     for unit, size in (("h", 3600.0), ("min", 60.0)):
         if seconds >= 2 * size:
-            return f"{seconds / size:.0f} {unit}"
-    return f"{seconds:.0f} s" if seconds >= 1 else "less than 1 s"
+            return f"about {seconds / size:.0f} {unit}"
+    return f"about {seconds:.0f} s" if seconds >= 1 else "less than 1 s"

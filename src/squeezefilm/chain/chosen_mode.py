@@ -31,8 +31,8 @@ def chosen_mode(
         mode = working_mode(actuator, "solid", pace=pace)
     except OutOfTimeError as error:
         return working_mode(actuator, "timoshenko"), (
-            f"{error}; the numbers are those of a beam, whose frequency is some 3 % high where "
-            "ceramics cover the plate and rough elsewhere",
+            f"{error}; the numbers are those of a beam, whose frequency lies mostly within 30 % "
+            "of the solved one (on 46 of 49 random plates; once off by a factor of two)",
         )
     except InputError as error:
         return working_mode(actuator, "timoshenko"), (

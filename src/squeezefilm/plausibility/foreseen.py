@@ -14,7 +14,7 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.size import SolveSize, solve_size
 from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.plausibility.expected import Expectation, expectation
-from squeezefilm.progress import duration
+from squeezefilm.progress import about
 from squeezefilm.regular_file import read_regular_text
 
 
@@ -38,7 +38,7 @@ class Foreseen:
             return said
         return (
             f"{said}; solving it in three dimensions ({_thousands(self.size.unknowns)} unknowns) "
-            f"takes about {duration(self.size.seconds)}"
+            f"takes {about(self.size.seconds)}"
         )
 
 
