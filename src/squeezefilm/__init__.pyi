@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from squeezefilm.presets import (
         texture_names as texture_names,
     )
-    from squeezefilm.progress import SayProgress
+    from squeezefilm.progress import Pace, SayProgress
     from squeezefilm.quantities import (
         Dimensionless,
         FloatArray,
@@ -150,6 +150,7 @@ if TYPE_CHECKING:
         model: FrictionModel | None = ...,
         speed: MetrePerSecond | str | None = ...,
         strict: bool = ...,
+        pace: Pace = ...,
     ) -> Prediction:
         """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz)."""
     def voltage_for_friction(
@@ -180,6 +181,7 @@ if TYPE_CHECKING:
         wanted_friction: Dimensionless | str | None = ...,
         sensitivities: Effort = ...,
         progress: SayProgress | None = ...,
+        budget: Second | str | None = ...,
     ) -> Analysis:
         """The whole analysis of a display at one working point."""
     def analyze_friction(
@@ -211,6 +213,7 @@ if TYPE_CHECKING:
         sensitivity: bool = ...,
         track: TrackRequest | None = ...,
         progress: SayProgress | None = ...,
+        budget: Second | str | None = ...,
     ) -> PlateAnalysis | RingAnalysis:
         """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's"""
     def solve_film(

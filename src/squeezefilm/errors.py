@@ -74,6 +74,10 @@ class UnreachableError(InputError):
     """A target (an amplitude, a friction) that the device cannot reach."""
 
 
+class OutOfTimeError(InputError):
+    """A solve that would take longer than the budget it was given."""
+
+
 class ConvergenceError(SqueezefilmError):
     """A solve that did not converge; carries what it had.
 

@@ -193,6 +193,8 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.sound.sound_pressure": {"points": np.array([[0.0, 0.0, 0.3]])},
     "plate.sound.pressure_level": {"pressure": np.array([1.0 + 1j])},
     "plate.solid.solve.solve_modes": {"count": 1, "near": 60e3},
+    "plate.solid.size.solve_size": {"label": (4, 0), "frequency": 60e3},
+    "plate.solid.size.band_seconds": {"highest": 60e3},
     "plate.ring.stator.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
     "plate.ring.stator.fit_stator": {"degree": 3},
     "chain.prediction.predict": {"theory": "timoshenko", "model": "paper2008"},

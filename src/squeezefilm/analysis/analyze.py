@@ -46,7 +46,7 @@ from squeezefilm.analysis.uncertainty import (
     UncertainFriction,
     interval_or_reason,
 )
-from squeezefilm.analysis.verdict import Finding, ears_finding, verdict
+from squeezefilm.analysis.verdict import Finding, ears_finding, unless_undriven, verdict
 from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
@@ -59,7 +59,7 @@ from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
 from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.plate.working_mode import PlateTheory
-from squeezefilm.progress import SayProgress
+from squeezefilm.progress import Deadline, Pace, SayProgress, said_with_time_left
 from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
 from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
 from squeezefilm.render.motion.stroke import Stroke
@@ -116,8 +116,9 @@ class Analysis(Result):
 
     @property
     def ears_finding(self) -> Finding:
-        """What that amounts to."""
-        return ears_finding(self.ears)
+        """What that amounts to; not good while an objection stands."""
+        found = ears_finding(self.ears)
+        return unless_undriven(found, "" if self.prediction.objections else None)
 
     @functools.cached_property
     def felt(self) -> FeltGratings | None:
@@ -212,15 +213,21 @@ def analyze(
     wanted_friction: si.Dimensionless | None = None,
     sensitivities: Effort = "quick",
     progress: SayProgress | None = None,
+    budget: si.Second | None = None,
 ) -> Analysis:
     """The whole analysis of a display at one working point.
 
     Arguments and errors are those of `prediction.predict`; `samples` (0: none) is the base of the
     uncertainty's design, see `uncertain_friction`; `wanted_friction` asks for the voltage that
     reaches it, `sensitivities` how a plate with one thing different is computed, see
-    `display_sensitivities`; `progress` is told each step.
+    `display_sensitivities`; `progress` is told each step. With a `budget` (s) half of it bounds the
+    plate's solve, and the interval and the other films are left out where nothing is left for them:
+    what is missing is said.
     """
+    if budget is not None:
+        si.require("budget", budget, si.Unit("s"), above=0)
     tell = progress or (lambda _: None)
+    deadline = Pace(budget).deadline()
     tell("resonance, amplitude and friction")
     prediction = predict(
         display,
@@ -233,8 +240,9 @@ def analyze(
         model=model,
         speed=speed,
         strict=strict,
+        pace=Pace(None if budget is None else budget / 2, said_with_time_left(tell)),
     )
-    found = _what_follows(display, prediction, samples, tell)
+    found = _what_follows(display, prediction, samples, tell, deadline)
     if wanted_friction is None:
         return dataclasses.replace(found, effort=sensitivities)
     tell("the voltage for the friction wanted")
@@ -253,10 +261,19 @@ def _intervals(unsure: UncertainFriction | None) -> dict[str, Any]:
     return {name: found[name] for name in names}
 
 
+# What these steps take (s), measured on the presets; a budget without room for one leaves it out.
+_INTERVAL, _FILMS = 6.0, 4.0
+
+
 def _what_follows(
-    display: Display, prediction: Prediction, samples: int, tell: SayProgress
+    display: Display,
+    prediction: Prediction,
+    samples: int,
+    tell: SayProgress,
+    deadline: Deadline | None,
 ) -> Analysis:
-    """All that an analysis says, from a prediction."""
+    """All that an analysis says, from a prediction; what a deadline leaves no room for is left
+    out."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
     tell("frequency response")
@@ -274,11 +291,15 @@ def _what_follows(
     )
     tell("friction by every model, and how sure it is")
     by_model = model_curves(prediction)
-    unsure, why_not = interval_or_reason(display, prediction, samples=samples)
+    if deadline is None or deadline.allows(_INTERVAL):
+        unsure, why_not = interval_or_reason(display, prediction, samples=samples)
+    else:
+        unsure, why_not = None, "the budget left no time for its interval"
     tell("wavelength against amplitude")
     wavelengths = wavelength_curves(prediction)
     tell("the paper's film and solved films")
-    films = compare_film_models(display, prediction)
+    wide = deadline is None or deadline.allows(_FILMS)
+    films = compare_film_models(display, prediction) if wide else None
     tell("textures")
     trace, table = _textures(prediction, tau)
     compensated, survival = _compensation(display, prediction)
@@ -318,7 +339,8 @@ def _other_models(display: Display, prediction: Prediction) -> Iterator[OtherMod
         return
     plate, volts = display.actuator, prediction.voltage
     mode = prediction.mode
-    if mode.solid is None:
+    # Where a budget left no time for the solid, it has none beside a beam either.
+    if mode.solid is None and not prediction.objections:
         with contextlib.suppress(InputError):
             solid = solid_mode(plate)
             amplitude = volts * solid.amplitude_per_volt

@@ -50,8 +50,10 @@ def verdict(
 ) -> Iterator[Finding]:
     """What an analysis amounts to, in sentences; `why_not` says why no friction is `unsure`.
 
-    What speaks against the working mode comes first, and nothing is good of one that is not driven.
+    What the prediction's `objections` say and what speaks against the working mode come first;
+    while an objection stands, or where the mode is not driven, nothing is good.
     """
+    yield from (Finding("doubt", objection) for objection in p.objections)
     doubts = () if p.voltage is None else mode_doubts(display, p.mode)
     yield from (Finding("doubt", doubt.text) for doubt in doubts)
     undriven = any(doubt.kind == "undriven" for doubt in doubts)
@@ -87,7 +89,7 @@ def _findings(
             "turn nonlinear and bonds fail long before, and nothing here sees that.",
         )
     if table is not None:
-        yield _of_gratings(table)
+        yield _of_gratings(p, table)
     if MODEL_KINDS[p.model].film == "asymptote":
         yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
     if films is not None:
@@ -119,8 +121,9 @@ def ears_finding(ears: EarExposure | None) -> Finding:
 def friction_verdict(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
     """How probable it is that the friction falls below the paper's criterion.
 
-    Good where all of the interval lies below it, a limit where it does not, a doubt where there is
-    no interval (`why_not` says why). The same sentence wherever this verdict is shown.
+    Good where all of the interval lies below it and no objection stands, a limit where it does not,
+    a doubt where there is no interval (`why_not` says why). The same sentence wherever this verdict
+    is shown.
     """
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
     asked = f"{PAPER_CRITERION:.2f}, as the paper asks"
@@ -141,10 +144,15 @@ def friction_verdict(p: Prediction, unsure: UncertainFriction | None, why_not: s
         f"{_probability(unsure.probability_below(noticed))}."
     )
     if high < PAPER_CRITERION:
-        return Finding("good", text)
+        return Finding(good_unless_objected(p), text)
     if low <= PAPER_CRITERION:
         text += " The criterion lies inside the interval: whether it is met is open."
     return Finding("limit", text)
+
+
+def good_unless_objected(p: Prediction) -> Literal["good", "limit"]:
+    """What good news about a prediction may be called: a limit while an objection stands."""
+    return "limit" if p.objections else "good"
 
 
 def _probability(value: si.Dimensionless) -> str:
@@ -167,7 +175,7 @@ def _of_needed_amplitude(p: Prediction, curves: tuple[FrictionCurve, ...]) -> It
         )
 
 
-def _of_gratings(table: FidelityTable) -> Finding:
+def _of_gratings(p: Prediction, table: FidelityTable) -> Finding:
     """Which square gratings survive, and how fast the finger may be on the worst."""
     fastest = table.fastest_speed
     worst = int(np.argmin(fastest))
@@ -179,7 +187,7 @@ def _of_gratings(table: FidelityTable) -> Finding:
         if survives
     ]
     return Finding(
-        "good" if kept else "limit",
+        good_unless_objected(p) if kept else "limit",
         f"Square gratings of {', '.join(kept) or 'no listed'} mm keep 90 % of their swing, peak to "
         f"peak, up to {1e3 * table.speeds[-1]:g} mm/s; {1e3 * table.spatial_periods[worst]:g} mm "
         f"up to {1e3 * fastest[worst]:.0f} mm/s. Of the fundamental "

@@ -17,27 +17,23 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.chosen_mode import beam_objection, chosen_mode
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.touch import Touch, kept_at, touch
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.display import Display, NamedDisplay, Surface
-from squeezefilm.errors import (
-    InputError,
-    OutOfRangeError,
-    OutOfRangeWarning,
-    SqueezefilmWarning,
-    UnreachableError,
-)
+from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning, UnreachableError
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import TOUCHED_VIBRATION, require_within
-from squeezefilm.plate.beam.response import beam_doubt
 from squeezefilm.plate.heat.warming import Warming, warming_of_mode
-from squeezefilm.plate.layout import Actuator, RectangularPlate
-from squeezefilm.plate.working_mode import PlateTheory, WorkingMode, working_mode
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.working_mode import PlateTheory, WorkingMode
+from squeezefilm.plausibility.checks import require_plausible
+from squeezefilm.progress import NO_HURRY, Pace
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.render.resonator.envelope import envelope_time_constant
 from squeezefilm.results import Result, to_json
@@ -56,7 +52,9 @@ class Prediction(Result):
     `friction_reduction` is µ − µ′, `tangential_force` µ′ F of a finger that slides steadily.
     `validity` says how far the paper's asymptote is from where it holds; `law` is the friction as
     a function of amplitude and speed. `heat` is what the plate's losses do to it, None
-    where they are not known: every other number is of the cold plate.
+    where they are not known: every other number is of the cold plate. `warnings` is all that is
+    doubtful, `objections` those of them while which nothing may be called good: a value that is
+    not usual, a model in place of the one that was asked for, a check that failed.
     """
 
     display: str
@@ -82,6 +80,7 @@ class Prediction(Result):
     validity: FilmValidity
     heat: Warming | None
     warnings: tuple[str, ...]
+    objections: tuple[str, ...] = ()
     _shown: ClassVar[str] = (
         "display model voltage frequency normal_force vibration_amplitude relative_friction "
         "tangential_force"
@@ -137,6 +136,7 @@ class Prediction(Result):
             "validity": to_json(self.validity),
             "heat": to_json(self.heat),
             "warnings": list(self.warnings),
+            "objections": list(self.objections),
         }
 
 
@@ -155,6 +155,7 @@ def predict(
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
     strict: bool = False,
+    pace: Pace = NO_HURRY,
 ) -> Prediction:
     """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz).
 
@@ -167,20 +168,26 @@ def predict(
     Without a `model`, film and asperities share the load of each ridge (partial levitation), and
     what touches is elastic until it slips.
 
-    What is doubtful (contradicting data, an asymptote asked for outside its range) is collected in
-    `warnings`; with `strict` it raises instead: `ContradictionError`, `OutOfRangeError`. Raises
-    `InputError` for a value that cannot be used, or an amplitude given together with a voltage.
+    `pace` says how long a solve may take and who is told of it; what its budget does not allow is
+    left coarser, with a warning.
+
+    What is doubtful (values that are not usual, contradicting data, an asymptote asked for outside
+    its range) is collected in `warnings`; with `strict` the last two raise instead:
+    `ContradictionError`, `OutOfRangeError`. Before anything is solved a display that cannot be
+    right is refused, see `require_plausible`. Raises `InputError` for a value that cannot be used,
+    or an amplitude given together with a voltage.
     """
     if vibration_amplitude is not None and voltage is not None:
         raise InputError("a voltage and an amplitude were both given; give one of them")
     force = display.finger.normal_force if normal_force is None else normal_force
     si.require("normal_force", force, si.Unit("N"), above=0)
     where = display.surface(surface)
+    unusual = require_plausible(display, voltage if vibration_amplitude is None else 0.0)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if isinstance(display.actuator, RectangularPlate):
             display.actuator.ceramic.check_consistency(strict=strict)
-        mode = _mode(display.actuator, theory, strict)
+        mode, replaced = chosen_mode(display.actuator, theory, strict=strict, pace=pace)
         drive = _drive(display, mode, frequency, voltage, vibration_amplitude)
         law = friction_law(
             display,
@@ -194,8 +201,10 @@ def predict(
         )
         asked_for_asymptote = model is not None and law.kind.film == "asymptote"
         found = _felt(display, mode, drive, law, strict=strict and asked_for_asymptote)
-    doubts = _doubts(caught, found) + _beam_doubts(display.actuator, mode, drive, strict=strict)
-    return dataclasses.replace(found, warnings=tuple(dict.fromkeys(doubts)))
+    rough = () if drive.voltage is None else beam_objection(display.actuator, mode, strict=strict)
+    objections = (*unusual, *replaced, *rough)
+    doubts = (*objections, *_doubts(caught, found))
+    return dataclasses.replace(found, warnings=tuple(dict.fromkeys(doubts)), objections=objections)
 
 
 class _Drive(NamedTuple):
@@ -278,18 +287,6 @@ def _felt(
     )
 
 
-def _beam_doubts(
-    actuator: Actuator, mode: WorkingMode, drive: _Drive, *, strict: bool
-) -> list[str]:
-    """What speaks against a beam in the place of the plate; with `strict` it raises."""
-    if not isinstance(actuator, RectangularPlate) or mode.solid is not None:
-        return []
-    doubt = None if drive.voltage is None else beam_doubt(actuator)
-    if doubt is not None and strict:
-        raise OutOfRangeError(f"{doubt}; leave strictness out to compute it all the same")
-    return [] if doubt is None else [doubt]
-
-
 def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
     """What was warned of on the way, and what the models leave out."""
     film, limits = p.law.kind.film, p.relative_friction_limits
@@ -348,7 +345,8 @@ def voltage_for_friction(
     to there. Raises `UnreachableError` where no amplitude does, or where the voltage would be more
     than the 2 kV that a `Drive` may have.
     """
-    mode = _mode(display.actuator, theory, False)
+    require_plausible(display)
+    mode, _ = chosen_mode(display.actuator, theory)
     drive_frequency = mode.resonance_frequency if frequency is None else frequency
     si.require("frequency", drive_frequency, si.Unit("Hz"), above=0)
     law = friction_law(
@@ -378,19 +376,3 @@ def _per_volt(mode: WorkingMode, frequency: si.Hertz) -> si.MetrePerVolt:
     if frequency == mode.resonance_frequency:
         return mode.amplitude_per_volt
     return float(mode.response(np.array([frequency]))[0])
-
-
-def _mode(actuator: Actuator, theory: PlateTheory | None, strict: bool) -> WorkingMode:
-    if theory is not None or strict or not isinstance(actuator, RectangularPlate):
-        return working_mode(actuator, theory or "solid")
-    try:
-        return working_mode(actuator, "solid")
-    except InputError as error:
-        mode = working_mode(actuator, "timoshenko")
-        warnings.warn(
-            f"the solved plate does not give the working mode ({error}); a beam's, whose numbers "
-            "these are, need not exist in such a plate",
-            SqueezefilmWarning,
-            stacklevel=2,
-        )
-        return mode

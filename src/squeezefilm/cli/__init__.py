@@ -17,6 +17,9 @@ from squeezefilm.cli import study  # noqa: F401 # isort: skip
 from squeezefilm.cli.app import app
 from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
 
+# What a shell expects of a program that Ctrl-C ended.
+_INTERRUPTED = 130
+
 
 def _show_announcements() -> None:
     """What the library has to say while it works (that it compiles, once), on standard error."""
@@ -66,8 +69,13 @@ def main() -> None:
         typer.echo(f"error: {error}", err=True)
         sys.exit(2)
     except KeyboardInterrupt:
-        typer.echo("interrupted; nothing half-written was left", err=True)
-        sys.exit(130)
+        _say_interrupted()
+        sys.exit(_INTERRUPTED)
+    except SystemExit as ended:
+        # typer ends so, without a word, where Ctrl-C met a verb at work.
+        if ended.code == _INTERRUPTED:
+            _say_interrupted()
+        raise
     except BrokenPipeError:
         _forget_output()
         sys.exit(0)
@@ -79,6 +87,10 @@ def main() -> None:
             err=True,
         )
         sys.exit(2)
+
+
+def _say_interrupted() -> None:
+    typer.echo("interrupted; nothing half-written was left", err=True)
 
 
 def _forget_output() -> None:

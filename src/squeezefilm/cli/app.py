@@ -17,6 +17,7 @@ from squeezefilm import __version__
 from squeezefilm.errors import InputError
 
 if TYPE_CHECKING:
+    from squeezefilm.display import Display
     from squeezefilm.progress import SayProgress
 
 app = typer.Typer(
@@ -71,6 +72,13 @@ Amplitude = Annotated[
     typer.Option(
         "--amplitude",
         help='Vibration amplitude with the finger on it, like "2 um", in place of a voltage.',
+    ),
+]
+Budget = Annotated[
+    str | None,
+    In("s"),
+    typer.Option(
+        help='Time after which the best answer so far comes, with its larger error: "60 s".'
     ),
 ]
 Force = Annotated[str | None, In("N"), typer.Option("--force", help='Normal force, like "0.5 N".')]
@@ -148,7 +156,7 @@ def _read(value: Any, name: str, marks: tuple[Any, ...]) -> Any:
     from squeezefilm.quantities import Unit, parse_quantity
 
     # Where an option has another name than its argument, typer holds it as a default.
-    other = [mark.default for mark in marks if isinstance(mark, OptionInfo)]
+    other = [mark.default for mark in marks if isinstance(mark, OptionInfo)] or [None]
     option = other[0] if isinstance(other[0], str) else f"--{name.replace('_', '-')}"
     try:
         return parse_quantity(value, Unit(units[0]))
@@ -161,6 +169,41 @@ def working(quiet: bool) -> AbstractContextManager[SayProgress]:
     from squeezefilm.report.kit import terminal
 
     return terminal.progress(enabled=sys.stderr.isatty() or not quiet)
+
+
+def read_option(text: str | None, name: str, unit: str) -> float | None:
+    """The SI value of one option's text, None where it was not given.
+
+    Raises `InputError`, with the option named, for a text that is no such quantity.
+    """
+    value: float | None = _read(text, name, (In(unit),))
+    return value
+
+
+def to_be_solved(
+    target: str,
+    voltage: str | None = None,
+    *,
+    amplitude: str | None = None,
+    theory: str | None = None,
+    quiet: bool = False,
+) -> Display:
+    """The display that a verb will solve, refused before any work where it cannot be right.
+
+    What is doubtful of it, what to expect and how long its solve takes (where a `theory` does not
+    go without) is told on standard error; `quiet` as in `working`. A vibration of a given
+    `amplitude` needs no voltage. Raises what `foreseen` raises.
+    """
+    from squeezefilm.plausibility.foreseen import foreseen
+
+    volts = read_option(voltage, "voltage", "V") if amplitude is None else 0.0
+    seen = foreseen(target, volts)
+    if sys.stderr.isatty() or not quiet:
+        for doubt in seen.doubts:
+            typer.echo(f"doubtful: {doubt}", err=True)
+        if seen.sentence and theory in (None, "solid"):
+            typer.echo(seen.sentence, err=True)
+    return seen.display
 
 
 def answer(

@@ -10,6 +10,7 @@ from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     Amplitude,
     AsJson,
+    Budget,
     Force,
     Frequency,
     In,
@@ -24,6 +25,8 @@ from squeezefilm.cli.app import (
     given,
     print_json,
     reachable,
+    read_option,
+    to_be_solved,
     working,
     written_to,
 )
@@ -110,6 +113,7 @@ class AnalyzeOptions:
         ),
     ] = None
     strict: Strict = False
+    budget: Budget = None
 
 
 @app.command()
@@ -117,10 +121,15 @@ class AnalyzeOptions:
 def analyze(asked: AnalyzeOptions) -> None:
     """From the display's description to resonance, amplitude, friction and textures."""
     from squeezefilm.analysis.analyze import analyze as run
-    from squeezefilm.display import load_display
     from squeezefilm.report.kit import terminal
 
-    display = load_display(asked.target)
+    display = to_be_solved(
+        asked.target,
+        asked.voltage,
+        amplitude=asked.vibration_amplitude,
+        theory=asked.theory,
+        quiet=asked.as_json,
+    )
     with working(asked.as_json) as step:
         result = run(display, **given(asked, leave="target out as_json"), progress=step)
         written = None
@@ -176,10 +185,11 @@ class FrictionOptions:
 def friction(asked: FrictionOptions) -> None:
     """The friction a finger meets, how the load is shared, and how sure all of it is."""
     from squeezefilm.analysis.friction.command import analyze_friction
-    from squeezefilm.display import load_display
     from squeezefilm.report.friction.terminal import show_friction
 
-    display = load_display(asked.target)
+    display = to_be_solved(
+        asked.target, asked.voltage, amplitude=asked.vibration_amplitude, quiet=asked.as_json
+    )
     with working(asked.as_json) as step:
         result = analyze_friction(
             display, **given(asked, leave="target out as_json"), progress=step
@@ -275,6 +285,7 @@ class PlateOptions:
     start: Annotated[str | None, typer.Option("--from", help='Its first value: "0.5 mm".')] = None
     stop: Annotated[str | None, typer.Option("--to", help='Its last value: "1.5 mm".')] = None
     values: Annotated[int, typer.Option(help="How many values of it.")] = 9
+    budget: Budget = None
     as_json: AsJson = False
 
 
@@ -289,10 +300,10 @@ def plate(asked: PlateOptions) -> None:
         solve_plate,
     )
     from squeezefilm.analysis.plate.tracking import parse_track
-    from squeezefilm.display import load_display
     from squeezefilm.report.plate.terminal import show_plate
 
-    display, out, vtu = load_display(asked.target), asked.out, asked.vtu
+    display, out, vtu = to_be_solved(asked.target, quiet=asked.as_json), asked.out, asked.vtu
+    budget = read_option(asked.budget, "budget", "s")
     mode = None if asked.mode is None else parse_mode(asked.mode)
     band = None if asked.band is None else parse_band(asked.band)
     track = None
@@ -312,6 +323,7 @@ def plate(asked: PlateOptions) -> None:
             sensitivity=asked.sensitivity,
             track=track,
             progress=step,
+            budget=budget,
         )
         if out is not None or vtu is not None:
             from squeezefilm.report.plate.plate import write_mode, write_plate

@@ -24,6 +24,7 @@ from squeezefilm.plate.ring.body import (
 )
 from squeezefilm.plate.ring.modes import AnnularMode
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
+from squeezefilm.progress import NO_HURRY, Pace
 
 
 @si.closed_form(positive="frequency resonance_frequency quality_factor")
@@ -101,13 +102,16 @@ def working_mode(
     actuator: Actuator,
     theory: PlateTheory = "solid",
     cross_section: CrossSection = "plane_strain",
+    *,
+    pace: Pace = NO_HURRY,
 ) -> WorkingMode:
     """The working mode of an actuator.
 
     A plate is solved in three dimensions (see `solid_mode`), or taken as a beam of `cross_section`
     (see `beam_response` for its range and error); a disc is solved by Fourier harmonics; a stator
-    is taken as measured, linear in the voltage. Raises `InputError` for another theory or a disc's
-    mode that crosses no two nodal lines, and what the solvers raise.
+    is taken as measured, linear in the voltage. `pace` says how long a solid may take. Raises
+    `InputError` for another theory or a disc's mode that crosses no two nodal lines, and what the
+    solvers raise.
     """
     if isinstance(actuator, AnnularStator):
         return WorkingMode(
@@ -122,7 +126,7 @@ def working_mode(
         return _disc(actuator)
     si.require_one_of("theory", theory, PLATE_THEORIES)
     if theory == "solid":
-        solid = solid_mode(actuator)
+        solid = solid_mode(actuator, pace=pace)
         return WorkingMode(
             label="({},{})".format(*actuator.working_label),
             resonance_frequency=solid.frequency,

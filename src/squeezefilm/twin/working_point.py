@@ -9,13 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.chosen_mode import chosen_mode
 from squeezefilm.chain.friction import TABLE_SPEEDS, FrictionLaw, friction_law
 from squeezefilm.chain.touch import load_ratios
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.working_mode import WorkingMode, working_mode
+from squeezefilm.plate.working_mode import WorkingMode
+from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.twin.settings import PickupModel, TwinSettings
 
 _log = logging.getLogger(__name__)
@@ -84,13 +86,9 @@ def working_point(
     """
     evidence: list[str] = []
     if mode is None:
-        try:
-            mode = working_mode(display.actuator)
-        except InputError as error:
-            if not isinstance(display.actuator, RectangularPlate):
-                raise
-            mode = working_mode(display.actuator, "timoshenko")
-            evidence.append(f"a beam's mode, since the solved plate has none: {error}")
+        evidence += require_plausible(display)
+        mode, objections = chosen_mode(display.actuator)
+        evidence += objections
     if not mode.amplitude_per_volt > 0 or display.drive.voltage <= 0:
         raise InputError(
             f"the display '{display.name}' has no amplitude at {display.drive.voltage:g} V; a twin "

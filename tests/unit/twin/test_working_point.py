@@ -146,28 +146,22 @@ def test_a_plates_capacitance_is_that_of_its_patches(
     assert told.capacitance == 50e-9
 
 
-def test_a_plate_that_cannot_be_solved_is_taken_as_a_beam(
+def test_what_speaks_against_the_mode_is_evidence(
     laws: Laws, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked: list[tuple[Any, ...]] = []
+    asked: list[Any] = []
 
-    def solved(*given: Any) -> WorkingMode:
-        asked.append(given)
-        if len(given) == 1:
-            raise InputError("there is no such mode")
-        return MODE
+    def chosen(actuator: Any) -> tuple[WorkingMode, tuple[str, ...]]:
+        asked.append(actuator)
+        return MODE, ("a beam's",)
 
-    monkeypatch.setattr(module, "working_mode", solved)
+    monkeypatch.setattr(module, "chosen_mode", chosen)
+    monkeypatch.setattr(module, "require_plausible", lambda display: ("a doubt",))
     monkeypatch.setattr(module, "patch_capacitance", lambda plate: 33e-9)
     found = working_point(PLATE, SETTINGS)
     assert found.mode is MODE
-    assert asked == [(PLATE.actuator,), (PLATE.actuator, "timoshenko")]
-    assert found.evidence == (
-        "a beam's mode, since the solved plate has none: there is no such mode",
-    )
-    # What is no plate has no beam to be taken for.
-    with pytest.raises(InputError, match="there is no such mode"):
-        working_point(STATOR, SETTINGS)
+    assert asked == [PLATE.actuator]
+    assert found.evidence == ("a doubt", "a beam's")
 
 
 def without_drive(display: Display) -> Display:

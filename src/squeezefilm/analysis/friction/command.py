@@ -25,7 +25,7 @@ from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.from_text import reads_text
-from squeezefilm.progress import SayProgress
+from squeezefilm.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.results import Result, stamp, to_json
 
 
@@ -185,6 +185,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         model=asked.model,
         position=asked.position,
         speed=asked.speed,
+        pace=Pace(tell=said_with_time_left(tell)),
     )
     wanted = (
         None

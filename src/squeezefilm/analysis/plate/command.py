@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.plate.hurry import Hurry
 from squeezefilm.analysis.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.analysis.plate.sensitivity import SensitivityTable, plate_sensitivity
 from squeezefilm.analysis.plate.solved import ModeRow, Remarks, SolvedBody, sweep_around
@@ -40,7 +41,8 @@ from squeezefilm.plate.solid.modes import (
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
-from squeezefilm.progress import SayProgress
+from squeezefilm.plausibility.checks import require_plausible
+from squeezefilm.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.results import to_json
 
 
@@ -65,6 +67,7 @@ class PlateAnalysis(SolvedBody):
     sound: SoundField
     sensitivities: SensitivityTable | None = None
     tracks: ModeTracks | None = None
+    objections: tuple[str, ...] = ()
     remarks = Remarks(
         "(estimated)",
         "largest, upper face",
@@ -125,6 +128,7 @@ class PlateRequest:
     sensitivity: bool = False
     track: TrackRequest | None = None
     progress: SayProgress | None = None
+    budget: si.Second | None = None
 
 
 @called_with(PlateRequest)
@@ -133,9 +137,13 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
 
     `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. `sensitivity`
     adds what other materials and dimensions would change, `track` the modes against a parameter;
-    both take a minute. `alone` in the result is the working mode solved by itself. Raises
-    `InputError` for a display without a rectangular plate and what `solve_modes` raises: a band
-    with no mode, a mode that is not found.
+    both take a minute. `alone` in the result is the working mode solved by itself. Within a
+    `budget` (s) meshes are left coarser, with larger errors, and the other modes of the band left
+    out, as time asks.
+
+    Raises `InputError` for a display without a rectangular plate or one that cannot be right (see
+    `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and what `solve_modes`
+    raises: a band with no mode, a mode that is not found.
     """
     display, band, track = asked.display, asked.band, asked.track
     plate = _driven_plate(display)
@@ -145,16 +153,24 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         check_track(plate, track)
     tell = asked.progress or (lambda _: None)
     label = asked.mode or plate.working_label
+    hurry = Hurry.of(plate, label, Pace(asked.budget))
     tell(f"mode ({label[0]},{label[1]})")
-    alone = solve_modes(plate, mode=label)
+    shares = said_with_time_left(tell)
+    alone = solve_modes(plate, mode=label, deadline=hurry.mode, progress=shares)
     frequency = float(alone.frequencies[alone.index(label)])
-    tell("all modes in the band")
-    modes = solve_modes(plate, band=band or (0.92 * frequency, 1.08 * frequency))
+    wanted = band or (0.92 * frequency, 1.08 * frequency)
+    modes = alone
+    if hurry.allows_band(plate, wanted):
+        tell("all modes in the band")
+        shares = said_with_time_left(tell)
+        modes = solve_modes(plate, band=wanted, deadline=hurry.band, progress=shares)
     rows = tuple(_row(modes, index) for index in range(modes.count))
     working = _row(alone, alone.index(label))
     tell(f"response at {asked.points} frequencies")
     response = harmonic_response(
-        plate, sweep_around(frequency, working.quality_factor, asked.points)
+        plate,
+        sweep_around(frequency, working.quality_factor, asked.points),
+        resolution=hurry.response_mesh(alone),
     )
     try:
         circuit = response.equivalent_circuit()
@@ -179,6 +195,7 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         beam_amplitude_per_volt=beam.amplitude_per_volt,
         shear_frequency=_shear_frequency(plate, label, frequency),
         sound=sound,
+        objections=(*require_plausible(display), *hurry.left_out(alone, modes)),
         sensitivities=plate_sensitivity(plate, label=label, progress=tell)
         if asked.sensitivity
         else None,
@@ -196,9 +213,11 @@ def solve_plate(asked: PlateRequest) -> PlateAnalysis | RingAnalysis:
     are for rectangular plates. Raises `InputError` where they are asked of another.
     """
     given, actuator = dict(vars(asked)), asked.display.actuator
+    require_plausible(asked.display)
     if isinstance(actuator, RectangularPlate):
         return analyze_plate(**given)
     sensitivity, track = given.pop("sensitivity"), given.pop("track")
+    given.pop("budget")  # a ring is solved in a second or two
     if sensitivity or track is not None:
         raise InputError(
             f"sensitivity and track are for rectangular plates; '{asked.display.name}' is a "

@@ -30,6 +30,7 @@ from squeezefilm.plate.ring.response import (
 )
 from squeezefilm.plate.solid.modes import check_band
 from squeezefilm.plate.sound import SoundField, ring_surface, sound_field
+from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
 
@@ -57,6 +58,7 @@ class RingAnalysis(SolvedBody):
     circuit: EquivalentCircuit | None
     sound: SoundField
     described_amplitude_per_volt: si.MetrePerVolt | None
+    objections: tuple[str, ...] = ()
 
     @property
     def amplitude_per_volt(self) -> si.MetrePerVolt:
@@ -178,6 +180,7 @@ def analyze_ring(
         described_amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage
         if isinstance(actuator, AnnularStator)
         else None,
+        objections=require_plausible(display),
     )
 
 

@@ -45,7 +45,10 @@ class Remarks:
 
 
 class SolvedBody(Result):
-    """What a solved plate, disc or stator has: its modes, the working one, response and sound."""
+    """What a solved plate, disc or stator has: its modes, the working one, response and sound.
+
+    `objections` say what of its description is doubtful, and what a budget left out.
+    """
 
     display: Display
     rows: tuple[ModeRow, ...]
@@ -59,6 +62,7 @@ class SolvedBody(Result):
     model: Any
     status: Any
     remarks: Any
+    objections: Any = ()
     _shown: ClassVar[str] = (
         "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
         "model"
@@ -107,6 +111,7 @@ class SolvedBody(Result):
             "sound_guidance": to_json(self.sound.guidance),
             "model": self.model,
             "status": self.status,
+            "objections": list(self.objections),
             "provenance": stamp(self.display),
         }
 

@@ -22,6 +22,8 @@ from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.lab.worker import tell
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid.working import response_frequencies, solid_mode
+from squeezefilm.plausibility.checks import require_plausible
+from squeezefilm.progress import Pace
 from squeezefilm.results import stamp, to_json
 
 QUALITIES = ("screening", "solved")
@@ -77,9 +79,10 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
     """
     text = point.edited()
     display = display_of(text)
+    require_plausible(display)
     if quality == "solved" and isinstance(display.actuator, RectangularPlate):
         # What takes the time, told while it is solved; it is kept for what is asked of it below.
-        solid_mode(display.actuator, progress=tell)
+        solid_mode(display.actuator, pace=Pace(tell=tell))
     p = predicted(display, quality, point)
     mode = p.mode
     span = max(2.0 * p.vibration_amplitude, _LEAST_SPAN)

@@ -22,7 +22,7 @@ from squeezefilm.plate.solid.modes import (
     label_of,
     surface_shapes,
 )
-from squeezefilm.plate.solid.refined_modes import RefinedModes, extrapolated
+from squeezefilm.plate.solid.refined_modes import UNREFINED, RefinedModes, extrapolated
 from squeezefilm.plate.solid.symmetry import Symmetry, drive_signs
 
 _Row = TypeVar("_Row")
@@ -92,6 +92,7 @@ def collected_modes(
     errors = np.array(taken(table.errors for table in tables))
     opened = np.array(taken(table.open_frequencies for table in tables))
     over = int(np.sum(errors > tolerance * frequencies))
+    coarse = any(piece.level == UNREFINED for piece in pieces)
     model = pieces[0].solved.model
     materials = [medium.name for medium in model.media]
     if model.foundations:
@@ -118,11 +119,12 @@ def collected_modes(
         status=(
             f"all {len(order)} modes within {tolerance:.1e} (estimated)"
             if over == 0
-            else f"{over} of {len(order)} modes have an estimated error above {tolerance:.1e}; the "
-            "finest mesh was used"
+            else f"{over} of {len(order)} modes have an estimated error above {tolerance:.1e}; "
+            + ("the time was up" if coarse else "the finest mesh was used")
         ),
         unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
         _fields=tuple(taken(table.fields for table in tables)),
+        left_coarse=coarse,
     )
 
 

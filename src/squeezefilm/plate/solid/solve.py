@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import time
 from typing import Annotated
 
 from squeezefilm import quantities as si
@@ -17,6 +18,7 @@ from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import (
+    CoarseModes,
     chosen_modes,
     class_fits,
     coarse_modes,
@@ -25,13 +27,16 @@ from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.mode_table import collected_modes
 from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.plate.solid.refined_modes import RefinedModes, refined_modes, with_label
+from squeezefilm.plate.solid.size import expected_seconds
 from squeezefilm.plate.solid.symmetry import Symmetry, all_classes, drive_classes
-from squeezefilm.progress import ShareProgress
+from squeezefilm.progress import Deadline, ShareProgress
 
 # So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
 _WIDTHS = (8, 24)
 # So many around the frequency that a plate's description asks for: one of them is meant.
 _BY_FREQUENCY = 4
+# The share of the time that the coarse meshes take: an eighth to a third, measured on the presets.
+_COARSE = 0.2
 
 
 @si.checked_numbers
@@ -45,6 +50,7 @@ def solve_modes(
     tolerance: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 1e-3,
     driven_only: bool = False,
     progress: ShareProgress | None = None,
+    deadline: Deadline | None = None,
 ) -> PlateModes:
     """Modes of a plate by three-dimensional piezoelectric finite elements.
 
@@ -53,7 +59,8 @@ def solve_modes(
     across length and width. With none of them the plate's working mode is solved. `driven_only`
     leaves out the classes of symmetry that the drive does not excite. Where the estimated error of
     a mode exceeds `tolerance` (relative) finer meshes are used, and `status` says if that was not
-    enough. `progress` is called with a text and a fraction.
+    enough. `progress` is called with a text and a fraction. A mesh that would end after the
+    `deadline` is not begun: the modes are those of the last one then, with its larger error.
 
     Electrodes are shorted or driven (the same for free vibration) unless a patch says open or
     shunted: a resistor's stiffening counts in `frequencies`, its loss in `quality_factors`; shapes
@@ -73,7 +80,7 @@ def solve_modes(
         mode = plate.working_label
     tell = progress or (lambda text, fraction: None)
     with one_blas_thread():
-        found = _solved(plate, near, band, mode, count, tolerance, driven_only, tell)
+        found = _solved(plate, near, band, mode, count, tolerance, driven_only, tell, deadline)
     again = functools.partial(
         solve_modes,
         plate,
@@ -96,6 +103,7 @@ def _solved(
     tolerance: float,
     driven_only: bool,
     tell: ShareProgress,
+    deadline: Deadline | None,
 ) -> PlateModes:
     classes = drive_classes(plate) if driven_only else all_classes(plate)
     if mode is not None:
@@ -108,10 +116,12 @@ def _solved(
     highest = band[1] if band is not None else 1.15 * centre
     # What a coarse mesh takes for the mode may be another on a finer one: then look further.
     for nearest in _WIDTHS if mode is not None else (count,):
-        found = []
+        found, begun = [], time.monotonic()
         for number, parity in enumerate(classes):
-            tell(f"coarse mesh, symmetry {_name(parity)}", 0.3 * number / len(classes))
+            tell(f"coarse mesh, symmetry {_name(parity)}", _COARSE * number / len(classes))
             found.append(coarse_modes(plate, parity, centre, highest, band, nearest))
+        if deadline is not None:
+            deadline = deadline.slower(_slowness(found, time.monotonic() - begun))
         last = nearest == _WIDTHS[-1]
         try:
             chosen = chosen_modes(found, near, band, mode, count)
@@ -122,8 +132,9 @@ def _solved(
         pieces: list[RefinedModes] = []
         for number, (one, index) in enumerate(zip(found, chosen, strict=True)):
             if index.size:
-                tell(f"fine mesh, symmetry {_name(one.parity)}", 0.3 + 0.7 * number / len(found))
-                pieces.append(refined_modes(plate, one, index, highest, tolerance))
+                share = _COARSE + (1 - _COARSE) * number / len(found)
+                tell(f"fine mesh, symmetry {_name(one.parity)}", share)
+                pieces.append(refined_modes(plate, one, index, highest, tolerance, deadline))
         if mode is None:
             break
         labelled = [piece for piece in (with_label(p, mode) for p in pieces) if piece.index.size]
@@ -131,6 +142,15 @@ def _solved(
             pieces = labelled
             break
     return collected_modes(plate, pieces, tolerance, band)
+
+
+def _slowness(found: list[CoarseModes], took: si.Second) -> float:
+    """How many times as long as expected the coarse meshes took: another machine, or a busy one.
+
+    Between 1 and 4: what is compiled for the first time is no measure of the next mesh.
+    """
+    expected = sum(expected_seconds(one.solved) for one in found)
+    return min(max(1.0, took / expected), 4.0)
 
 
 def _name(parity: Symmetry) -> str:

@@ -7,17 +7,20 @@ kept.
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import OutOfTimeError
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.modes import MODEL, PlateModes
+from squeezefilm.plate.solid.guess import estimated_frequency
+from squeezefilm.plate.solid.modes import MODEL, Label, PlateModes
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
+from squeezefilm.plate.solid.size import solve_size
 from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.progress import ShareProgress
+from squeezefilm.progress import NO_HURRY, Deadline, Pace
 
 RESPONSE_POINTS = 200
 _LINE_POINTS = 401
@@ -79,6 +82,11 @@ class SolidMode:
         return float(self.modes.errors[self.index])
 
     @property
+    def coarseness(self) -> str:
+        """What is said of a mode that a budget left on the coarse mesh; empty for others."""
+        return self.modes.coarseness
+
+    @property
     def quality_factor(self) -> si.Dimensionless:
         """From the materials' losses, weighted by their share of the energy."""
         return float(self.modes.quality_factors[self.index])
@@ -100,23 +108,9 @@ class SolidMode:
         plate = self.modes.plate
         # With the resonance in the band, its mode is in the reduced space and not far outside.
         band = np.union1d(ascending, self.frequency)
-        response = harmonic_response(plate, band)
+        response = harmonic_response(plate, band, resolution=self.modes.resolution)
         amplitude = response.amplitude_at(*self.lobe)
         return np.asarray(amplitude[np.searchsorted(band, ascending)][back])
-
-
-@dataclass(frozen=True, slots=True)
-class _Listener:
-    """Who is told how far a solve is: no part of what was asked, so that a cache sees one key."""
-
-    tell: ShareProgress | None = field(default=None, compare=False)
-
-    def share(self, first: float, last: float) -> ShareProgress | None:
-        """Whom a part of the work tells, which goes from one fraction of the whole to another."""
-        tell = self.tell
-        if tell is None:
-            return None
-        return lambda text, fraction: tell(text, first + (last - first) * fraction)
 
 
 @si.checked_numbers
@@ -124,31 +118,38 @@ def solid_mode(
     plate: RectangularPlate,
     label: tuple[int, int] | None = None,
     *,
-    progress: ShareProgress | None = None,
+    pace: Pace = NO_HURRY,
 ) -> SolidMode:
     """A plate's mode with the nodal lines of `label` by three-dimensional piezoelectric elements.
 
-    Without a label the plate's working mode. `progress` is called with a text and a fraction; the
-    last plates that were solved are kept. Raises what `solve_modes` and `harmonic_response` raise:
-    `InputError` where there is no such mode or nothing drives the plate, `GeometryError` for a
-    plate that the elements cannot carry.
+    Without a label the plate's working mode. `pace` is told a text and a fraction, and its budget
+    bounds the time: where finer meshes would not end in time the coarse one's answer is given, with
+    its larger error (`coarseness`). The last plates that were solved are kept, those under each
+    budget by themselves. Raises what `solve_modes` and `harmonic_response` raise: `InputError`
+    where there is no such mode or nothing drives the plate, `GeometryError` for a plate that the
+    elements cannot carry, `OutOfTimeError` where not even the coarse mesh would end in time.
     """
-    return _solid_mode(plate, label, _Listener(progress))
+    return _solid_mode(plate, label, pace)
 
 
 # A plate keeps 10 to 100 MB.
 @functools.lru_cache(maxsize=8)
-def _solid_mode(
-    plate: RectangularPlate, label: tuple[int, int] | None, listener: _Listener
-) -> SolidMode:
+def _solid_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pace) -> SolidMode:
     wanted = label or plate.working_label
     modes = solve_modes(
-        plate, mode=wanted, tolerance=_TOLERANCE, progress=listener.share(0.0, _MODES)
+        plate,
+        mode=wanted,
+        tolerance=_TOLERANCE,
+        progress=pace.share(0.0, _MODES),
+        deadline=_deadline_of_modes(plate, wanted, pace),
     )
     index = modes.index(wanted)
     frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
     response = harmonic_response(
-        plate, response_frequencies(frequency, quality), progress=listener.share(_MODES, 1.0)
+        plate,
+        response_frequencies(frequency, quality),
+        resolution=modes.resolution,
+        progress=pace.share(_MODES, 1.0),
     )
     lengthwise = wanted[0] >= wanted[1]
     span, across = (plate.length, plate.width)[:: 1 if lengthwise else -1]
@@ -179,6 +180,24 @@ def _solid_mode(
         ),
         modal_mass=float(1 / line[at] ** 2),
     )
+
+
+def _deadline_of_modes(plate: RectangularPlate, label: Label, pace: Pace) -> Deadline | None:
+    """When the modes must be there, so that their response is there in time.
+
+    Raises `OutOfTimeError` where the coarse meshes alone would take longer.
+    """
+    deadline = pace.deadline()
+    if deadline is None or pace.budget is None:
+        return None
+    size = solve_size(plate, label, estimated_frequency(plate, label))
+    least = size.coarse + size.coarse_response
+    if not deadline.allows(least):
+        raise OutOfTimeError(
+            f"the coarsest three-dimensional mesh takes about {least:.2g} s, more than the budget "
+            f"of {pace.budget:.3g} s; allow more"
+        )
+    return deadline.earlier(size.response)
 
 
 def _interior(

@@ -57,7 +57,7 @@ def _numbers(result: SolvedBody) -> str:
     rows.append((f"Amplitude at {shown(volts, V)}", amplitude, "zero-to-peak, largest"))
     table = text_table(result.model, ("Quantity", "Value", "Remark"), rows + drive_rows(result))
     fit = result.body.fit if isinstance(result, RingAnalysis) else None
-    said = (*(() if fit is None else fit_sentences(fit)), *result.heat.doubts)
+    said = (*(() if fit is None else fit_sentences(fit)), *result.objections, *result.heat.doubts)
     return table + "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
 
 

@@ -197,7 +197,7 @@ def show_plate(result: SolvedBody) -> None:
             "B(circles, diameters) bends; R and T move in the plane, radially and around."
         )
     console.print(f"{result.model}; {result.status}")
-    for doubt in result.heat.doubts:
+    for doubt in (*result.objections, *result.heat.doubts):
         console.print(f"! {doubt}")
     if isinstance(result, PlateAnalysis):
         _show_changes(console, result)

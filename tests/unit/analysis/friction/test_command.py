@@ -21,6 +21,7 @@ from squeezefilm.analysis.friction.command import (
 from squeezefilm.analysis.verdict import Finding
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import OutOfRangeError
+from squeezefilm.progress import NO_HURRY
 
 
 @dataclasses.dataclass(frozen=True)
@@ -149,7 +150,7 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     point = {"frequency": 41e3, "normal_force": 0.3, "surface": "bare", "model": "film-open"}
     more = {"voltage": 100.0, "vibration_amplitude": None, "position": 1e-3}
     assert parts == [
-        ("predict", (thin,), point | more | {"speed": 0.1}),
+        ("predict", (thin,), point | more | {"speed": 0.1, "pace": NO_HURRY}),
         (
             "wanted_friction", (thin, PREDICTION, 0.6),
             {"samples": 16, "seed": 9, "progress": said},

@@ -23,6 +23,7 @@ from squeezefilm.analysis.plate.tracking import TrackRequest
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.layers import NORMAL, Resolution
 
 LENGTH, WIDTH = 83e-3, 49e-3
 
@@ -56,6 +57,8 @@ class Modes:
 
     def index(self, label: Any) -> int:
         return self.labels.index(label)
+
+    resolution, coarseness = NORMAL, ""
 
     def half_wavelength(self, mode: int) -> float:
         return [20e-3, math.nan, 16e-3][mode]
@@ -103,11 +106,17 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """What an analysis asks of its parts, by their names."""
     asked: dict[str, Any] = {"modes": [], "circuit": True}
 
-    def solve(plate: RectangularPlate, *, mode: Any = None, band: Any = None) -> Modes:
+    def solve(
+        plate: RectangularPlate, *, mode: Any = None, band: Any = None, **hurry: Any
+    ) -> Modes:
+        assert hurry["deadline"] is None
         asked["modes"].append((plate, mode, band))
         return Modes(band)
 
-    def respond(plate: RectangularPlate, frequencies: np.ndarray) -> Response:
+    def respond(
+        plate: RectangularPlate, frequencies: np.ndarray, *, resolution: Resolution
+    ) -> Response:
+        assert resolution == NORMAL
         asked["sweep"] = frequencies
         return Response(plate, frequencies, asked["circuit"])
 

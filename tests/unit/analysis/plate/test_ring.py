@@ -137,7 +137,7 @@ def test_a_summary_has_every_number_under_its_name() -> None:
         "current_A": pytest.approx(0.2), "apparent_power_VA": pytest.approx(2.0),
         "input_power_W": pytest.approx(1.2), "described_amplitude_m_per_V": None, "fit": None,
         "sound_pressure_level_dB": {"0.3 m": 70.0, "1 m": 60.0}, "sound_guidance": None,
-        "model": "a-model", "status": one.status,
+        "model": "a-model", "status": one.status, "objections": [],
     }  # fmt: skip
 
 

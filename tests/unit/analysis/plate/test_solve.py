@@ -32,11 +32,12 @@ def test_a_rectangle_is_solved_with_all_that_is_asked(asked: list[Any]) -> None:
     assert solve_plate("biet2008-plate") == "solved by analyze_plate"
     given: dict[str, Any] = {
         "mode": (7, 0), "band": (30e3, 40e3), "points": 50, "sensitivity": True, "track": object(),
-        "progress": print,
+        "progress": print, "budget": 60.0,
     }  # fmt: skip
+    for_rectangles = {"sensitivity": False, "track": None, "budget": None}
     solve_plate(load_display("biet2008-plate"), **given)
     assert asked == [
-        ("analyze_plate", "biet2008-plate", {**DEFAULTS, "sensitivity": False, "track": None}),
+        ("analyze_plate", "biet2008-plate", {**DEFAULTS, **for_rectangles}),
         ("analyze_plate", "biet2008-plate", given),
     ]
 

@@ -15,6 +15,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.lab.designing import numbers
 from squeezefilm.lab.designing.form import display_of, edited, form, preset_text
 from squeezefilm.lab.designing.numbers import WorkingPoint, designed, opened, outline, predicted
+from squeezefilm.progress import Pace
 
 STATOR, DISC = preset_text("biet2008-stator"), preset_text("winfield2007-tpad")
 GLASS = preset_text("touchpad-glass")
@@ -91,7 +92,7 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
         # What every prediction says of itself beside.
         "display", "frequency_Hz", "amplitude_model", "mean_pressure", "mean_pressure_error",
         "amplitude_kept_under_finger", "finger_impedance_N_s_per_m", "finger_speed_m_per_s", "heat",
-        "model", "validity",
+        "model", "validity", "objections",
     }  # fmt: skip
     curve = found["friction_curve"]
     amplitude = np.linspace(0.0, max(2 * p.vibration_amplitude, 2e-6), 49)
@@ -199,9 +200,10 @@ def test_a_curve_of_the_papers_model_is_left_out_where_it_does_not_hold() -> Non
 def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     solved: list[Any] = []
 
-    def solid(actuator: Any, *, progress: Any) -> None:
+    def solid(actuator: Any, *, pace: Pace) -> None:
         solved.append(actuator)
-        progress("sweeping", 0.5)
+        assert pace.tell is not None
+        pace.tell("sweeping", 0.5)
 
     told: list[Any] = []
     asked: list[Any] = []

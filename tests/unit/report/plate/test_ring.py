@@ -266,7 +266,7 @@ def test_a_page_says_what_the_terminal_says(monkeypatch: pytest.MonkeyPatch) -> 
     ring = made(
         display=SimpleNamespace(title="A <ring>", name="r", drive=SimpleNamespace(voltage=12.0)),
         body=SimpleNamespace(fit="thickness", quality_factor=None), rows=(), status="no modes",
-        summary=lambda: told, heat=WARM,
+        summary=lambda: told, heat=WARM, objections=(),
     )  # fmt: skip
     text = page.plate_page(ring, {"line-scan": ("Scan", scan(RING))})
     for said in (

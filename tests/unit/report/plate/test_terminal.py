@@ -91,6 +91,7 @@ def plate(**changes: Any) -> Any:
         ),
         "tracks": TRACKS,
         "heat": WARM,
+        "objections": ("a doubt",),
     }
     return made_result(PlateAnalysis, **{**values, **changes})
 
@@ -130,6 +131,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         "(8,0) 33.581 kHz 12 Hz 212 120 nm/V 0.12",
         "(7,1) 30 kHz 12 Hz 200 not driven 0",
         "piezoelectric_solid_3d; 12 modes",
+        "! a doubt",
         "! it is hot",
         "Sensitivities of the working mode",
         "what is different frequency per volt",
@@ -143,7 +145,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
 
 def test_what_was_not_asked_for_is_not_there() -> None:
     lines = said(shear_frequency=None, sensitivities=None, tracks=None, circuit=None)
-    assert lines[-2:] == ["piezoelectric_solid_3d; 12 modes", "! it is hot"]
+    assert lines[-3:] == ["piezoelectric_solid_3d; 12 modes", "! a doubt", "! it is hot"]
     assert not [line for line in lines if "shear" in line or "circuit" in line]
 
 

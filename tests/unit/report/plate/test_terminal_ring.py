@@ -68,6 +68,7 @@ def ring(**changes: Any) -> Any:
         "model": "annular_3d",
         "status": "2 modes in the band, within 1e-3 (estimated)",
         "heat": WARM,
+        "objections": ("a doubt",),
     }  # fmt: skip
     return made_result(RingAnalysis, **{**values, **changes})
 
@@ -99,6 +100,7 @@ def test_a_ring_is_said_with_all_that_there_is() -> None:
         "T(0,2) 41.001 kHz 12 Hz 200 not driven 0",
         "B(circles, diameters) bends; R and T move in the plane, radially and around.",
         "annular_3d; 2 modes in the band, within 1e-3 (estimated)",
+        "! a doubt",
         "! it is hot",
     ]
 

@@ -1,0 +1,79 @@
+"""How the time of a plate's analysis is shared out under a budget: mode, response, band."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import OutOfTimeError
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.guess import estimated_frequency
+from squeezefilm.plate.solid.layers import COARSE, Resolution
+from squeezefilm.plate.solid.modes import Label, PlateModes
+from squeezefilm.plate.solid.size import SolveSize, band_seconds, solve_size
+from squeezefilm.plausibility.expected import expectation
+from squeezefilm.progress import Deadline, Pace
+
+
+@dataclass(frozen=True)
+class Hurry:
+    """The deadlines of the parts, None where there is no budget: the working mode's leaves time for
+    its response, and the band takes what these two leave."""
+
+    size: SolveSize | None = None
+    whole: Deadline | None = None
+
+    @classmethod
+    def of(cls, plate: RectangularPlate, label: Label, pace: Pace) -> Hurry:
+        """What a pace leaves of each part of a plate's analysis.
+
+        Raises `OutOfTimeError`, with the answer of a closed estimate, where the budget does not
+        allow the coarse meshes.
+        """
+        whole = pace.deadline()
+        if whole is None:
+            return cls()
+        size = solve_size(plate, label, estimated_frequency(plate, label))
+        least = size.coarse + size.coarse_response
+        if not whole.allows(least):
+            seen = expectation(plate)
+            instead = "" if seen is None else f" Without a solve: {seen.sentence}."
+            raise OutOfTimeError(
+                f"the coarsest three-dimensional mesh takes about {least:.2g} s, more than the "
+                f"budget of {pace.budget:.3g} s; allow more.{instead}",
+                quantity="budget",
+            )
+        return cls(size, whole)
+
+    @property
+    def mode(self) -> Deadline | None:
+        """When the working mode must be there."""
+        return self._before_response()
+
+    @property
+    def band(self) -> Deadline | None:
+        """When the band's modes must be there."""
+        return self._before_response()
+
+    def _before_response(self) -> Deadline | None:
+        if self.whole is None or self.size is None:
+            return None
+        return self.whole.earlier(self.size.response)
+
+    def allows_band(self, plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> bool:
+        """Whether all modes of a band (Hz, Hz) can be looked for, on the coarse meshes at least."""
+        before = self._before_response()
+        return before is None or before.allows(band_seconds(plate, band[1]))
+
+    def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:
+        """What the budget left out of the working mode and the band's modes, in sentences."""
+        said = [alone.coarseness] if alone.coarseness else []
+        if self.whole is not None and modes is alone:
+            said.append("the budget left no time for the other modes of the band")
+        return tuple(said)
+
+    def response_mesh(self, alone: PlateModes) -> Resolution:
+        """How fine the response is meshed: as the mode, or coarser where time has run short."""
+        if self.whole is None or self.size is None or self.whole.allows(self.size.response):
+            return alone.resolution
+        return COARSE

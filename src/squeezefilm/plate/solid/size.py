@@ -1,0 +1,100 @@
+"""How large the three-dimensional solve of a plate will be, and how long it may take.
+
+Counted on the meshes that would be made, before anything is assembled.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.plate.elements.box_model import kept_products
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.coarse_modes import class_fits
+from squeezefilm.plate.solid.layers import COARSE, NORMAL, Resolution
+from squeezefilm.plate.solid.mesh import plate_model
+from squeezefilm.plate.solid.model import PlateModel
+from squeezefilm.plate.solid.modes import Label
+from squeezefilm.plate.solid.reduced import resolved_frequency
+from squeezefilm.plate.solid.symmetry import all_classes, drive_classes
+
+# Products of a slice's unknowns that are worked off in a second: of one thread of the machine that
+# this was written on, 10 to 15 times 10^9 for large slices. Others are slower or faster by a factor
+# of three or so; time that is left is told from what was measured meanwhile.
+_RATE = 11e9
+# Around what a mesh takes besides (s).
+_BESIDES = 0.1
+
+
+class SolveSize(NamedTuple):
+    """What a plate's working mode takes: unknowns of its largest mesh, and seconds of the coarse
+    meshes, of the finer ones, and of the response on either."""
+
+    unknowns: int
+    coarse: si.Second
+    refined: si.Second
+    coarse_response: si.Second
+    response: si.Second
+
+    @property
+    def seconds(self) -> si.Second:
+        """Of all that a working mode takes (s), right to a factor of three or so."""
+        return self.coarse + self.refined + self.response
+
+
+def expected_seconds(solved: PlateModel) -> si.Second:
+    """How long a mesh takes to be factorised and searched (s): slices times the cube of their
+    unknowns. Right to a factor of three or so, by machine."""
+    slices, unknowns = _counted(solved)
+    return _BESIDES + slices * unknowns**3 / _RATE
+
+
+def _counted(solved: PlateModel) -> tuple[int, int]:
+    model = solved.model
+    kept = kept_products(model.y, model.z, model.trunk)
+    return int(model.x.nodes.size), 4 * int(np.count_nonzero(kept))
+
+
+@si.checked_numbers
+def solve_size(plate: RectangularPlate, label: Label, frequency: si.Hertz) -> SolveSize:
+    """The size of a solve for the mode with the nodal lines of `label`, expected near a frequency
+    (Hz).
+
+    Raises what `plate_model` raises: `OutOfRangeError` for a plate too thin for solid elements,
+    `InputError` for one too large.
+    """
+    highest = 1.15 * frequency
+    fitting = [one for one in all_classes(plate) if class_fits(one, label)]
+    driven = drive_classes(plate)
+    band = resolved_frequency((frequency, frequency))
+
+    def taken(resolution: Resolution, *, response: bool) -> tuple[si.Second, int]:
+        meshes = [
+            plate_model(plate, band if response else highest, resolution, parity)
+            for parity in (driven if response else fitting)
+        ]
+        counted = [_counted(mesh) for mesh in meshes]
+        return (
+            sum(expected_seconds(mesh) for mesh in meshes),
+            max((slices * unknowns for slices, unknowns in counted), default=0),
+        )
+
+    coarse, _ = taken(COARSE, response=False)
+    refined, unknowns = taken(NORMAL, response=False)
+    rough, _ = taken(COARSE, response=True)
+    response, others = taken(NORMAL, response=True)
+    # The response's frequency is extrapolated from a coarse mesh beside it.
+    return SolveSize(max(unknowns, others), coarse, refined, rough, response + rough)
+
+
+@si.checked_numbers
+def band_seconds(plate: RectangularPlate, highest: si.Hertz) -> si.Second:
+    """How long the coarse meshes of all classes of symmetry take up to a frequency (Hz), each
+    counted twice more to know how many modes there are (s).
+
+    Raises what `solve_size` raises.
+    """
+    meshes = [plate_model(plate, highest, COARSE, parity) for parity in all_classes(plate)]
+    return 3 * sum(expected_seconds(mesh) for mesh in meshes)

@@ -1,0 +1,1 @@
+"""Whether a description can be true: checked against what is built, before anything is solved."""
