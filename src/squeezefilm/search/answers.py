@@ -58,10 +58,11 @@ _DRAWN = ("relative_friction_interval", "relative_friction_median", "interval_le
 
 
 def _units() -> dict[str, si.Unit]:
-    """The units of the house by the suffix that a key has for them, and two that are none of SI."""
+    """The units of the house by the suffix that a key has for them, and two beside SI."""
     marks = (si.unit_of(value) for value in vars(si).values() if typing.get_args(value))
     units = [one for one in marks if one is not None and one.suffix]
-    return {one.suffix: one for one in (*units, si.Unit("dB"), si.Unit("VA"))}
+    others = {"_per_m": si.Unit("1/m")}
+    return others | {one.suffix: one for one in (*units, si.Unit("dB"), si.Unit("VA"))}
 
 
 _UNITS = _units()
@@ -167,12 +168,15 @@ def _unknown(name: str, verbs: Sequence[str], wanted: str) -> InputError:
     every = [one for verb in verbs for one in plain[verb]]
     inside = [one for one in every if wanted.lower() in one.lower()]
     near = f" Did you mean {', '.join(dict.fromkeys(inside[:5]))}?" if inside else ""
+    told: dict[str, str] = {}
+    for verb in verbs:
+        for one in plain[verb]:
+            told.setdefault(one.partition(".")[0], verb)
     heads = "; ".join(
-        f"{verb}: {', '.join(dict.fromkeys(one.partition('.')[0] for one in plain[verb]))}"
-        for verb in verbs
+        f"{verb}: {', '.join(head for head, of in told.items() if of == verb)}" for verb in verbs
     )
     return InputError(
         f"--ask {name}: no verb answers that.{near or si.did_you_mean(wanted, every)} There are, "
-        f"by verb: {heads}. squeezefilm sweep --answers lists them all",
+        f"by the verb that is asked first: {heads}. squeezefilm sweep --answers lists all",
         quantity="ask",
     )

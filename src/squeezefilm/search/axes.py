@@ -89,8 +89,14 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
         spaced = _RANGE.fullmatch(values)
         if spaced is not None and unit is not None:
             logarithmic = spaced["log"] is not None
-            found: list[Value] = list(_spaced(name, spaced, unit))
+            found: list[Value] = [
+                one if option is None else option.number(one) for one in _spaced(name, spaced, unit)
+            ]
         else:
+            if ".." in values and unit is not None:
+                raise InputError(
+                    f"{name}={values} has no number of steps; write it behind a colon: {values}:9"
+                )
             parts = values.split("," if option is None else option.between)
             found = [_value(name, part.strip(), option, unit) for part in parts]
     elif np.ndim(values) == 0:
@@ -161,18 +167,26 @@ def _what(name: str, display: Display) -> tuple[Option | None, si.Unit | None, b
     if name in OPTIONS:
         option = OPTIONS[name]
         return option, option.unit, False
-    paths = list(number_paths(display))
     try:
         unit, whole = unit_at(display, name)
     except InputError as error:
-        same = [path for path in paths if path.rpartition(".")[2] == name.rpartition(".")[2]]
-        near = f" Did you mean {' or '.join(same[:4])}?" if same and same[0] != name else ""
-        raise InputError(
-            f"'{name}' can not be varied: it is no operating option "
-            f"({', '.join(OPTIONS)}), and {error}.{near or si.did_you_mean(name, OPTIONS)}",
-            quantity="vary",
-        ) from error
+        raise InputError(f"cannot vary '{name}': {_instead(name, display, error)}") from error
     return None, unit, whole
+
+
+def _instead(name: str, display: Display, error: InputError) -> str:
+    """What may be varied in place of a name that is not known."""
+    if "." in name:
+        return str(error)
+    paths = (re.sub(r"\.\d+\.", ".*.", path) for path in number_paths(display))
+    same = dict.fromkeys(path for path in paths if path.rpartition(".")[2] == name)
+    if same:
+        return f"say of what, {' or '.join(same)}"
+    return (
+        f"it is no operating option.{si.did_you_mean(name, OPTIONS)} These are: "
+        f"{', '.join(OPTIONS)}. Of the display write a path, like actuator.thickness; squeezefilm "
+        "show lists its values"
+    )
 
 
 def _spaced(name: str, asked: re.Match[str], unit: si.Unit) -> Iterator[float]:
@@ -193,7 +207,8 @@ def _spaced(name: str, asked: re.Match[str], unit: si.Unit) -> Iterator[float]:
         raise InputError(
             f"{name} cannot be spaced by its logarithm from {asked['first'].strip()}; start above 0"
         )
-    yield from (first, *middle[1:-1].tolist(), last)
+    # 1.1 mm, and not 1.1000000000000001 mm.
+    yield from (first, *(float(f"{one:.12g}") for one in middle[1:-1]), last)
 
 
 def _value(name: str, given: Any, option: Option | None, unit: si.Unit | None) -> Value:
@@ -201,12 +216,13 @@ def _value(name: str, given: Any, option: Option | None, unit: si.Unit | None) -
         assert option is not None
         return option.word(given)
     if isinstance(given, str):
-        return _quantity(name, given, unit)
+        number = _quantity(name, given, unit)
+        return number if option is None else option.number(number)
     if isinstance(given, bool) or not isinstance(given, int | float | np.number):
         raise InputError(f"{name} = {given!r:.60} is no number and no text; write a quantity")
     if not np.isfinite(given):
         raise InputError(f"{name} = {given!r} is not finite; write a finite number")
-    return float(given)
+    return float(given) if option is None else option.number(float(given))
 
 
 def _quantity(name: str, text: str, unit: si.Unit) -> float:

@@ -109,6 +109,17 @@ class FollowedMode:
     likeness: si.FloatArray
     driven: bool
 
+    @property
+    def lost(self) -> bool:
+        """Whether it was lost at a point."""
+        return None in self.numbers
+
+    @property
+    def least_likeness(self) -> si.Dimensionless:
+        """How alike it is at least, where it was not lost."""
+        pairs = zip(self.numbers, self.likeness.tolist(), strict=True)
+        return float(min(alike for number, alike in pairs if number is not None))
+
     def values(self, summaries: Sequence[dict[str, Any] | None], quantity: str) -> si.FloatArray:
         """One quantity of the mode over the points; NaN where it was lost."""
         out = np.full(len(self.numbers), np.nan)
@@ -122,7 +133,8 @@ class FollowedMode:
 def followed_modes(
     summaries: Sequence[dict[str, Any] | None], shape: tuple[int, ...], begin: int
 ) -> tuple[FollowedMode, ...]:
-    """The modes of the point `begin` followed over a grid of points of a `shape`, in C order.
+    """The modes of the point `begin` followed over a grid of points of a `shape`, in C order;
+    those that the drive moves come first.
 
     `summaries` are those of `ModesToFollow`, None where a point has none. From the first point the
     following goes from neighbour to neighbour; a mode that is less than 0.4 alike both to itself at
@@ -160,7 +172,7 @@ def followed_modes(
         for k, label in enumerate(said)
     ]
     forces = np.array([abs(row["modal_force"]) for row in first["modes"]])
-    return tuple(
+    modes = (
         FollowedMode(
             labels[number],
             tuple(point[number] for point in numbers),
@@ -169,6 +181,7 @@ def followed_modes(
         )
         for number in range(count)
     )
+    return tuple(sorted(modes, key=lambda mode: not mode.driven))
 
 
 def _neighbours(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import typing
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from squeezefilm import quantities as si
@@ -23,13 +23,19 @@ from squeezefilm.texture_file import load_texture
 class Option:
     """One operating option: the unit of its numbers, or for words what reads one.
 
-    `between` separates several words in a text. `argument` is what a verb is called with.
+    Numbers are `bounds`, words for `si.require`; `between` separates several words in a text.
     """
 
     name: str
     unit: si.Unit | None = None
+    bounds: Mapping[str, Any] = field(default_factory=dict)
     read: Callable[[str], Any] = str
     between: str = ","
+
+    def number(self, value: float) -> float:
+        """A number of this option. Raises `InputError` for one outside its bounds."""
+        si.require(self.name, value, self.unit or si.Unit("1"), **self.bounds)
+        return value
 
     def word(self, given: Any) -> str:
         """A word of this option as it stands in a table. Raises `InputError` for one that is not
@@ -60,14 +66,14 @@ def _yes_or_no(word: str) -> bool:
 OPTIONS: dict[str, Option] = {
     one.name: one
     for one in (
-        Option("voltage", si.Unit("V")),
-        Option("frequency", si.Unit("Hz")),
-        Option("vibration_amplitude", si.Unit("m")),
-        Option("normal_force", si.Unit("N")),
-        Option("speed", si.Unit("m/s")),
+        Option("voltage", si.Unit("V"), {"at_least": 0}),
+        Option("frequency", si.Unit("Hz"), {"above": 0}),
+        Option("vibration_amplitude", si.Unit("m"), {"at_least": 0}),
+        Option("normal_force", si.Unit("N"), {"above": 0}),
+        Option("speed", si.Unit("m/s"), {"above": 0}),
         Option("position", si.Unit("m")),
-        Option("ambient_pressure", si.Unit("Pa")),
-        Option("wanted_friction", si.Unit("1")),
+        Option("ambient_pressure", si.Unit("Pa"), {"above": 0}),
+        Option("wanted_friction", si.Unit("1"), {"at_least": 0, "at_most": 1}),
         Option("surface"),
         _one_of("model", typing.get_args(FrictionModel)),
         _one_of("theory", PLATE_THEORIES),

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import collections
 import contextlib
 import math
-import re
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -21,7 +19,7 @@ from squeezefilm.search.followed import FollowedMode, followed_modes
 from squeezefilm.search.kept import Kept, address
 from squeezefilm.search.plan import SweepRequest, told_apart
 from squeezefilm.search.points import Answer, Point, answered
-from squeezefilm.search.swept import NOT_YET, Column, Sweep
+from squeezefilm.search.swept import NOT_YET, Column, Sweep, counted
 
 
 @reads_text
@@ -91,7 +89,7 @@ class Run:
         if not of:
             return
         left = ""
-        if done:
+        if 0 < done < of:
             seconds = (time.monotonic() - began) / done * (of - done)
             left = f", about {_duration(seconds)} left"
         self._tell(f"{done} of {of} points" + left)
@@ -108,6 +106,7 @@ class Run:
         origin = stamp(None) | {"config_sha256": hashed[0] if len(hashed) == 1 else hashed}
         return Sweep(
             ", ".join(told_apart(plan.displays)),
+            plan.verbs,
             plan.axes,
             tuple(columns),
             reasons,
@@ -133,6 +132,8 @@ class Run:
         if asked.verb == FOLLOWED:
             quantity = asked.key.rpartition(".")[2]
             for mode in follows:
+                if not mode.driven and quantity != "frequency_Hz" and quantity != "quality_factor":
+                    continue  # nothing drives it anywhere: a column of nothing
                 name = f"{FOLLOWED}.{mode.label}.{quantity}"
                 yield Column(name, asked.unit, mode.values(self._modes(), quantity))
             return
@@ -153,14 +154,8 @@ class Run:
 
     def _warnings(self) -> tuple[tuple[str, int], ...]:
         """What was warned of, texts that differ in their numbers only told once."""
-        alike: dict[str, str] = {}
-        counts: collections.Counter[str] = collections.Counter()
-        for answer in self._found.values():
-            for text in dict.fromkeys(answer.warnings):
-                plain = re.sub(r"[-+]?\d[\d.e+-]*", "#", text)
-                alike.setdefault(plain, text)
-                counts[plain] += 1
-        return tuple((alike[plain], count) for plain, count in counts.most_common())
+        answers = self._found.values()
+        return counted(text for one in answers for text in dict.fromkeys(one.warnings))
 
 
 def _duration(seconds: float) -> str:

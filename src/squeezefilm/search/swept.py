@@ -3,9 +3,11 @@ where there is no answer."""
 
 from __future__ import annotations
 
+import collections
 import itertools
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -17,6 +19,18 @@ from squeezefilm.search.followed import FollowedMode
 
 NOT_YET = "not computed"
 """The reason of a point to which a sweep that was stopped did not come."""
+
+
+def counted(texts: Iterable[str]) -> tuple[tuple[str, int], ...]:
+    """Texts with how often each is said, the most common first; of those that differ in their
+    numbers only, one stands for all."""
+    alike: dict[str, str] = {}
+    counts: collections.Counter[str] = collections.Counter()
+    for text in texts:
+        plain = re.sub(r"[-+]?\d[\d.e+-]*( [a-zµ%]?[A-Za-z%]+\b)?", "#", text)
+        alike.setdefault(plain, text)
+        counts[plain] += 1
+    return tuple((alike[plain], count) for plain, count in counts.most_common())
 
 
 @dataclass(frozen=True)
@@ -35,6 +49,7 @@ class Sweep(Result):
 
     Attributes:
         title: of what was swept.
+        verbs: which verbs answered.
         axes: what was varied.
         columns: what was asked for.
         reasons: of each point, why it has no answer; empty where it has one.
@@ -44,6 +59,7 @@ class Sweep(Result):
     """
 
     title: str
+    verbs: tuple[str, ...]
     axes: tuple[Axis, ...]
     columns: tuple[Column, ...]
     reasons: tuple[str, ...]
@@ -111,6 +127,7 @@ class Sweep(Result):
         table = self.table()
         return {
             "title": self.title,
+            "verbs": list(self.verbs),
             "axes": [
                 {"names": list(one.columns), "steps": [list(step) for step in one.steps]}
                 for one in self.axes

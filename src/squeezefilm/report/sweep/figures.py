@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.report.kit import style
-from squeezefilm.report.sweep.words import name_of, scaled, step_words
+from squeezefilm.report.sweep.words import (
+    labelled,
+    mode_of,
+    name_of,
+    quantity_of,
+    scaled,
+    step_words,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,18 +34,18 @@ def sweep_figure(found: Sweep) -> Figure:
     """A panel for each number that was asked for, six at the most: lines over the first axis that
     has several steps, or, where a second has more than eight, a map of the two."""
     axes = [axis for axis in found.axes if len(axis) > 1]
-    drawn = [c for c in found.columns if np.isfinite(c.values).any()][:MOST_PANELS]
+    drawn = [c for c in found.columns if np.isfinite(c.values).any()]
     if not axes or not drawn or len(axes) > 2:
         return style.message_figure(
             f"Sweep of {style.plain(found.title)}", _nothing_to_draw(found, len(axes), len(drawn))
         )
     along, beside = _order(axes)
     panels = _panels(drawn) if beside is None else [[column] for column in drawn]
+    panels = panels[:MOST_PANELS]
     over = " and ".join(name_of(axis) for axis in axes)
     figure = style.new_figure(
-        f"{', '.join(name_of(one[0]) for one in panels)} over {over}",
-        f"{style.plain(found.title)}; {found.answered} of {len(found.reasons)} points with an "
-        "answer; crosses: points without one",
+        f"{', '.join(map(_panel_name, panels))} over {over}",
+        f"as {' and '.join(found.verbs)} has it, of {style.plain(found.title)}{_left_out(found)}",
         1.2 + 3.2 * -(-len(panels) // 2) if len(panels) > 1 else 4.6,
     )
     columns = 1 if len(panels) == 1 else 2
@@ -51,6 +58,11 @@ def sweep_figure(found: Sweep) -> Figure:
     for spare in grid.ravel()[len(panels) :]:
         spare.set_axis_off()
     return figure
+
+
+def _left_out(found: Sweep) -> str:
+    lost = len(found.reasons) - found.answered
+    return f"; crosses: {lost} of {len(found.reasons)} points without an answer" if lost else ""
 
 
 def _nothing_to_draw(found: Sweep, axes: int, drawn: int) -> str:
@@ -75,9 +87,8 @@ def _panels(drawn: list[Column]) -> list[list[Column]]:
     """Columns by what they are of: modes that were followed share a panel."""
     panels: dict[str, list[Column]] = {}
     for column in drawn:
-        head, _, tail = column.name.rpartition(".")
-        followed = head.startswith("followed.")
-        panels.setdefault(f"followed.{tail}" if followed else column.name, []).append(column)
+        own = column.name if mode_of(column) is None else quantity_of(column)
+        panels.setdefault(own, []).append(column)
     return list(panels.values())
 
 
@@ -95,18 +106,20 @@ def _lines(axes: Axes, found: Sweep, along: Axis, beside: Axis | None, panel: li
     x = np.arange(len(along)) if numbers is None else numbers
     factor, symbol = (1.0, "") if numbers is None else scaled(numbers, along.units[0])
     scale, unit = scaled(np.concatenate([c.values for c in panel]), panel[0].unit)
-    told = 0
+    # Modes that nothing drives are there, and do not matter.
+    quiet = {one.label for one in found.follows if not one.driven}
+    told, named = 0, False
     for column in panel:
         values = scale * _values(found, along, beside, column)
         for number, line in enumerate(values.T):
             color, dashes = style.LINES[told % len(style.LINES)]
-            label = (
-                step_words(beside, number)
-                if beside is not None
-                else column.name.split(".")[1]
-                if len(panel) > 1
-                else None
-            )
+            label = mode_of(column)
+            if beside is not None:
+                label = step_words(beside, number)
+            if mode_of(column) in quiet:
+                color, dashes = style.MUTED, (0, (1.4, 1.2))
+                label = None if named else "not driven"
+                named = True
             axes.plot(factor * x, line, color=color, ls=dashes, marker="o", ms=3, label=label)
             told += 1
             lost = np.isnan(line)
@@ -114,9 +127,13 @@ def _lines(axes: Axes, found: Sweep, along: Axis, beside: Axis | None, panel: li
                 low = float(np.nanmin(values))
                 axes.plot(factor * x[lost], np.full(lost.sum(), low), "x", color=style.MUTED)
     _along(axes, along, symbol)
-    axes.set_ylabel(_labelled(name_of(panel[0]), unit))
+    axes.set_ylabel(labelled(_panel_name(panel), unit))
     if told > 1:
         style.legend_below(axes, columns=4, gap=0.22)
+
+
+def _panel_name(panel: list[Column]) -> str:
+    return f"{quantity_of(panel[0])} of {len(panel)} modes" if len(panel) > 1 else name_of(panel[0])
 
 
 def _along(axes: Axes, along: Axis, symbol: str) -> None:
@@ -130,7 +147,7 @@ def _along(axes: Axes, along: Axis, symbol: str) -> None:
     elif along.logarithmic:
         axes.set_xscale("log")
         style.plain_log(axes.xaxis)
-    axes.set_xlabel(_labelled(name_of(along), symbol))
+    axes.set_xlabel(labelled(name_of(along), symbol))
 
 
 def _map(
@@ -152,17 +169,10 @@ def _map(
         axes.clabel(lines, fontsize=8.5, fmt=lambda v: f"{v:.3g}")
     rows, columns = np.nonzero(np.ma.getmaskarray(values))
     axes.plot(across * x[columns], up * beside.numbers[rows], "x", color=style.MUTED)
-    figure.colorbar(image, ax=axes, label=_labelled(name_of(column), unit))
+    figure.colorbar(image, ax=axes, label=labelled(name_of(column), unit))
     _along(axes, along, xs)
     if beside.logarithmic:
         axes.set_yscale("log")
         style.plain_log(axes.yaxis)
-    axes.set_ylabel(_labelled(name_of(beside), ys))
+    axes.set_ylabel(labelled(name_of(beside), ys))
     axes.grid(visible=False)
-
-
-def _labelled(name: str, symbol: str) -> str:
-    return f"{name} ({symbol})" if symbol else name
-
-
-FIGURES: dict[str, Any] = {"sweep": sweep_figure}

@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
-import collections
 import itertools
 
 from squeezefilm.report.kit.terminal import heading, plain_console, table
-from squeezefilm.report.sweep.words import name_of, step_words, value_words
+from squeezefilm.report.sweep.words import cells, labelled, name_of, step_words
 from squeezefilm.search.answers import catalogue, without_units
-from squeezefilm.search.swept import NOT_YET, Sweep
+from squeezefilm.search.swept import NOT_YET, Sweep, counted
 
 MOST_ROWS = 40
 """A longer sweep shows its first and last rows."""
+MOST_COLUMNS = 7
 _TOLD = 3
+_ALIKE = 0.6  # below it another mode may have taken its place
 
 
-def sweep_rows(found: Sweep) -> list[tuple[str, ...]]:
-    """A row of words for each point: what was varied, what was asked for."""
-    rows = []
-    for at, numbers in enumerate(itertools.product(*(range(len(a)) for a in found.axes))):
-        steps = (step_words(axis, k) for axis, k in zip(found.axes, numbers, strict=True))
-        values = (value_words(float(c.values[at]), c.unit) for c in found.columns)
-        rows.append((*steps, *values))
-    return rows
+def sweep_columns(found: Sweep) -> list[tuple[str, list[str]]]:
+    """What was varied and what was asked for as columns: a heading with the unit, and a cell for
+    each point."""
+    every = list(itertools.product(*(range(len(axis)) for axis in found.axes)))
+    columns = []
+    for number, axis in enumerate(found.axes):
+        steps = [step_words(axis, k) for k in range(len(axis))]
+        columns.append((name_of(axis), [steps[point[number]] for point in every]))
+    for column in found.columns:
+        symbol, words = cells(column.values, column.unit)
+        columns.append((labelled(name_of(column), symbol), words))
+    return columns
 
 
 def show_sweep(found: Sweep) -> None:
@@ -30,23 +35,42 @@ def show_sweep(found: Sweep) -> None:
     console = plain_console()
     points = len(found.reasons)
     heading(console, f"{found.title}: {points} points")
-    rows = sweep_rows(found)
-    if len(rows) > MOST_ROWS:
-        cut = ("…",) * len(rows[0])
-        rows = [*rows[: MOST_ROWS // 2], cut, *rows[-MOST_ROWS // 2 :]]
-    head = [*map(name_of, found.axes), *map(name_of, found.columns)]
-    table(console, head, rows, fixed=range(len(found.axes)))
-    counts = collections.Counter(reason for reason in found.reasons if reason)
-    for reason, count in counts.most_common(_TOLD):
+    columns = sweep_columns(found)
+    head = [name for name, _ in columns]
+    rows = list(zip(*(words for _, words in columns), strict=True))
+    if len(head) > MOST_COLUMNS and len(rows) <= MOST_COLUMNS:
+        # Few points and many numbers: a row for each number.
+        table(
+            console,
+            ("", *(("",) * len(rows))),
+            zip(head, *rows, strict=True),
+            fixed=range(1, len(rows) + 1),
+        )
+    else:
+        if len(rows) > MOST_ROWS:
+            cut = ("…",) * len(head)
+            rows = [*rows[: MOST_ROWS // 2], cut, *rows[-MOST_ROWS // 2 :]]
+        shown = [row[:MOST_COLUMNS] for row in rows]
+        table(console, head[:MOST_COLUMNS], shown, fixed=range(len(found.axes)))
+        if len(head) > MOST_COLUMNS:
+            console.print(f"{len(head) - MOST_COLUMNS} more columns stand in the files of --out")
+    reasons = counted(reason for reason in found.reasons if reason)
+    for reason, count in reasons[:_TOLD]:
         said = "were not computed yet" if reason == NOT_YET else f"have no answer: {reason}"
         console.print(f"! {count} of {points} points {said}")
-    if len(counts) > _TOLD:
-        console.print(f"! {len(counts) - _TOLD} more reasons stand in the table's last column")
-    least = [float(one.likeness[one.likeness == one.likeness].min()) for one in found.follows]
-    if least:
+    if len(reasons) > _TOLD:
+        console.print(f"! {len(reasons) - _TOLD} more reasons stand in the table's last column")
+    if found.follows:
+        lost = sum(one.lost for one in found.follows)
+        least = min(one.least_likeness for one in found.follows)
         console.print(
-            f"{len(least)} modes followed by their shapes; least likeness from one point to the "
-            f"next {min(least):.2f}" + ("; take smaller steps" if min(least) < 0.6 else "")
+            f"{len(found.follows)} modes followed by their shapes, {lost or 'none'} of them lost "
+            f"on the way; least likeness from one point to the next {least:.2f}"
+            + (
+                '; smaller steps, or a wider band (--vary "band=20 kHz:50 kHz"), follow further'
+                if lost or least < _ALIKE
+                else ""
+            )
         )
     for text, count in found.warnings[:_TOLD]:
         console.print(f"! {text} (at {count} of {points} points, numbers as at one of them)")

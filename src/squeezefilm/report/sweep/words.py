@@ -6,6 +6,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import micro, shown
+from squeezefilm.search.answers import FOLLOWED, without_units
 from squeezefilm.search.axes import Axis
 from squeezefilm.search.swept import Column
 
@@ -14,10 +15,20 @@ def name_of(one: Axis | Column) -> str:
     """A name without its unit, words apart: ``resonance frequency``."""
     if isinstance(one, Axis):
         return ", ".join(name.replace("_", " ") for name in one.names)
-    name = one.name.removesuffix(one.unit.suffix)
-    if name.startswith("followed."):
-        name = f"{name.rpartition('.')[2]} of followed modes"
-    return name.replace("_", " ")
+    mode = mode_of(one)
+    return quantity_of(one) if mode is None else f"{mode} {quantity_of(one)}"
+
+
+def mode_of(column: Column) -> str | None:
+    """The label of the mode that was followed; None of any other number."""
+    parts = column.name.split(".")
+    return parts[1] if parts[0] == FOLLOWED else None
+
+
+def quantity_of(column: Column) -> str:
+    """What a column is of, without the mode."""
+    name = without_units(column.name)
+    return (name if mode_of(column) is None else name.rpartition(".")[2]).replace("_", " ")
 
 
 def step_words(axis: Axis, number: int) -> str:
@@ -28,9 +39,16 @@ def step_words(axis: Axis, number: int) -> str:
     )
 
 
-def value_words(value: float, unit: si.Unit) -> str:
-    """A number of a column in words; a dash where there is none."""
-    return "–" if np.isnan(value) else shown(value, unit)
+def cells(values: si.FloatArray, unit: si.Unit) -> tuple[str, list[str]]:
+    """The unit in which numbers are read easily, and the numbers in it; a dash where there is
+    none."""
+    factor, symbol = scaled(values, unit)
+    return symbol, ["–" if np.isnan(v) else f"{factor * v:.4g}" for v in values.tolist()]
+
+
+def labelled(name: str, symbol: str) -> str:
+    """A name with its unit behind it, where it has one."""
+    return f"{name} ({symbol})" if symbol else name
 
 
 def scaled(values: si.FloatArray, unit: si.Unit | None) -> tuple[float, str]:
