@@ -68,8 +68,7 @@ def sweep(asked: SweepOptions) -> None:
 
     from squeezefilm.report.sweep.files import require_kind, write_sweep
     from squeezefilm.report.sweep.terminal import show_answers, show_sweep
-    from squeezefilm.search.plan import SweepRequest
-    from squeezefilm.search.sweep import sweep_until_stopped
+    from squeezefilm.search.sweep import SweepRequest, sweep_until_stopped
 
     if asked.answers:
         show_answers()

@@ -6,19 +6,17 @@ import functools
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.analysis.parameters import value_at, with_values
 from squeezefilm.analysis.uncertainty import SAMPLES
-from squeezefilm.display import Display, NamedDisplay, load_display
+from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SWEEP_POINTS, require_within
-from squeezefilm.progress import SayProgress
 from squeezefilm.search.answers import Asked, asked_for
 from squeezefilm.search.axes import DISPLAY, Axis, axes_of
 from squeezefilm.search.options import OPTIONS
@@ -26,42 +24,31 @@ from squeezefilm.search.points import Point
 from squeezefilm.search.verbs import VERBS
 
 
-@dataclass(frozen=True)
-class SweepRequest:
-    """What `sweep` is asked for."""
-
-    display: NamedDisplay | Sequence[Display | str | Path]
-    _: KW_ONLY
-    vary: Mapping[str, Any] | Sequence[str] = ()
-    ask: Sequence[str] | str = ()
-    over: str | Path | None = None
-    jobs: int = 1
-    out: str | Path | None = None
-    fresh: bool = False
-    progress: SayProgress | None = None
-
-    def plan(self) -> Plan:
-        """The points of the sweep, all checked. Raises `InputError` for what cannot be asked."""
-        si.require("jobs", self.jobs, at_least=1)
-        texts = [self.ask] if isinstance(self.ask, str) else self.ask
-        given = [self.display] if isinstance(self.display, Display | str | Path) else self.display
-        displays = [one if isinstance(one, Display) else load_display(one) for one in given]
-        if not displays:
-            raise InputError("there is no display to sweep; name at least one")
-        asked = asked_for(texts)
-        axes = axes_of(displays[0], self.vary, self.over)
-        if len(displays) > 1:
-            labels = tuple((name,) for name in told_apart(displays))
-            axes = (Axis((DISPLAY,), (None,), labels), *axes)
-        if not axes:
-            raise InputError(
-                'a sweep varies something; add --vary "voltage=5 V..30 V:6", a file --over, or '
-                "several displays"
-            )
-        count = math.prod(len(axis) for axis in axes)
-        require_within(SWEEP_POINTS, count, "points of the sweep")
-        _check_options(axes, asked, displays)
-        return Plan(tuple(displays), axes, asked)
+def plan_of(
+    display: Display | Sequence[Display | str | Path],
+    vary: Mapping[str, Any] | Sequence[str],
+    ask: Sequence[str] | str,
+    over: str | Path | None,
+) -> Plan:
+    """The points of a sweep, all checked. Raises `InputError` for what cannot be asked."""
+    given = [display] if isinstance(display, Display) else display
+    displays = [one if isinstance(one, Display) else load_display(one) for one in given]
+    if not displays:
+        raise InputError("there is no display to sweep; name at least one")
+    asked = asked_for([ask] if isinstance(ask, str) else ask)
+    axes = axes_of(displays[0], vary, over)
+    if len(displays) > 1:
+        labels = tuple((name,) for name in told_apart(displays))
+        axes = (Axis((DISPLAY,), (None,), labels), *axes)
+    if not axes:
+        raise InputError(
+            'a sweep varies something; add --vary "voltage=5 V..30 V:6", a file --over, or '
+            "several displays"
+        )
+    count = math.prod(len(axis) for axis in axes)
+    require_within(SWEEP_POINTS, count, "points of the sweep")
+    _check_options(axes, asked, displays)
+    return Plan(tuple(displays), axes, asked)
 
 
 def told_apart(displays: Sequence[Display]) -> list[str]:

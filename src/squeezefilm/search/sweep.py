@@ -5,21 +5,40 @@ from __future__ import annotations
 import contextlib
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
+from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.from_text import reads_text
+from squeezefilm.progress import SayProgress
 from squeezefilm.results import config_hash, stamp
 from squeezefilm.search.answers import FOLLOWED, Asked
 from squeezefilm.search.followed import FollowedMode, followed_modes
 from squeezefilm.search.kept import Kept, address
-from squeezefilm.search.plan import SweepRequest, told_apart
+from squeezefilm.search.plan import plan_of, told_apart
 from squeezefilm.search.points import Answer, Point, answered
 from squeezefilm.search.swept import NOT_YET, Column, Sweep, counted
+
+
+@dataclass(frozen=True)
+class SweepRequest:
+    """What `sweep` is asked for."""
+
+    display: NamedDisplay | Sequence[Display | str | Path]
+    _: KW_ONLY
+    vary: Mapping[str, Any] | Sequence[str] = ()
+    ask: Sequence[str] | str = ()
+    over: str | Path | None = None
+    jobs: int = 1
+    out: str | Path | None = None
+    fresh: bool = False
+    progress: SayProgress | None = None
 
 
 @reads_text
@@ -52,7 +71,8 @@ class Run:
     """A sweep under way: its plan, and the answers that it has."""
 
     def __init__(self, asked: SweepRequest) -> None:
-        self.plan = asked.plan()
+        si.require("jobs", asked.jobs, at_least=1)
+        self.plan = plan_of(asked.display, asked.vary, asked.ask, asked.over)
         self._asked, self._tell = asked, asked.progress or (lambda _: None)
         self._kept = Kept(None if asked.out is None else Path(asked.out))
         self._found: dict[tuple[int, str], Answer] = {}
