@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from squeezefilm.report.kit.electronics import electronics_rows
 from squeezefilm.report.kit.numbers import (
     MISSED_HEADING,
     dotted,
@@ -139,6 +140,9 @@ def show_analysis(analysis: Analysis) -> None:
     """Print an analysis: verdict last, where the eye rests, after numbers, models and warnings."""
     display = analysis.display
     console = show_rows(f"{display.title} [{display.name}]", key_numbers(analysis))
+    if analysis.prediction.voltage is not None:
+        heading(console, "Drive electronics")
+        table(console, ("", "", ""), electronics_rows(analysis.drive_electronics), fixed=(0,))
     heading(console, "Models")
     table(console, ("", ""), models(analysis), fixed=(0,))
     show_missed(console, analysis.prediction.model)
