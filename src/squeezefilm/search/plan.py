@@ -52,6 +52,7 @@ def plan_of(
 
 
 def told_apart(displays: Sequence[Display]) -> list[str]:
+    """The names of displays, numbered where two have the same."""
     names = [one.name for one in displays]
     return [
         name if names.count(name) == 1 else f"{name} ({number})"

@@ -9,6 +9,7 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.quantities import Unit
 from squeezefilm.search.axes import Axis, axes_of, axis_of, axis_of_file, axis_of_text
+from squeezefilm.search.options import OPTIONS
 
 PLATE = load_display("biet2008-plate")
 STATOR = load_display("biet2008-stator")
@@ -98,7 +99,8 @@ def test_what_is_no_text_and_no_number_is_refused() -> None:
 def test_a_file_is_an_axis_whose_columns_change_together(tmp_path: Path) -> None:
     file = tmp_path / "points.csv"
     file.write_text(
-        "\ufeff# mine\nactuator.thickness [mm], surface ,voltage\n1.5,bare,10 V\n1.5,adhesive,20 V\n"
+        "\ufeff# mine\nactuator.thickness [mm], surface ,voltage\n"
+        "1.5,bare,10 V\n1.5,adhesive,20 V\n"
     )
     axis = axis_of_file(file, PLATE)
     assert axis.columns == ("actuator.thickness_m", "surface", "voltage_V")
@@ -120,3 +122,10 @@ def test_a_name_is_varied_once(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="voltage is varied twice"):
         axes_of(STATOR, ["voltage=1 V", "voltage=2 V"], None)
     assert axes_of(STATOR, "voltage=1 V", None) == axes_of(STATOR, ["voltage=1 V"], None)
+
+
+def test_options_become_arguments_of_verbs() -> None:
+    assert OPTIONS["voltage"].argument(15.0) == 15.0
+    assert OPTIONS["band"].argument("25 kHz:45 kHz") == (25e3, 45e3)
+    assert OPTIONS["braking"].argument("true") is True
+    assert OPTIONS["surface"].argument("bare") == "bare"

@@ -40,7 +40,7 @@ def test_modes_that_cross_keep_their_labels() -> None:
 def test_a_motion_that_turns_slowly_is_followed_and_one_that_is_gone_is_lost() -> None:
     turns = [np.cos(a) * A + np.sin(a) * B for a in np.linspace(0, 1.4, 6)]
     points = [said(("a", 1.0 + k, motion), ("c", 10.0, C)) for k, motion in enumerate(turns)]
-    turned, still = followed_modes(points, (6,), 0)
+    turned, _ = followed_modes(points, (6,), 0)
     assert turned.values(points, "frequency_Hz").tolist() == [1, 2, 3, 4, 5, 6]
     assert turned.least_likeness == pytest.approx(np.cos(0.28) ** 2, abs=0.01)
     gone = [*points[:3], said(("c", 10.0, C)), *points[4:]]
