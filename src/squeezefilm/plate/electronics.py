@@ -151,6 +151,7 @@ def electrical_load(
     )
 
 
+@si.checked_numbers
 def load_of_mode(
     actuator: Actuator, mode: WorkingMode, voltage: si.Volt | None, frequency: si.Hertz
 ) -> ElectricalLoad | None:
