@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from squeezefilm.search.swept import Column, Sweep
 
 MOST_PANELS = 6
+_SAID = {"followed": "the solved plate, modes followed by their shapes"}
 MOST_LINES = 8
 """More steps than this on the second axis are drawn as a map."""
 
@@ -45,7 +46,8 @@ def sweep_figure(found: Sweep) -> Figure:
     over = " and ".join(name_of(axis) for axis in axes)
     figure = style.new_figure(
         f"{', '.join(map(_panel_name, panels))} over {over}",
-        f"as {' and '.join(found.verbs)} has it, of {style.plain(found.title)}{_left_out(found)}",
+        f"that of {' and '.join(_SAID.get(one, one) for one in found.verbs)}; display "
+        f"{style.plain(found.title)}{_left_out(found)}",
         1.2 + 3.2 * -(-len(panels) // 2) if len(panels) > 1 else 4.6,
     )
     columns = 1 if len(panels) == 1 else 2
