@@ -71,7 +71,8 @@ def cases() -> Iterator[str]:
         yield f"analyze {display} --samples 0 --model paper2008 --json"
         yield f"plate {display} --json"
     yield "analyze biet2008-plate --theory timoshenko --samples 0 --json"
-    yield "plate biet2008-plate --sensitivity --json"
+    voltages = "--vary 'voltage=5 V..15 V:3'"
+    yield f"sweep biet2008-plate {voltages} --ask relative_friction --jobs 1 --json"
     yield "study simulate biet2008-gratings --participants 2 --seed 7 --json"
 
 

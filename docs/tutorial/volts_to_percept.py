@@ -18,6 +18,7 @@ import squeezefilm as sf
 from squeezefilm.analysis.draws import Mixture, as_drawn
 from squeezefilm.analysis.uncertainty import evaluate, sobol_points
 from squeezefilm.perception.observer import load_observer
+from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.simulated.chain_tables import chain_tables
 
 # %% [markdown]
@@ -77,7 +78,7 @@ plt.show()
 # own. Rows are gratings answered, columns are periods simulated.
 
 # %%
-design = sf.load_design("biet2008-gratings")
+design = load_design("biet2008-gratings")
 design = dataclasses.replace(design, displays=design.displays[:1])
 observer = load_observer("fingertip")
 correct, matrices = [], []

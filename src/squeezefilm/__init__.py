@@ -20,7 +20,6 @@ _NAMES = {
     "load_display": "display",
     "load_texture": "texture_file",
     "save_texture": "texture_file",
-    "load_design": "study.design.study_design",
     "replaced": "analysis.parameters",
     # What a display does
     "predict": "chain.prediction",
@@ -29,6 +28,7 @@ _NAMES = {
     "analyze_friction": "analysis.friction.command",
     "solve_plate": "analysis.plate.command",
     "solve_film": "analysis.film.command",
+    "sweep": "search.sweep",
     # Textures, composed
     "Amplitude": "render.texture.levels",
     "RelativeFriction": "render.texture.levels",

@@ -4,10 +4,10 @@ from typing import TYPE_CHECKING
 
 # Every module depends on this one: so marked, a checker reads it last and meets no circle.
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from contextlib import AbstractContextManager
     from pathlib import Path
-    from typing import Literal
+    from typing import Any, Literal
 
     from numpy.typing import ArrayLike
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.friction.command import FrictionAnalysis
     from squeezefilm.analysis.plate.command import PlateAnalysis
     from squeezefilm.analysis.plate.ring import RingAnalysis
-    from squeezefilm.analysis.plate.tracking import TrackRequest
     from squeezefilm.analysis.sensitivities import Effort
     from squeezefilm.bench.play import PlayResult
     from squeezefilm.chain.friction_models import FrictionModel
@@ -29,15 +28,9 @@ if TYPE_CHECKING:
     from squeezefilm.formats.trajectories import NamedMotion
     from squeezefilm.perception.observer import NamedObserver
     from squeezefilm.plate.working_mode import PlateTheory
-    from squeezefilm.presets import (
-        display_names as display_names,
-    )
-    from squeezefilm.presets import (
-        study_names as study_names,
-    )
-    from squeezefilm.presets import (
-        texture_names as texture_names,
-    )
+    from squeezefilm.presets import display_names as display_names
+    from squeezefilm.presets import study_names as study_names
+    from squeezefilm.presets import texture_names as texture_names
     from squeezefilm.progress import Pace, SayProgress
     from squeezefilm.quantities import (
         Dimensionless,
@@ -58,83 +51,40 @@ if TYPE_CHECKING:
     from squeezefilm.render.texture.gates import speed as speed
     from squeezefilm.render.texture.image import Image as _Image
     from squeezefilm.render.texture.image import Share
-    from squeezefilm.render.texture.levels import (
-        Amplitude as _Amplitude,
-    )
-    from squeezefilm.render.texture.levels import (
-        FrictionShare,
-        VibrationAmplitude,
-    )
-    from squeezefilm.render.texture.levels import (
-        RelativeFriction as _RelativeFriction,
-    )
-    from squeezefilm.render.texture.noise import (
-        Noise as _Noise,
-    )
-    from squeezefilm.render.texture.noise import (
-        Octaves,
-        Persistence,
-        Seed,
-        Spacing,
-    )
+    from squeezefilm.render.texture.levels import Amplitude as _Amplitude
+    from squeezefilm.render.texture.levels import FrictionShare, VibrationAmplitude
+    from squeezefilm.render.texture.levels import RelativeFriction as _RelativeFriction
+    from squeezefilm.render.texture.noise import Noise as _Noise
+    from squeezefilm.render.texture.noise import Octaves, Persistence, Seed, Spacing
     from squeezefilm.render.texture.pattern import Pattern
-    from squeezefilm.render.texture.shapes import (
-        Band as _Band,
-    )
-    from squeezefilm.render.texture.shapes import (
-        Bump as _Bump,
-    )
-    from squeezefilm.render.texture.shapes import (
-        SineWave as _SineWave,
-    )
-    from squeezefilm.render.texture.shapes import (
-        SquareWave as _SquareWave,
-    )
-    from squeezefilm.report.subjects import (
-        plot as plot,
-    )
-    from squeezefilm.report.subjects import (
-        write_mode as write_mode,
-    )
-    from squeezefilm.report.subjects import (
-        write_report as write_report,
-    )
+    from squeezefilm.render.texture.shapes import Band as _Band
+    from squeezefilm.render.texture.shapes import Bump as _Bump
+    from squeezefilm.render.texture.shapes import SineWave as _SineWave
+    from squeezefilm.render.texture.shapes import SquareWave as _SquareWave
+    from squeezefilm.report.subjects import plot as plot
+    from squeezefilm.report.subjects import write_mode as write_mode
+    from squeezefilm.report.subjects import write_report as write_report
+    from squeezefilm.search.swept import Sweep
     from squeezefilm.session.play.plan import PlayView
     from squeezefilm.session.record.trace import read_trace as read_trace
-    from squeezefilm.study.adaptive.bayesian import (
-        AdaptiveDesign as _AdaptiveDesign,
-    )
-    from squeezefilm.study.adaptive.bayesian import (
-        BayesianAdaptive as BayesianAdaptive,
-    )
-    from squeezefilm.study.adaptive.bayesian import (
-        Interest,
-    )
+    from squeezefilm.study.adaptive.bayesian import AdaptiveDesign as _AdaptiveDesign
+    from squeezefilm.study.adaptive.bayesian import BayesianAdaptive as BayesianAdaptive
+    from squeezefilm.study.adaptive.bayesian import Interest
     from squeezefilm.study.conduct.trial_by_trial import Examiner
     from squeezefilm.study.design.plan import StudyPlan
     from squeezefilm.study.design.study_design import NamedDesign
-    from squeezefilm.study.design.study_design import load_design as load_design
     from squeezefilm.study.identification.recorded import analyze_study as analyze_study
     from squeezefilm.study.psychometric.fit import PsychometricFit
-    from squeezefilm.study.psychometric.function import (
-        Axis,
-        Shape,
-    )
+    from squeezefilm.study.psychometric.function import Axis, Shape
     from squeezefilm.study.psychometric.function import (
         PsychometricFunction as _PsychometricFunction,
     )
     from squeezefilm.study.psychometric.prior import PsychometricPrior as PsychometricPrior
     from squeezefilm.study.simulated.chain_tables import ChainTables
     from squeezefilm.study.simulated.participants import SimulatedStudy
-    from squeezefilm.texture_file import (
-        NamedTexture,
-    )
-    from squeezefilm.texture_file import (
-        load_texture as load_texture,
-    )
-    from squeezefilm.texture_file import (
-        save_texture as save_texture,
-    )
+    from squeezefilm.texture_file import NamedTexture
+    from squeezefilm.texture_file import load_texture as load_texture
+    from squeezefilm.texture_file import save_texture as save_texture
     def replaced(display: NamedDisplay | str | Path, values: Mapping[str, float | str]) -> Display:
         """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``."""
     def predict(
@@ -210,8 +160,6 @@ if TYPE_CHECKING:
         mode: tuple[int, int] | None = ...,
         band: tuple[Hertz, Hertz] | tuple[str, str] | None = ...,
         points: int = ...,
-        sensitivity: bool = ...,
-        track: TrackRequest | None = ...,
         progress: SayProgress | None = ...,
         budget: Second | str | None = ...,
     ) -> PlateAnalysis | RingAnalysis:
@@ -228,6 +176,18 @@ if TYPE_CHECKING:
         tolerance: Dimensionless | str = ...,
     ) -> FilmAnswer:
         """One film. σ is on the width of a strip, the radius of a disc, the X side of a rectangle or"""
+    def sweep(
+        display: NamedDisplay | Sequence[Display | str | Path] | str | Path,
+        *,
+        vary: Mapping[str, Any] | Sequence[str] = ...,
+        ask: Sequence[str] | str = ...,
+        over: str | Path | None = ...,
+        jobs: int = ...,
+        out: str | Path | None = ...,
+        fresh: bool = ...,
+        progress: SayProgress | None = ...,
+    ) -> Sweep:
+        """The numbers that verbs say of a display, at every point of a grid or of a file."""
     class Amplitude(_Amplitude):
         """A vibration amplitude: `low` (m, zero-to-peak) where the pattern is 0, `high` where it is 1."""
         def __init__(

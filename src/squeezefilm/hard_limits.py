@@ -167,8 +167,9 @@ BAND_MODES = HardLimit(
 RING_MODES = HardLimit(
     "modes of one harmonic in a band", 0, 100, "a section's elements do not tell more apart"
 )
-TRACKED_VALUES = HardLimit(
-    "values of a tracked parameter", 2, 200, "each is a solved plate, at seconds to minutes"
+SWEEP_STEPS = HardLimit("steps of an axis", 1, 10_000, "each is computed by itself")
+SWEEP_POINTS = HardLimit(
+    "points of a sweep", 1, 100_000, "each takes from milliseconds to minutes, and a row"
 )
 ASPECT = HardLimit("an aspect ratio", 1e-6, 1e6, "beyond, a strip is the same film")
 MOTION_SAMPLES = HardLimit(

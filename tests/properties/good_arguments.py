@@ -94,6 +94,7 @@ _WAVE = np.linspace(0.0, 8e-3, 8, endpoint=False)
 _SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
 
 FOR_ONE_CALL: dict[str, dict[str, Any]] = {
+    "plate.electronics.amplifier_check": {"slew_rate": 1e6, "current": 0.01},
     "contact.finger.load.finger_stiffness": {"interface": 1e5 + 1e3j},
     "contact.finger.load.finger_impedance": {"stiffness_per_area": 1e10 + 1e9j},
     "contact.sliding.dry_friction.SpeedFriction": {

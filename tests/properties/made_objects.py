@@ -37,7 +37,8 @@ from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
 from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
 from squeezefilm.plate.beam.modes import BeamMode
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
-from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
+from squeezefilm.plate.electronics import AMPLIFIERS, Amplifier
 from squeezefilm.plate.elements.box_model import Medium, isotropic_solid
 from squeezefilm.plate.heat.thermal import Thermal
 from squeezefilm.plate.heat.warming import HeatSource
@@ -123,6 +124,14 @@ def hjif_document() -> Any:
     return hjif_of(made(RelativeFriction), 0.0, 20e-3, device=made(ReferenceDevice)).document
 
 
+def _capacitor() -> DrivenResponse:
+    """The response of a capacitor that loses a little, from a hertz to ten megahertz."""
+    response = DrivenResponse()
+    response.frequencies = np.geomspace(1.0, 1e7, 50)
+    response.admittance = (0.01 + 1j) * 2e-9 * np.pi * response.frequencies
+    return response
+
+
 def fields_of(value: Any) -> dict[str, Any]:
     return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
 
@@ -173,6 +182,8 @@ MADE: dict[Any, Callable[[], Any]] = {
     SurfaceLoad: lambda: SurfaceLoad(10e-3, 2e-3, 5e-3, 5e-3, 1.0),
     VibratedFilm: lambda: VibratedFilm(2e-6, 40e3, 10e-3),
     EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
+    DrivenResponse: _capacitor,
+    Amplifier: lambda: AMPLIFIERS[0],
     BeamResponse: lambda: beam_response(PLATE),
     Medium: lambda: isotropic_solid(BRASS),
     ShearLayout: lambda: shear_layout(PLATE),

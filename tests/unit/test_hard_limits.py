@@ -10,7 +10,6 @@ import pytest
 from squeezefilm import hard_limits as hard
 from squeezefilm.analysis.film.command import FilmRequest
 from squeezefilm.analysis.plate.command import parse_mode
-from squeezefilm.analysis.plate.tracking import TrackRequest, check_track
 from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.config.load import load_text
 from squeezefilm.display import Display, load_display
@@ -25,11 +24,13 @@ from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.presets import path as preset_path
 from squeezefilm.quantities import Unit, checked_numbers
 from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke
+from squeezefilm.search.axes import axis_of
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import load_design
 
 ALL = {name: one for name, one in vars(hard).items() if isinstance(one, HardLimit)}
-PLATE = load_display("biet2008-plate").actuator
+DISPLAY = load_display("biet2008-plate")
+PLATE = DISPLAY.actuator
 assert isinstance(PLATE, RectangularPlate)
 
 
@@ -140,9 +141,8 @@ def test_other_sizes_of_work() -> None:
     for refused in (
         lambda: check_band((0.0, 1e12)),
         lambda: parse_mode("99999,0"),
-        lambda: TrackRequest("thickness", 1e-3, 2e-3, 10**9),
+        lambda: axis_of("actuator.thickness", "1 mm..2 mm:1000000", DISPLAY),
         lambda: FilmRequest("rectangle", 1e300),
-        lambda: check_track(PLATE, TrackRequest("thickness", -1e-3, 1e-3)),
     ):
         with pytest.raises(InputError, match="it must be at least"):
             refused()

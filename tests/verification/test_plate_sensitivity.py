@@ -3,7 +3,6 @@ followed over a parameter."""
 
 import dataclasses
 
-import numpy as np
 import pytest
 
 from squeezefilm.analysis.parameters import with_values
@@ -14,9 +13,7 @@ from squeezefilm.analysis.plate.sensitivity import (
     with_ceramic_stiffness,
     working_point,
 )
-from squeezefilm.analysis.plate.tracking import TrackRequest, parse_track, track_modes
 from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.solid.solve import solve_modes
@@ -123,41 +120,3 @@ def test_a_ceramic_with_all_constants_gets_softer_too() -> None:
     )
     names = {change.name for change in usual_changes(given)}
     assert "ceramic data set" not in names
-
-
-@pytest.mark.slow
-def test_modes_rise_with_youngs_modulus_and_keep_their_labels() -> None:
-    """Rayleigh: a stiffer material lowers no frequency."""
-    plate = _small()
-    found = track_modes(plate, TrackRequest("young_modulus", 150e9, 210e9, 4))
-    assert found.own == 200e9
-    assert found.begun in found.values
-    assert found.least_likeness > 0.9
-    bending = next(track for track in found.tracks if track.label == "(3,0)")
-    assert not bending.driven  # a ceramic in the middle drives no odd mode
-    for track in found.tracks:
-        assert np.all(np.diff(track.frequency) > 0)
-    end = solve_modes(with_values(plate, {"substrate.young_modulus": 150e9}), mode=(3, 0))
-    assert bending.frequency[0] == pytest.approx(float(end.frequencies[0]), rel=2e-3)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("ceramic_thicknes", "0.5 mm", "1 mm", 3), "Did you mean 'ceramic_thickness'"),
-        (("ceramic_thickness", None, "1 mm", 3), "--from and --to"),
-        (("ceramic_thickness", "1 mm", "0.5 mm", 3), "smaller"),
-        (("ceramic_thickness", "0.5 mm", "1 mm", 1), "at least 2"),
-        (("poisson_ratio", "a", "b", 3), "plain numbers"),
-    ],
-)
-def test_a_track_that_cannot_be_is_refused(
-    arguments: tuple[str, str | None, str | None, int], message: str
-) -> None:
-    with pytest.raises(InputError, match=message):
-        parse_track(*arguments)
-
-
-def test_glue_can_only_be_varied_where_there_is_some() -> None:
-    with pytest.raises(InputError, match="no glue"):
-        track_modes(_small(), TrackRequest("glue_thickness", 10e-6, 50e-6, 2))

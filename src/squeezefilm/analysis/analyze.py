@@ -54,6 +54,7 @@ from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.from_text import reads_text
 from squeezefilm.plate.beam.modes import BeamTheory
 from squeezefilm.plate.beam.response import beam_response
+from squeezefilm.plate.electronics import ElectricalLoad, load_of_mode
 from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
@@ -135,6 +136,12 @@ class Analysis(Result):
             return None
         return display_sensitivities(self.display, self.prediction, self.effort)
 
+    @functools.cached_property
+    def drive_electronics(self) -> ElectricalLoad | None:
+        """What the plate asks of its amplifier; None where no admittance was solved."""
+        p = self.prediction
+        return load_of_mode(self.display.actuator, p.mode, p.voltage, p.frequency)
+
     def finest_period(self) -> dict[str, float]:
         """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""
         if self.fidelity is None:
@@ -191,6 +198,7 @@ class Analysis(Result):
                 "plateau_balance": to_json(self.film_models.balance),
             },
             "other_models": to_json(self.other_models),
+            "drive_electronics": to_json(self.drive_electronics),
             "verdict": to_json((*self.verdict, self.ears_finding)),
             "provenance": stamp(self.display),
         }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import typing
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, TypeVar
 
@@ -186,6 +186,33 @@ def value_at(whole: Any, path: str) -> tuple[float, si.Unit]:
     owner, name = _place(whole, path)
     hints = typing.get_type_hints(type(owner), include_extras=True)
     return float(getattr(owner, name)), si.unit_of(hints[name]) or si.Unit("1")
+
+
+def unit_at(whole: Any, path: str) -> tuple[si.Unit, bool]:
+    """The unit of the number at a dotted path, whether it is given or not, and whether it is a
+    whole number.
+
+    Raises `InputError` for a path that leads to no number.
+    """
+    owner, name = _place(whole, path)
+    hint = typing.get_type_hints(type(owner), include_extras=True)[name]
+    return si.unit_of(hint) or si.Unit("1"), isinstance(getattr(owner, name), int)
+
+
+def number_paths(whole: Any, path: str = "") -> Iterator[str]:
+    """The dotted paths of the numbers of a display or a part of one, as they are given."""
+    if isinstance(whole, bool | str):
+        return
+    if isinstance(whole, int | float):
+        yield path
+    elif isinstance(whole, tuple):
+        for number, item in enumerate(whole):
+            yield from number_paths(item, f"{path}.{number}")
+    elif dataclasses.is_dataclass(whole):
+        for one in dataclasses.fields(whole):
+            yield from number_paths(
+                getattr(whole, one.name), f"{path}.{one.name}" if path else one.name
+            )
 
 
 def _place(whole: Any, path: str) -> tuple[Any, str]:

@@ -276,15 +276,6 @@ class PlateOptions:
     vtu: Annotated[
         Path | None, written_to("Write the solved volume for ParaView to this .vtu file.")
     ] = None
-    sensitivity: Annotated[
-        bool, typer.Option("--sensitivity", help="What other materials and sizes would change.")
-    ] = False
-    track: Annotated[
-        str | None, typer.Option(help="Follow the modes over a parameter, like ceramic_thickness.")
-    ] = None
-    start: Annotated[str | None, typer.Option("--from", help='Its first value: "0.5 mm".')] = None
-    stop: Annotated[str | None, typer.Option("--to", help='Its last value: "1.5 mm".')] = None
-    values: Annotated[int, typer.Option(help="How many values of it.")] = 9
     budget: Budget = None
     as_json: AsJson = False
 
@@ -299,16 +290,12 @@ def plate(asked: PlateOptions) -> None:
         parse_mode,
         solve_plate,
     )
-    from squeezefilm.analysis.plate.tracking import parse_track
     from squeezefilm.report.plate.terminal import show_plate
 
     display, out, vtu = to_be_solved(asked.target, quiet=asked.as_json), asked.out, asked.vtu
     budget = read_option(asked.budget, "budget", "s")
     mode = None if asked.mode is None else parse_mode(asked.mode)
     band = None if asked.band is None else parse_band(asked.band)
-    track = None
-    if asked.track is not None:
-        track = parse_track(asked.track, asked.start, asked.stop, asked.values)
     if vtu is not None and display.actuator.type != "rectangular_plate":
         raise InputError(
             f"--vtu is for rectangular plates; the actuator of '{display.name}' is of the type "
@@ -316,15 +303,7 @@ def plate(asked: PlateOptions) -> None:
         )
     with working(asked.as_json) as step:
         written = []
-        result = solve_plate(
-            display,
-            mode=mode,
-            band=band,
-            sensitivity=asked.sensitivity,
-            track=track,
-            progress=step,
-            budget=budget,
-        )
+        result = solve_plate(display, mode=mode, band=band, progress=step, budget=budget)
         if out is not None or vtu is not None:
             from squeezefilm.report.plate.plate import write_mode, write_plate
 

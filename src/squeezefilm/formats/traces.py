@@ -14,7 +14,7 @@ import io
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -152,10 +152,22 @@ def parquet_bytes(table: Table) -> bytes:
     Raises:
         InputError: where pyarrow is not installed.
     """
+    columns = {
+        name: np.asarray(column, dtype=float).tolist() for name, column in table.columns.items()
+    }
+    return parquet_of_columns(columns, table.metadata)
+
+
+def parquet_of_columns(columns: Mapping[str, Sequence[Any]], metadata: Mapping[str, Any]) -> bytes:
+    """The Parquet file of columns of one length by name, of numbers or of texts; None is null.
+
+    Raises:
+        InputError: where pyarrow is not installed.
+    """
     arrow, parquet = _arrow()
-    arrays = [arrow.array(np.asarray(column, dtype=float)) for column in table.columns.values()]
-    note = json.dumps(dict(table.metadata), allow_nan=False).encode()
-    held = arrow.table(arrays, names=list(table.columns)).replace_schema_metadata({_KEY: note})
+    arrays = [arrow.array(column) for column in columns.values()]
+    note = json.dumps(dict(metadata), allow_nan=False).encode()
+    held = arrow.table(arrays, names=list(columns)).replace_schema_metadata({_KEY: note})
     stream = io.BytesIO()
     parquet.write_table(held, stream)
     return stream.getvalue()

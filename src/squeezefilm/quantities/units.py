@@ -62,6 +62,8 @@ _unit("W", "1", (1, 2, -3, 0, 0, 0))
 _unit("V", "1", (1, 2, -3, -1, 0, 0))
 _unit("C", "1", (0, 0, 1, 1, 0, 0))
 _unit("F", "1", (-1, -2, 4, 2, 0, 0))
+_unit("H", "1", (1, 2, -2, -2, 0, 0))
+_unit("VA", "1", (1, 2, -3, 0, 0, 0), False)
 _unit("ohm Ohm Ω", "1", (1, 2, -3, -2, 0, 0))
 _unit("1", "1", _NONE, False)
 _unit("%", "1e-2", _NONE, False)
@@ -280,7 +282,7 @@ def _example(unit: Unit) -> str:
 
 
 _READABLE = [("G", 9), ("M", 6), ("k", 3), ("", 0), ("m", -3), ("u", -6), ("n", -9), ("p", -12)]
-_SCALED = {"m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "m/V", "m/s", "N/m"}
+_SCALED = {"m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "m/V", "m/s", "N/m", "H"}
 
 
 def format_quantity(value: float, unit: Unit, digits: int = 4) -> str:

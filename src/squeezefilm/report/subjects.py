@@ -18,7 +18,6 @@ from squeezefilm.analysis.friction.command import FrictionAnalysis
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
 from squeezefilm.analysis.plate.sensitivity import SensitivityTable
-from squeezefilm.analysis.plate.tracking import ModeTracks
 from squeezefilm.bench.play import PlayResult
 from squeezefilm.bench.played_session import PlayedSession
 from squeezefilm.chain.prediction import Prediction
@@ -39,9 +38,12 @@ from squeezefilm.report.study.page import FIGURES as FIGURES_OF_STUDY
 from squeezefilm.report.study.page import write_study
 from squeezefilm.report.study.simulated_page import FIGURES as FIGURES_OF_SIMULATED
 from squeezefilm.report.study.simulated_page import write_simulated
+from squeezefilm.report.sweep.figures import sweep_figure
+from squeezefilm.report.sweep.files import write_sweep
 from squeezefilm.report.textures import figures as textures
 from squeezefilm.report.textures import gallery
 from squeezefilm.report.textures.page import write_render
+from squeezefilm.search.swept import Sweep
 from squeezefilm.study.identification.analysis import IdentificationAnalysis
 from squeezefilm.study.psychometric.fit import PsychometricFit
 from squeezefilm.study.simulated.participants import SimulatedStudy
@@ -82,7 +84,7 @@ SUBJECTS: Mapping[type, _Subject] = {
     PlateAnalysis: _Subject(_by_key(plate.FIGURES), plate.write_plate),
     RingAnalysis: _Subject(_by_key(ring.FIGURES), plate.write_plate),
     SensitivityTable: _Subject({"tornado": sensitivity_figures.tornado}),
-    ModeTracks: _Subject({"tracks": sensitivity_figures.tracks}),
+    Sweep: _Subject({"sweep": sweep_figure}, write_sweep),
     TextureFile: _Subject({"texture": gallery.picture}),
     Composable: _Subject({"texture": lambda one: gallery.picture(TextureFile.of(one))}),
     RenderAnalysis: _Subject(_by_key(textures.FIGURES), write_render),

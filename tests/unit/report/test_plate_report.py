@@ -8,12 +8,11 @@ from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm.analysis.plate.command import PlateAnalysis, analyze_plate
 from squeezefilm.analysis.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
-from squeezefilm.analysis.plate.tracking import ModeTrack, ModeTracks
 from squeezefilm.display import load_display
 from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
 from squeezefilm.report.plate.page import plate_page
 from squeezefilm.report.plate.plate import admittance, frequency_response, line_scan, plan_view
-from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
+from squeezefilm.report.plate.sensitivity_figures import tornado
 
 
 @pytest.fixture(scope="module")
@@ -105,13 +104,3 @@ def test_the_tornado_cuts_a_bar_that_hides_the_others_and_says_so() -> None:
     assert [one.get_text() for one in left.get_yticklabels()] == [
         "huge: changed", "b: changed", "c: changed", "a: changed",
     ]  # fmt: skip
-
-
-def test_a_track_that_ends_is_said() -> None:
-    x = np.array([0.5e-3, 1e-3, 1.5e-3])
-    whole = ModeTrack("(8,0)", np.array([30e3, 33e3, 36e3]), np.ones(3), True)
-    lost = ModeTrack("(0,5)", np.array([30.1e3, 33.1e3, np.nan]), np.ones(3), False)
-    figure = tracks(ModeTracks("ceramic_thickness", "m", x, 1e-3, 1e-3, (whole, lost), 0.9))
-    assert "1 of them only in part" in _words(figure)
-    assert [one.get_text() for one in figure.axes[0].texts] == ["(8,0)"]
-    assert figure.axes[0].get_xlabel() == "ceramic thickness (mm)"

@@ -1,1 +1,1 @@
-"""Questions about plates, discs and rings: modes, response, sensitivities, tracked modes."""
+"""Questions about plates, discs and rings: modes, response, sensitivities."""

@@ -14,14 +14,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.hurry import Hurry
 from squeezefilm.analysis.plate.ring import RingAnalysis, analyze_ring
-from squeezefilm.analysis.plate.sensitivity import SensitivityTable, plate_sensitivity
 from squeezefilm.analysis.plate.solved import ModeRow, Remarks, SolvedBody, sweep_around
-from squeezefilm.analysis.plate.tracking import (
-    ModeTracks,
-    TrackRequest,
-    check_track,
-    track_modes,
-)
 from squeezefilm.arguments import called_with
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
@@ -43,7 +36,6 @@ from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
 from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.progress import Pace, SayProgress, said_with_time_left
-from squeezefilm.results import to_json
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -65,8 +57,6 @@ class PlateAnalysis(SolvedBody):
     beam_amplitude_per_volt: si.MetrePerVolt
     shear_frequency: si.Hertz | None
     sound: SoundField
-    sensitivities: SensitivityTable | None = None
-    tracks: ModeTracks | None = None
     objections: tuple[str, ...] = ()
     remarks = Remarks(
         "(estimated)",
@@ -100,8 +90,6 @@ class PlateAnalysis(SolvedBody):
                 "frequency_Hz": self.shear_frequency,
                 "error_against_solid": self.shear_frequency / self.working.frequency - 1,
             },
-            "sensitivities": to_json(self.sensitivities),
-            "tracks": to_json(self.tracks),
         }
 
 
@@ -125,8 +113,6 @@ class PlateRequest:
     mode: tuple[int, int] | None = None
     band: tuple[si.Hertz, si.Hertz] | None = None
     points: int = 200
-    sensitivity: bool = False
-    track: TrackRequest | None = None
     progress: SayProgress | None = None
     budget: si.Second | None = None
 
@@ -135,22 +121,18 @@ class PlateRequest:
 def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
     """The modes of a display's plate in a band, and the response around the working mode.
 
-    `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. `sensitivity`
-    adds what other materials and dimensions would change, `track` the modes against a parameter;
-    both take a minute. `alone` in the result is the working mode solved by itself. Within a
-    `budget` (s) meshes are left coarser, with larger errors, and the other modes of the band left
-    out, as time asks.
+    `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. `alone` in the
+    result is the working mode solved by itself. Within a `budget` (s) meshes are left coarser, with
+    larger errors, and the other modes of the band left out, as time asks.
 
     Raises `InputError` for a display without a rectangular plate or one that cannot be right (see
     `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and what `solve_modes`
     raises: a band with no mode, a mode that is not found.
     """
-    display, band, track = asked.display, asked.band, asked.track
+    display, band = asked.display, asked.band
     plate = _driven_plate(display)
     if band is not None:
         check_band(band)
-    if track is not None:
-        check_track(plate, track)
     tell = asked.progress or (lambda _: None)
     label = asked.mode or plate.working_label
     hurry = Hurry.of(plate, label, Pace(asked.budget))
@@ -164,8 +146,8 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         tell("all modes in the band")
         shares = said_with_time_left(tell)
         modes = solve_modes(plate, band=wanted, deadline=hurry.band, progress=shares)
-    rows = tuple(_row(modes, index) for index in range(modes.count))
-    working = _row(alone, alone.index(label))
+    rows = tuple(mode_row(modes, index) for index in range(modes.count))
+    working = mode_row(alone, alone.index(label))
     tell(f"response at {asked.points} frequencies")
     response = harmonic_response(
         plate,
@@ -196,10 +178,6 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         shear_frequency=_shear_frequency(plate, label, frequency),
         sound=sound,
         objections=(*require_plausible(display), *hurry.left_out(alone, modes)),
-        sensitivities=plate_sensitivity(plate, label=label, progress=tell)
-        if asked.sensitivity
-        else None,
-        tracks=None if track is None else track_modes(plate, track, label=label, progress=tell),
     )
 
 
@@ -209,20 +187,13 @@ def solve_plate(asked: PlateRequest) -> PlateAnalysis | RingAnalysis:
     """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's
     response at `points` frequencies.
 
-    Arguments and errors are those of `analyze_plate` and `analyze_ring`; `sensitivity` and `track`
-    are for rectangular plates. Raises `InputError` where they are asked of another.
+    Arguments and errors are those of `analyze_plate` and `analyze_ring`.
     """
     given, actuator = dict(vars(asked)), asked.display.actuator
     require_plausible(asked.display)
     if isinstance(actuator, RectangularPlate):
         return analyze_plate(**given)
-    sensitivity, track = given.pop("sensitivity"), given.pop("track")
     given.pop("budget")  # a ring is solved in a second or two
-    if sensitivity or track is not None:
-        raise InputError(
-            f"sensitivity and track are for rectangular plates; '{asked.display.name}' is a "
-            f"{actuator.type.replace('_', ' ')}"
-        )
     return analyze_ring(**given)
 
 
@@ -296,7 +267,8 @@ def _shear_frequency(
         return None
 
 
-def _row(modes: PlateModes, index: int) -> ModeRow:
+def mode_row(modes: PlateModes, index: int) -> ModeRow:
+    """One line of the table of modes: that of the mode number `index` of a solved plate."""
     label, frequency = modes.labels[index], float(modes.frequencies[index])
     quality, force = float(modes.quality_factors[index]), float(modes.drive_forces[index])
     largest = float(np.max(np.abs(modes.shapes[index])))

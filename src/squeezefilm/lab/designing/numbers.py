@@ -20,6 +20,7 @@ from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.lab.worker import tell
+from squeezefilm.plate.electronics import load_of_mode
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid.working import response_frequencies, solid_mode
 from squeezefilm.plausibility.checks import require_plausible
@@ -109,6 +110,7 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
         },
         "line": _line(p, display.actuator),
         "shape": _shape(p),
+        "drive_electronics": to_json(load_of_mode(display.actuator, mode, p.voltage, p.frequency)),
         "provenance": stamp(display),
     }
 

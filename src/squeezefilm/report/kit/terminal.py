@@ -13,6 +13,7 @@ from squeezefilm.report.kit.decisions import (
     sensitivity_rows,
     wanted_rows,
 )
+from squeezefilm.report.kit.electronics import electronics_rows
 from squeezefilm.report.kit.numbers import (
     MISSED_HEADING,
     film_rows,
@@ -143,6 +144,9 @@ def show_analysis(analysis: Analysis) -> None:
     display = analysis.display
     console = show_rows(f"{display.title} [{display.name}]", key_numbers(analysis))
     _show_decisions(console, analysis)
+    if analysis.prediction.voltage is not None:
+        heading(console, "Drive electronics")
+        table(console, ("", "", ""), electronics_rows(analysis.drive_electronics), fixed=(0,))
     heading(console, "Models")
     table(console, ("", ""), models(analysis), fixed=(0,))
     show_missed(console, analysis.prediction.model)

@@ -11,7 +11,6 @@ from squeezefilm.analysis.plate.ring import RingAnalysis
 from squeezefilm.report.kit.numbers import M, V, printable, shown
 from squeezefilm.report.kit.page_style import page, picture_sections, section, stamped, text_table
 from squeezefilm.report.plate.terminal import (
-    change_rows,
     drive_rows,
     fit_sentences,
     mode_rows,
@@ -21,7 +20,6 @@ from squeezefilm.report.plate.terminal import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.plate.sensitivity import SensitivityTable
     from squeezefilm.analysis.plate.solved import SolvedBody
 
 _VOLUME = """ The solved volume for ParaView:
@@ -38,8 +36,6 @@ def plate_page(result: SolvedBody, figures: Mapping[str, tuple[str, Figure]]) ->
         + section("Modes in the band", _modes(result))
     )
     volume = _VOLUME if isinstance(result, PlateAnalysis) else ""
-    if isinstance(result, PlateAnalysis) and result.sensitivities is not None:
-        body += section("Sensitivities in numbers", sensitivities(result.sensitivities))
     stamp = stamped(result.summary()["provenance"], "description SHA-256")
     return page(
         f"{title}: solved plate",
@@ -68,10 +64,3 @@ def _modes(result: SolvedBody) -> str:
     ]
     head = ("Mode", "Frequency", "Error", "Q", "Per volt", "Coupling")
     return text_table(result.status, head, rows)
-
-
-def sensitivities(table: SensitivityTable) -> str:
-    """The table of sensitivities as HTML."""
-    rows = [(f"{name}: {change}", *rest) for name, change, *rest in change_rows(table)]
-    head = ("Change", "Frequency", "Shift of frequency", "Shift of amplitude per volt")
-    return text_table("Each changed plate solved anew", head, rows)

@@ -16,7 +16,6 @@ from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.page_style import FigureOf, drawn_figures, picture_files
 from squeezefilm.report.plate import ring
 from squeezefilm.report.plate.mode_surface import driven_shape, mode_surface
-from squeezefilm.report.plate.sensitivity_figures import tornado, tracks
 from squeezefilm.report.plate.vtu import write_vtu
 
 if TYPE_CHECKING:
@@ -128,16 +127,6 @@ def admittance(result: PlateAnalysis) -> Figure:
     return figure
 
 
-def _tornado(result: PlateAnalysis) -> Figure:
-    assert result.sensitivities is not None
-    return tornado(result.sensitivities)
-
-
-def _tracks(result: PlateAnalysis) -> Figure:
-    assert result.tracks is not None
-    return tracks(result.tracks)
-
-
 FIGURES = (
     FigureOf("surface", "Mode shape", mode_surface, file="mode-surface"),
     FigureOf("plan", "Mode shape from above", plan_view, file="mode-plan"),
@@ -146,11 +135,6 @@ FIGURES = (
     FigureOf("admittance", "Admittance", admittance),
 )
 """The figures of every rectangular plate."""
-
-_WHERE_ASKED = (
-    FigureOf("sensitivity", "Sensitivities", _tornado, has=lambda one: one.sensitivities),
-    FigureOf("tracking", "Modes against a parameter", _tracks, has=lambda one: one.tracks),
-)
 
 
 def write_plate(result: SolvedBody, folder: Path) -> Path:
@@ -161,7 +145,7 @@ def write_plate(result: SolvedBody, folder: Path) -> Path:
     """
     from squeezefilm.report.plate.page import plate_page
 
-    kinds = ring.FIGURES if isinstance(result, RingAnalysis) else (*FIGURES, *_WHERE_ASKED)
+    kinds = ring.FIGURES if isinstance(result, RingAnalysis) else FIGURES
     figures = drawn_figures(kinds, result)
     files = picture_files(figures)
     files["plate.json"] = json_text(result.summary())

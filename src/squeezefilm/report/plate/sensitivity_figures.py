@@ -1,4 +1,4 @@
-"""Figures of what changes a plate: a tornado of sensitivities, and modes against a parameter."""
+"""What changes a plate, as a figure: a tornado of sensitivities."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.plate.sensitivity import SensitivityTable
-    from squeezefilm.analysis.plate.tracking import ModeTracks
-    from squeezefilm.quantities import FloatArray
 
 # A bar beyond this many times the third largest would hide all others: it is cut, and says so.
 _CUT = 2.6
@@ -70,75 +67,9 @@ def tornado(table: SensitivityTable) -> Figure:
     return figure
 
 
-@style.drawn
-def tracks(found: ModeTracks) -> Figure:
-    """Frequencies of the tracked modes against the parameter, each line named at its end."""
-    unit = si.Unit(found.unit)
-    name = found.parameter.replace("_", " ")
-    scale, symbol = _scale(found.values, unit)
-    lost = sum(bool(np.isnan(t.frequency).any()) for t in found.tracks)
-    gone = "" if lost == 0 else f"; {lost} of them only in part, where they can be recognised"
-    figure = style.new_figure(
-        f"{len(found.tracks)} modes followed by their shapes over the {name}{gone}",
-        f"piezoelectric_solid_3d; labels read at {_text(found.begun, unit)}; least likeness from "
-        f"one value to the next {found.least_likeness:.2f}",
-        6.0,
-    )
-    axes = figure.subplots()
-    x = scale * found.values
-    plain = [t for t in found.tracks if not t.driven]
-    driven = [t for t in found.tracks if t.driven]
-    for number, track in enumerate(plain):
-        first = None if number else "not driven (symmetry)"
-        axes.plot(x, track.frequency / 1e3, color=style.MUTED, lw=1.0, label=first)
-    for number, track in enumerate(driven):
-        color, dashes = style.LINES[number % len(style.LINES)]
-        own = f"{track.label}, driven"
-        axes.plot(x, track.frequency / 1e3, color=color, ls=dashes, lw=2.2, label=own)
-    axes.axvline(scale * found.own, **style.LANDMARK, label="this plate")
-    ends: list[tuple[float, str]] = []
-    for track in found.tracks:
-        known = np.flatnonzero(np.isfinite(track.frequency))
-        if known[-1] == found.values.size - 1:
-            ends.append((float(track.frequency[-1]) / 1e3, track.label))
-    low, high = axes.get_ylim()
-    # Names may not lie on each other: each is pushed above the one below it.
-    height = low
-    line = {"arrowstyle": "-", "color": style.MUTED, "lw": 0.5, "shrinkA": 0, "shrinkB": 0}
-    for value, text in sorted(ends):
-        height = max(value, height + 0.034 * (high - low))
-        place = x[-1] + 0.03 * (x[-1] - x[0]), height
-        axes.annotate(
-            text,
-            (x[-1], value),
-            place,
-            fontsize=8.5,
-            va="center",
-            annotation_clip=False,
-            arrowprops=line,
-        )
-    axes.set(xlim=(x[0], x[-1]), xlabel=f"{name} ({symbol})" if symbol != "1" else name)
-    axes.set(ylabel="frequency (kHz)")
-    style.legend_below(axes, columns=4, gap=0.12)
-    return figure
-
-
 def _signed(percent: float) -> str:
     """A percentage with its sign and two digits; what shows none of them is 0."""
     if abs(percent) < 0.005:
         return "0"
     form = "+.0f" if abs(percent) >= 10 else "+.1f" if abs(percent) >= 1 else "+.2g"
     return f"{percent:{form}}".replace("-", "−")
-
-
-def _text(value: float, unit: si.Unit) -> str:
-    return f"{value:.4g}" if unit.symbol == "1" else si.format_quantity(value, unit)
-
-
-def _scale(values: FloatArray, unit: si.Unit) -> tuple[float, str]:
-    """A factor and a unit in which the values are read easily."""
-    text = _text(float(values[-1]), unit)
-    number, _, symbol = text.partition(" ")
-    if not symbol:
-        return 1.0, "1"
-    return float(number) / float(values[-1]), symbol.replace("um", "µm")

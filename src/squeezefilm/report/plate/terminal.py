@@ -1,12 +1,10 @@
-"""What the terminal shows of a solved film, of a solved plate, disc or stator, and of its modes
-followed over a parameter; the page shows the same rows."""
+"""What the terminal shows of a solved film, and of a solved plate, disc or stator; the page shows
+the same rows."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis
@@ -18,9 +16,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from squeezefilm.analysis.film.command import FilmAnswer
-    from squeezefilm.analysis.plate.sensitivity import SensitivityTable
     from squeezefilm.analysis.plate.solved import ModeRow, SolvedBody
-    from squeezefilm.analysis.plate.tracking import ModeTracks
     from squeezefilm.plate.ring.stator import StatorFit
     from squeezefilm.plate.sound import SoundField
 
@@ -199,8 +195,6 @@ def show_plate(result: SolvedBody) -> None:
     console.print(f"{result.model}; {result.status}")
     for doubt in (*result.objections, *result.heat.doubts):
         console.print(f"! {doubt}")
-    if isinstance(result, PlateAnalysis):
-        _show_changes(console, result)
 
 
 def _theory_rows(result: PlateAnalysis) -> list[Row]:
@@ -211,59 +205,3 @@ def _theory_rows(result: PlateAnalysis) -> list[Row]:
         for name, found in theories
         if found is not None
     ]
-
-
-def change_rows(changes: SensitivityTable) -> list[tuple[str, str, str, str, str]]:
-    """What is different, by how much, the frequency, and the shifts of it and of the amplitude."""
-    return [
-        (
-            row.name,
-            row.change,
-            shown(row.frequency, HZ, 5),
-            f"{row.frequency_shift:+.2%}",
-            "–" if row.amplitude_shift is None else f"{row.amplitude_shift:+.1%}",
-        )
-        for row in changes.rows
-    ]
-
-
-def _show_changes(console: Console, result: PlateAnalysis) -> None:
-    """What other materials and dimensions would change, where that was asked for."""
-    if result.sensitivities is not None:
-        heading(console, "Sensitivities of the working mode")
-        rows = [
-            (name, change, *shifts)
-            for name, change, _, *shifts in change_rows(result.sensitivities)
-        ]
-        table(console, ("what is different", "", "frequency", "per volt"), rows)
-    if result.tracks is not None:
-        show_tracks(console, result.tracks)
-
-
-def show_tracks(console: Console, found: ModeTracks) -> None:
-    """Print each mode's frequency at the first, the plate's own and the last value."""
-    unit = si.Unit(found.unit)
-    own = int(np.argmin(np.abs(found.values - found.begun)))
-    columns = (0, own, found.values.size - 1)
-
-    def at(value: float) -> str:
-        return f"{value:.4g}" if found.unit == "1" else shown(value, unit)
-
-    heading(console, f"Modes against {found.parameter}")
-    table(
-        console,
-        ("mode", *(at(float(found.values[k])) for k in columns), ""),
-        [
-            (
-                track.label,
-                *(
-                    "not followed"
-                    if np.isnan(track.frequency[k])
-                    else shown(float(track.frequency[k]), HZ, 5)
-                    for k in columns
-                ),
-                "driven" if track.driven else "",
-            )
-            for track in found.tracks
-        ],
-    )

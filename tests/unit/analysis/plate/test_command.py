@@ -19,7 +19,6 @@ from squeezefilm.analysis.plate.command import (
     parse_mode,
     scan_axis,
 )
-from squeezefilm.analysis.plate.tracking import TrackRequest
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.layout import RectangularPlate
@@ -139,8 +138,6 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         SimpleNamespace(mode=SimpleNamespace(frequency=33e3), amplitude_per_volt=9e-8),
     )
     stand_in("shear_mode", SimpleNamespace(frequency=30.3e3))
-    stand_in("plate_sensitivity", None)
-    stand_in("track_modes", None)
     return asked
 
 
@@ -172,9 +169,6 @@ def test_an_analysis_is_around_the_mode_asked_for(display: Display, parts: dict[
     assert told == [
         "mode (4,0)", "all modes in the band", "response at 21 frequencies", "airborne sound",
     ]  # fmt: skip
-    assert (one.sensitivities, one.tracks) == (None, None)
-    assert "plate_sensitivity" not in parts
-    assert "track_modes" not in parts
     said = one.summary()
     assert said["shear_plate"]["error_against_solid"] == pytest.approx(0.01)
     assert (said["current_A"], said["apparent_power_VA"], said["input_power_W"]) == (30, 75, 120)
@@ -199,15 +193,6 @@ def test_the_table_has_each_mode_of_the_band(display: Display, parts: dict[str, 
     assert first.amplitude_per_volt == pytest.approx(50 * 0.2 * 3 / (2 * math.pi * 30e3) ** 2)
     assert second.amplitude_per_volt == third.amplitude_per_volt == 0
     assert parts["sweep"].size == 200
-
-
-def test_more_is_computed_where_it_is_asked_for(display: Display, parts: dict[str, Any]) -> None:
-    track = TrackRequest("density", 8e3, 9e3, 3)
-    analyze_plate(display, mode=(4, 0), sensitivity=True, track=track)
-    assert parts["plate_sensitivity"][0] == (display.actuator,)
-    assert parts["plate_sensitivity"][1]["label"] == (4, 0)
-    assert parts["track_modes"][0] == (display.actuator, track)
-    assert parts["track_modes"][1]["label"] == (4, 0)
 
 
 def test_what_has_no_circuit_and_no_shear_mode_goes_without(
@@ -242,8 +227,6 @@ def test_what_cannot_be_is_refused_before_anything_is_solved(
     for band in ((35e3, 25e3), (25e3, 25e3)):
         with pytest.raises(InputError, match="is none"):
             analyze_plate(display, band=band)
-    with pytest.raises(InputError, match="no glue"):
-        analyze_plate(display, track=TrackRequest("glue_thickness", 1e-5, 2e-5))
     with pytest.raises(InputError, match="has a annular_stator and no rectangular plate"):
         analyze_plate(load_display("biet2008-stator"))
     assert parts["modes"] == []

@@ -92,7 +92,7 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
         # What every prediction says of itself beside.
         "display", "frequency_Hz", "amplitude_model", "mean_pressure", "mean_pressure_error",
         "amplitude_kept_under_finger", "finger_impedance_N_s_per_m", "finger_speed_m_per_s", "heat",
-        "model", "validity", "objections",
+        "model", "validity", "objections", "drive_electronics",
     }  # fmt: skip
     curve = found["friction_curve"]
     amplitude = np.linspace(0.0, max(2 * p.vibration_amplitude, 2e-6), 49)
@@ -221,6 +221,7 @@ def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.Monkey
     assert (found["text"], found["quality"], found["voltage_V"]) == (text, "solved", 10.0)
     assert asked == [(display_of(text), "solved", point)]
     assert solved == [display_of(text).actuator]
+    assert found["drive_electronics"] is None  # a beam has no admittance
     assert told == [("sweeping", 0.5)]
     # Neither a beam nor what is no plate is solved ahead.
     designed(point, "screening")
@@ -248,3 +249,10 @@ def test_a_band_lies_on_every_third_amplitude_of_the_curve(monkeypatch: pytest.M
     point = WorkingPoint(STATOR, "100 V", path="finger.contact_length", value="8 mm")
     numbers.banded(point, "screening")
     assert asked[1:] == [(display_of(point.edited()), 100.0, 64)]
+
+
+@pytest.mark.slow
+def test_a_solved_plate_says_what_its_amplifier_gives() -> None:
+    load = designed(WorkingPoint(preset_text("biet2008-plate")), "solved")["drive_electronics"]
+    assert load["channels"] == 7
+    assert load["real_power_W"] == pytest.approx(load["matched_current_A"] * 15 / 2)

@@ -81,7 +81,7 @@ def solved(label: tuple[int, int] = (4, 0), volts: float = 15.0, **changes: Any)
         "modes": SimpleNamespace(model="solid"), "centreline_per_volt": 91e-9,
         "amplitude_per_volt": 100e-9,
         "display": SimpleNamespace(drive=SimpleNamespace(voltage=volts)),
-        "sensitivities": None, "tracks": None, "summary": lambda: {"mode": "µ"},
+        "summary": lambda: {"mode": "µ"},
     }  # fmt: skip
     return made_result(PlateAnalysis, **{**parts, **changes})
 
@@ -249,8 +249,6 @@ def test_numbers_volume_and_pictures_are_written_each_under_its_name(
         for one in plate.FIGURES
     ]
     monkeypatch.setattr(plate, "FIGURES", named)
-    monkeypatch.setattr(plate, "tornado", lambda table: f"tornado of {table}")
-    monkeypatch.setattr(plate, "tracks", lambda found: f"tracks of {found}")
     monkeypatch.setattr(style, "png", lambda figure: f"PNG {figure}".encode())
     monkeypatch.setattr(plate, "write_mode", lambda _, file: written.append(file))
     monkeypatch.setattr(page, "plate_page", text)
@@ -261,13 +259,7 @@ def test_numbers_volume_and_pictures_are_written_each_under_its_name(
         "frequency-response": ("Frequency response", "frequency_response"),
         "admittance": ("Admittance", "admittance"),
     }
-    more = {
-        "sensitivity": ("Sensitivities", "tornado of A"),
-        "tracking": ("Modes against a parameter", "tracks of B"),
-    }
-    for given, expected in (
-        ({}, always), ({"sensitivities": "A", "tracks": "B"}, always | more),
-    ):  # fmt: skip
+    for given, expected in (({}, always),):
         folder = tmp_path / str(len(expected))
         folder.mkdir()
         assert write_plate(solved(**given), folder) == folder / "index.html"

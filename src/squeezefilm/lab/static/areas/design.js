@@ -55,6 +55,9 @@ class DesignView {
       wave: number("half wavelength", "half_wavelength"),
       time: number("envelope time constant", "envelope_time_constant"),
       force: number("tangential force", "tangential_force"),
+      current: number("drive current", "drive_current"),
+      power: number("drive power", "drive_power"),
+      inductor: number("matching inductor", "matching_inductor"),
     };
     this.canvas = element("canvas", { class: "plan", role: "img", "aria-label": "the display from above and from the side, with its mode" });
     const chart = (title, tip) => {
@@ -255,6 +258,12 @@ class DesignView {
     say(n.wave, quantity(found.half_wavelength_m, "m"));
     say(n.time, quantity(found.envelope_time_constant_s, "s"), `Q = ${plain(found.quality_factor)}`);
     say(n.force, quantity(found.tangential_force_N, "N"), `at ${quantity(found.normal_force_N, "N")}`);
+    // The screening beam and a measured stator have no admittance: dashes.
+    const load = found.drive_electronics ?? {};
+    const able = load.amplifiers?.filter((one) => one.suffices).map((one) => one.kind);
+    say(n.current, quantity(load.current_A, "A"), load.channels ? `peak, without a finger; ${load.channels} driven ceramics, ${quantity(load.capacitance_F, "F")}` : "of the solved plate");
+    say(n.power, quantity(load.real_power_W, "W"), load.channels ? `of ${plain(load.apparent_power_VA)} VA, ${plain(load.slew_rate_V_per_s / 1e6)} V/µs; enough: ${able.join(", ") || "none of three classes"}` : "");
+    say(n.inductor, quantity(load.parallel_inductance_V_s_per_A, "H"), load.series_inductance_V_s_per_A ? `parallel; ${quantity(load.series_inductance_V_s_per_A, "H")} in series` : "");
     const model = found.vibration_model.replaceAll("_", " ");
     this.quality.textContent = `${found.quality === "solved" ? "solved" : "screening"}: vibration by ${model}, friction by ${found.friction_model} under a finger ${pace}; ${quantity(found.voltage_V, "V")} at resonance`;
     this.quality.dataset.quality = found.quality;

@@ -1,0 +1,96 @@
+"""The verb that asks another verb's questions at many points."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.arguments import called_with
+from squeezefilm.cli.app import AsJson, answer, app, working, written_to
+from squeezefilm.errors import InputError
+
+
+@dataclass(frozen=True)
+class SweepOptions:
+    """What `sweep` is asked for."""
+
+    targets: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="PRESET|FILE ...", help="A display, or several to compare."),
+    ] = None
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            help='What changes: "actuator.thickness=1 mm..3 mm:9" (:9:log for equal ratios), '
+            '"voltage=10 V, 20 V". Any number of the display, or voltage, frequency, '
+            "vibration_amplitude, normal_force, speed, position, ambient_pressure, "
+            "wanted_friction, surface, model, theory, band, texture, motion, sensor, "
+            "compensation, braking, wave. Again for a grid."
+        ),
+    ] = None
+    over: Annotated[
+        Path | None,
+        typer.Option(help="A CSV file: its header names what changes, each row is a point."),
+    ] = None
+    ask: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Which numbers of predict, render, plate, friction or analyze: "
+            "relative_friction,resonance_frequency; followed: modes by their shapes."
+        ),
+    ] = None
+    answers: Annotated[
+        bool, typer.Option("--answers", help="List all that can be asked for, and stop.")
+    ] = False
+    jobs: Annotated[
+        int | None, typer.Option(help="Processes; as many as there are cores if not given.")
+    ] = None
+    out: Annotated[
+        Path | None,
+        written_to("Folder for table, JSON and picture; what it has is not computed again."),
+    ] = None
+    table: Annotated[str, typer.Option(help="The table as csv or parquet.")] = "csv"
+    fresh: Annotated[bool, typer.Option("--fresh", help="Compute again what the folder has.")] = (
+        False
+    )
+    as_json: AsJson = False
+
+
+@app.command()
+@called_with(SweepOptions)
+def sweep(asked: SweepOptions) -> None:
+    """The same questions at many points: a grid of values, the rows of a file, several displays.
+
+    Ctrl-C stops it; with --out the same command goes on from there.
+    """
+    import os
+
+    from squeezefilm.report.sweep.files import require_kind, write_sweep
+    from squeezefilm.report.sweep.terminal import show_answers, show_sweep
+    from squeezefilm.search.sweep import SweepRequest, sweep_until_stopped
+
+    if asked.answers:
+        show_answers()
+        return
+    if not asked.targets:
+        raise InputError("sweep needs a display: squeezefilm sweep biet2008-plate --vary ... --ask")
+    require_kind(asked.table)
+    with working(asked.as_json) as step:
+        request = SweepRequest(
+            asked.targets,
+            vary=asked.vary or (),
+            ask=asked.ask or (),
+            over=asked.over,
+            jobs=asked.jobs or os.cpu_count() or 1,
+            out=asked.out,
+            fresh=asked.fresh,
+            progress=step,
+        )
+        found = sweep_until_stopped(request)
+        written = None if asked.out is None else write_sweep(found, asked.out, table=asked.table)
+    answer(asked.as_json, found, show_sweep, table=written)
+    if found.missing:
+        again = "the same command goes on" if asked.out else "add --out DIR to keep what is done"
+        typer.echo(f"stopped, {found.missing} points are missing; {again}", err=True)
+        raise typer.Exit(130)

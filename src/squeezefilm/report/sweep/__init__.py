@@ -1,0 +1,1 @@
+"""A sweep as a table, figures and files."""

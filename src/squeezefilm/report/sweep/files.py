@@ -1,0 +1,61 @@
+"""A sweep in files: its table as CSV or Parquet, its JSON, its picture."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+from squeezefilm.errors import InputError
+from squeezefilm.formats.traces import parquet_of_columns
+from squeezefilm.report.kit import style
+from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.report.sweep.figures import sweep_figure
+from squeezefilm.search.swept import Sweep
+
+KINDS = ("csv", "parquet")
+
+
+def sweep_csv(found: Sweep) -> str:
+    """The table as CSV: a header with units, a row for each point, empty where there is nothing."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    columns = found.table()
+    writer.writerow(columns)
+    for row in zip(*columns.values(), strict=True):
+        writer.writerow([_cell(value) for value in row])
+    return stream.getvalue()
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    text = repr(value) if isinstance(value, float) else str(value)
+    # A spreadsheet must not take a text for a formula.
+    return f"'{text}" if isinstance(value, str) and text[:1] in "=+-@" and text else text
+
+
+def require_kind(table: str) -> None:
+    """Refuse a kind of table that is none, before any work. Raises `InputError`."""
+    if table not in KINDS:
+        raise InputError(f"a table cannot be '{table}'; it may be csv or parquet")
+
+
+def write_sweep(found: Sweep, folder: Path, *, table: str = "csv") -> Path:
+    """Write sweep.csv (or sweep.parquet), sweep.json and sweep.png into `folder`; the table's path.
+
+    Raises `InputError` for another kind of table, and where the folder cannot be written to.
+    """
+    require_kind(table)
+    folder = require_folder(folder)
+    name = f"sweep.{table}"
+    summary = found.summary()
+    files: dict[str, str | bytes] = {
+        name: sweep_csv(found)
+        if table == "csv"
+        else parquet_of_columns(found.table(), summary["provenance"]),
+        "sweep.json": json_text(summary),
+        "sweep.png": style.png(sweep_figure(found)),
+    }
+    write_folder(folder, files)
+    return folder / name

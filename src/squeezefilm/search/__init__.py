@@ -1,0 +1,1 @@
+"""Sweeps: many points asked the same questions, and answered by several processes."""

@@ -1,0 +1,124 @@
+"""Answers kept in a file under what was asked, so that a sweep that was stopped goes on, and one
+that asks more computes only what is new."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from squeezefilm import __version__
+from squeezefilm.errors import InputError
+from squeezefilm.results import to_json
+from squeezefilm.search.points import Answer, Point
+from squeezefilm.search.verbs import VERBS
+
+FILE = "answers.jsonl"
+"""Its name in the folder of a sweep: a line for every answer, appended as it comes."""
+
+
+def address(point: Point, described: dict[int, Any] | None = None) -> str:
+    """The SHA-256 of all that an answer depends on: the display's values, verb, options, samples
+    and the version of this package.
+
+    `described` keeps what was made of displays, which many points share, by their `id`.
+    """
+    verb, known = VERBS[point.verb], {} if described is None else described
+    whole = verb.display(point.display, point.options)
+    if whole is point.display:
+        if id(whole) not in known:
+            known[id(whole)] = to_json(whole)
+        values = known[id(whole)]
+    else:
+        values = to_json(whole)
+    question = {
+        "version": __version__,
+        "verb": point.verb,
+        "options": verb.settings(point.options),
+        "samples": point.samples if verb.draws else 0,
+        "display": values,
+    }
+    text = json.dumps(question, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+class Kept:
+    """The answers in a folder's file, by address; without a folder, in memory.
+
+    Raises `InputError` where the file cannot be read or written.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self._file = None if folder is None else folder / FILE
+        self._answers: dict[str, Answer] = {}
+        if self._file is None:
+            return
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            lines = self._file.read_bytes().splitlines() if self._file.exists() else []
+        except OSError as error:
+            raise InputError(
+                f"cannot use {self._file}: {error.strerror}; choose another folder"
+            ) from error
+        for line in lines:
+            try:
+                read = json.loads(line)
+                self._answers[read["address"]] = _answer(read)
+            except (ValueError, KeyError, TypeError):
+                continue  # the last line of a sweep that was killed: computed again
+
+    def __len__(self) -> int:
+        return len(self._answers)
+
+    def get(self, at: str) -> Answer | None:
+        """The answer at an address, None where there is none yet."""
+        return self._answers.get(at)
+
+    def add(self, at: str, point: Point, answer: Answer) -> None:
+        """Keep an answer; what might be another one another time is kept in memory only."""
+        self._answers[at] = answer
+        if self._file is None or not answer.lasting:
+            return
+        kept = {
+            "address": at,
+            "verb": point.verb,
+            "numbers": to_json(answer.numbers),
+            "warnings": answer.warnings,
+            "reason": answer.reason,
+            "seconds": answer.seconds,
+            "modes": answer.modes,
+        }
+        line = json.dumps(kept, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+        try:
+            # A line that was cut off before must not swallow this one.
+            with self._file.open("ab+") as file:
+                if file.tell() and not _ends_line(self._file):
+                    file.write(b"\n")
+                file.write(line.encode() + b"\n")
+        except OSError as error:
+            raise InputError(
+                f"cannot write {self._file}: {error.strerror}; free space or choose another "
+                "folder, and the sweep goes on from there"
+            ) from error
+
+
+def _ends_line(file: Path) -> bool:
+    with file.open("rb") as there:
+        there.seek(-1, 2)
+        return there.read() == b"\n"
+
+
+def _answer(read: dict[str, Any]) -> Answer:
+    numbers = {
+        str(key): math.nan if value is None else float(value)
+        for key, value in read["numbers"].items()
+    }
+    return Answer(
+        numbers,
+        tuple(map(str, read["warnings"])),
+        str(read["reason"]),
+        float(read["seconds"]),
+        modes=read["modes"],
+    )

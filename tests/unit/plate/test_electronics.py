@@ -1,0 +1,153 @@
+"""What a plate asks of its amplifier, against circuits whose answer is known."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+
+from squeezefilm.display import load_display
+from squeezefilm.errors import OutOfRangeError
+from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
+from squeezefilm.plate.electronics import (
+    AMPLIFIERS,
+    Amplifier,
+    amplifier_check,
+    driven_ceramics,
+    electrical_load,
+    load_of_mode,
+)
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.working_mode import working_mode
+
+# C0 of 5 nF beside R1, L1, C1 in resonance at 40 kHz with Q = 100.
+F0, Q, R1 = 40e3, 100.0, 2000.0
+L1 = Q * R1 / (2 * np.pi * F0)
+CIRCUIT = EquivalentCircuit(F0, Q, 5e-9, R1, L1, 1 / ((2 * np.pi * F0) ** 2 * L1))
+
+
+class Response(DrivenResponse):
+    """The circuit's own admittance around its resonance, on a grid that has the resonance."""
+
+    def __init__(self) -> None:
+        self.frequencies = np.linspace(39e3, 41e3, 201)
+        self.admittance = CIRCUIT.admittance(self.frequencies)
+
+
+def test_at_resonance_the_motional_resistor_and_the_held_capacitance_are_the_load() -> None:
+    load = electrical_load(Response(), 30.0, F0, circuit=CIRCUIT, channels=4)
+    omega = 2 * np.pi * F0
+    Y = 1 / R1 + 1j * omega * 5e-9
+    assert load.current == pytest.approx(30 * abs(Y))
+    assert load.real_power == pytest.approx(30**2 / (2 * R1))
+    assert load.apparent_power == pytest.approx(load.current * 30 / 2)
+    assert load.power_factor == pytest.approx(load.real_power / load.apparent_power)
+    assert load.slew_rate == pytest.approx(omega * 30)
+    assert (load.capacitance, load.capacitance_per_channel) == (5e-9, 1.25e-9)
+    assert load.current_per_channel == pytest.approx(load.current / 4)
+
+
+@pytest.mark.parametrize("frequency", [39.2e3, 39.99e3, F0, 40.9e3])
+def test_each_inductor_leaves_a_resistor_and_the_power_as_it_is(frequency: float) -> None:
+    load = electrical_load(Response(), 30.0, frequency)
+    omega = 2 * np.pi * frequency
+    Y = np.interp(frequency, Response().frequencies, Response().admittance)
+    assert load.parallel_inductance is not None
+    assert load.series_inductance is not None
+    beside = Y + 1 / (1j * omega * load.parallel_inductance)
+    assert beside.imag == pytest.approx(0, abs=1e-12)
+    assert load.matched_current == pytest.approx(30 * beside.real)
+    before = 1 / Y + 1j * omega * load.series_inductance
+    assert before.imag == pytest.approx(0, abs=1e-9)
+    assert load.matched_voltage == pytest.approx(load.current * before.real)
+    assert load.matched_current * 30 / 2 == pytest.approx(load.real_power)
+    assert load.matched_voltage * load.current / 2 == pytest.approx(load.real_power)
+    assert load.matched_current <= load.current
+    assert load.matched_voltage <= 30
+
+
+def test_an_inductive_load_needs_no_inductor() -> None:
+    # Hardly any capacitance: above its resonance the mode is an inductor.
+    bare = dataclasses.replace(CIRCUIT, static_capacitance=1e-15)
+    response = Response()
+    response.admittance = bare.admittance(response.frequencies)
+    load = electrical_load(response, 30.0, 40.3e3)
+    assert (load.parallel_inductance, load.series_inductance) == (None, None)
+    assert (load.matched_current, load.matched_voltage) == (load.current, 30.0)
+    assert (load.capacitance, load.capacitance_per_channel) == (None, None)
+
+
+def test_everything_grows_with_the_voltage_as_it_must() -> None:
+    one, two = (electrical_load(Response(), volts, F0) for volts in (10.0, 20.0))
+    for name, power in (("current", 1), ("slew_rate", 1), ("real_power", 2), ("power_factor", 0)):
+        assert getattr(two, name) == pytest.approx(2**power * getattr(one, name))
+    assert electrical_load(Response(), 0.0, F0).current == 0
+
+
+def test_no_admittance_is_made_up_beyond_what_was_solved() -> None:
+    for frequency in (38.9e3, 41.1e3):
+        with pytest.raises(OutOfRangeError, match="was solved from 39 kHz to 41 kHz"):
+            electrical_load(Response(), 10.0, frequency)
+
+
+PART = Amplifier("a kind", "a part", ((50.0, 1.0), (100.0, 0.5)), 20e6, "nobody")
+
+
+@pytest.mark.parametrize(
+    ("asked", "suffices", "why"),
+    [
+        ((50.0, 1.0, 1e6), True, "gives 1 A, and 1 A is wanted at 50 V"),
+        ((51.0, 0.6, 1e6), False, "gives 500 mA, and 600 mA is wanted at 51 V"),
+        ((101.0, 0.1, 1e6), False, "gives 100 V at most, and 101 V is wanted"),
+        ((50.0, 0.5, 21e6), False, "gives 20 V/us, and 21 V/us is wanted"),
+    ],
+)
+def test_an_amplifier_is_asked_for_voltage_current_and_slope(
+    asked: tuple[float, float, float], suffices: bool, why: str
+) -> None:
+    found = amplifier_check(PART, *asked)
+    assert (found.suffices, found.why, found.source) == (suffices, why, "nobody")
+    silent = dataclasses.replace(PART, slew_rate=None)
+    assert amplifier_check(silent, 50.0, 0.5, 1e12).suffices
+
+
+def test_the_currents_of_the_data_sheets_follow_from_their_loads() -> None:
+    chip, op_amp, laboratory = AMPLIFIERS
+    # I = 2π f C V̂ at 300 Hz, and of 100 nF at each power bandwidth.
+    assert chip.ranges[-1] == pytest.approx((100.0, 2 * np.pi * 300 * 100e-9 * 100))
+    assert chip.ranges[0] == pytest.approx((25.0, 2 * np.pi * 300 * 680e-9 * 25))
+    assert laboratory.ranges[0] == pytest.approx((50.0, 2 * np.pi * 56e3 * 100e-9 * 50))
+    assert op_amp.ranges == ((25.0, 10.0),)
+    for one in AMPLIFIERS:
+        assert one.source
+        assert list(one.ranges) == sorted(one.ranges)
+
+
+def test_only_a_solved_plate_with_a_voltage_has_a_load() -> None:
+    stator = load_display("biet2008-stator").actuator
+    mode = working_mode(stator)
+    assert load_of_mode(stator, mode, 20.0, mode.resonance_frequency) is None
+    plate: Any = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    assert driven_ceramics(plate) == 7
+    one = dataclasses.replace(plate.patches[0], electrode="open")
+    assert driven_ceramics(dataclasses.replace(plate, patches=(one, *plate.patches[1:]))) == 6
+
+
+@pytest.mark.slow
+def test_the_papers_plate_is_the_same_load_by_its_response_and_by_its_circuit() -> None:
+    plate = load_display("biet2008-plate").actuator
+    mode = working_mode(plate)
+    load = load_of_mode(plate, mode, 15.0, mode.resonance_frequency)
+    assert load is not None
+    assert mode.solid is not None
+    circuit = mode.solid.response.equivalent_circuit()
+    Y = circuit.admittance(np.array([mode.resonance_frequency]))[0]
+    assert load.current == pytest.approx(15 * abs(Y), rel=0.01)
+    assert load.real_power == pytest.approx(15**2 / 2 * Y.real, rel=0.01)
+    at = int(np.argmin(np.abs(mode.solid.response.frequencies - mode.resonance_frequency)))
+    dissipated = mode.solid.response.dissipated_power(15.0)[at]
+    assert load.real_power == pytest.approx(dissipated, rel=0.01)
+    assert [check.suffices for check in load.amplifiers] == [False, True, True]
+    assert load_of_mode(plate, mode, 15.0, 60e3) is None
+    assert load_of_mode(plate, mode, None, mode.resonance_frequency) is None

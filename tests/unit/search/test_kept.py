@@ -1,0 +1,73 @@
+"""Answers kept under what was asked: the same question finds them, another does not."""
+
+import dataclasses
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from squeezefilm.analysis.parameters import with_values
+from squeezefilm.display import load_display
+from squeezefilm.errors import InputError
+from squeezefilm.search import kept
+from squeezefilm.search.kept import FILE, Kept, address
+from squeezefilm.search.points import Answer, Point
+
+STATOR = load_display("biet2008-stator")
+POINT = Point(STATOR, {"voltage": 20.0, "texture": "sine-3mm"}, "predict")
+
+
+def test_an_address_is_of_all_that_the_answer_depends_on_and_nothing_else(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    own = address(POINT)
+    thicker = with_values(STATOR, {"actuator.radial_width": 11e-3})
+    others = {
+        address(dataclasses.replace(POINT, display=thicker)),
+        address(dataclasses.replace(POINT, options={"voltage": 21.0})),
+        address(dataclasses.replace(POINT, verb="friction")),
+        address(dataclasses.replace(POINT, verb="friction", samples=32)),
+    }
+    assert len(others | {own}) == 5
+    # A texture moves no prediction, and a prediction draws no samples.
+    assert own == address(dataclasses.replace(POINT, options={"voltage": 20.0}, samples=32))
+    assert own == address(dataclasses.replace(POINT, display=load_display("biet2008-stator")))
+    known: dict[int, object] = {}
+    assert own == address(POINT, known)
+    assert own == address(POINT, known)
+    monkeypatch.setattr(kept, "__version__", "9.9")
+    assert address(POINT) != own
+
+
+def test_answers_are_there_again_and_a_line_that_was_cut_off_is_not(tmp_path: Path) -> None:
+    first = Kept(tmp_path / "new")
+    answer = Answer({"a_m": 1 / 3, "b": math.nan}, ("careful",), "", 0.5, modes={"modes": []})
+    first.add("one", POINT, answer)
+    first.add("two", POINT, Answer({}, reason="no"))
+    first.add("three", POINT, Answer({}, reason="a fault", lasting=False))
+    assert len(first) == 3
+    file = tmp_path / "new" / FILE
+    with file.open("a") as there:
+        there.write('{"address": "four", "numb')
+    again = Kept(tmp_path / "new")
+    assert len(again) == 2
+    found = again.get("one")
+    assert found is not None
+    assert found.numbers["a_m"] == 1 / 3
+    assert math.isnan(found.numbers["b"])
+    assert (found.warnings, found.modes) == (("careful",), {"modes": []})
+    assert again.get("three") is None
+    # What follows a line that was cut off stands on its own.
+    again.add("five", POINT, answer)
+    assert json.loads(file.read_text().splitlines()[-1])["address"] == "five"
+    assert len(Kept(tmp_path / "new")) == 3
+
+
+def test_without_a_folder_they_are_in_memory_and_a_file_is_no_folder(tmp_path: Path) -> None:
+    here = Kept(None)
+    here.add("one", POINT, Answer({}))
+    assert here.get("one") is not None
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="choose another folder"):
+        Kept(tmp_path / "file")

@@ -1,0 +1,85 @@
+"""Points in, answers out: refusals and faults are answers; a process that dies costs one point."""
+
+import os
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from squeezefilm.display import load_display
+from squeezefilm.search.points import Answer, Point, answer_of, answered
+from squeezefilm.search.verbs import VERBS
+
+STATOR = load_display("biet2008-stator")
+
+
+def asks(options: dict[str, Any], verb: str = "predict") -> Point:
+    return Point(STATOR, options, verb)
+
+
+def test_an_answer_is_what_the_verb_says() -> None:
+    found = answer_of(asks({"voltage": 100.0}))
+    assert found.numbers["voltage_V"] == 100.0
+    assert 0 < found.numbers["relative_friction"] < 1
+    assert found.reason == ""
+    assert found.lasting
+    assert found.modes is None
+    assert found.seconds > 0
+
+
+def test_a_refusal_is_an_answer_that_lasts_and_a_fault_one_that_does_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert "change no friction" not in answer_of(asks({"voltage": 0.0})).reason
+    refused = answer_of(asks({"surface": "none"}))
+    assert "no surface 'none'" in refused.reason
+    assert (dict(refused.numbers), refused.lasting) == ({}, True)
+
+    def fails(*_: Any, **__: Any) -> None:
+        raise ZeroDivisionError("by zero")
+
+    broken = SimpleNamespace(display=lambda display, _: display, settings=dict, answer=fails)
+    monkeypatch.setitem(VERBS, "predict", broken)
+    failed = answer_of(asks({}))
+    assert failed.reason == "not foreseen: ZeroDivisionError: by zero"
+    assert not failed.lasting
+
+
+def volts(point: Point) -> Answer:
+    """Answers without physics, and dies of 13 V."""
+    if point.options["voltage"] == 13:
+        os._exit(1)
+    return Answer({"voltage_V": point.options["voltage"]})
+
+
+def test_one_process_answers_in_order() -> None:
+    asked = [asks({"voltage": float(k)}) for k in range(5)]
+    found = list(answered(asked, answer=volts))
+    assert [number for number, _ in found] == list(range(5))
+    assert list(answered([], answer=volts)) == []
+
+
+@pytest.mark.slow
+def test_processes_answer_all_and_one_that_dies_costs_its_own_point() -> None:
+    asked = [asks({"voltage": float(k)}) for k in range(8, 20)]
+    found = dict(answered(asked, jobs=2, answer=volts))
+    assert sorted(found) == list(range(12))
+    for number, answer in found.items():
+        if number == 5:
+            assert "ended without an answer" in answer.reason
+            assert not answer.lasting
+        else:
+            assert answer.numbers["voltage_V"] == 8 + number
+
+
+@pytest.mark.slow
+def test_no_process_is_left_where_the_asking_is_stopped() -> None:
+    import multiprocessing
+
+    asked = [asks({"voltage": float(k)}) for k in range(6)]
+    coming = answered(asked, jobs=2, answer=volts)
+    next(coming)
+    coming.close()
+    for process in multiprocessing.active_children():
+        process.join(20)
+    assert not multiprocessing.active_children()

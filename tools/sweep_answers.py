@@ -1,0 +1,79 @@
+"""Write `squeezefilm/search/answers.toml`: every number that a sweep can ask of each verb.
+
+    python tools/sweep_answers.py
+
+Verbs answer for displays of each kind; what any of them says is listed. A test compares.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import squeezefilm.search
+from squeezefilm.analysis.analyze import analyze
+from squeezefilm.analysis.friction.command import analyze_friction
+from squeezefilm.analysis.plate.command import solve_plate
+from squeezefilm.analysis.plate.solved import ModeRow
+from squeezefilm.chain.prediction import predict
+from squeezefilm.chain.rendered_texture import render_texture
+from squeezefilm.display import load_display
+from squeezefilm.formats.trajectories import motion_from
+from squeezefilm.results import Result, to_json
+from squeezefilm.search.answers import numbers_of
+from squeezefilm.search.verbs import VERBS
+from squeezefilm.texture_file import load_texture
+
+DISPLAYS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
+# Two numbers that always stand together are listed each; of longer lists only that there is one.
+_PAIR = re.compile(r"(relative_friction_interval|finger_impedance_N_s_per_m)\.[01]$")
+HEAD = """\
+# What a sweep can ask of each verb; tools/sweep_answers.py writes it.
+# A star stands for a place in a list, from 0 on.
+"""
+
+
+def results(verb: str) -> Iterator[Result]:
+    """What a verb says of displays of each kind."""
+    for display in map(load_display, DISPLAYS):
+        if verb == "predict":
+            yield predict(display)
+        elif verb == "render":
+            motion = motion_from("60 mm/s over 2 cm")
+            sensor = "touch-panel-120-hz"
+            yield render_texture(display, load_texture("sine-3mm"), motion, sensor=sensor)
+        elif verb == "plate":
+            yield solve_plate(display)
+        elif verb == "friction":
+            yield analyze_friction(display, wanted_friction=0.9)
+        elif verb == "analyze":
+            yield analyze(display)
+
+
+def keys(verb: str) -> list[str]:
+    """The keys of a verb, in the order in which its JSON has them."""
+    if verb == "followed":
+        fields = to_json(ModeRow("", *(1.0,) * 7))
+        return [key for key in fields if key not in ("label", "modal_force")]
+    found: dict[str, None] = {}
+    for result in results(verb):
+        for key, value in numbers_of(result.summary()):
+            starred = key if _PAIR.search(key) else re.sub(r"\.\d+(?=\.|$)", ".*", key)
+            # NaN: a text or a group that is missing here, or a number that another display has.
+            if value == value:
+                found[starred] = None
+    return list(found)
+
+
+def text() -> str:
+    """The text of the file."""
+    lines = [HEAD]
+    for verb in VERBS:
+        lines += [f"{verb} = [", *(f'  "{key}",' for key in keys(verb)), "]", ""]
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    assert squeezefilm.search.__file__ is not None
+    Path(squeezefilm.search.__file__).with_name("answers.toml").write_text(text(), encoding="utf-8")
