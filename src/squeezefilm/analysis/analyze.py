@@ -35,7 +35,9 @@ from squeezefilm.analysis.uncertainty import (
     interval_or_reason,
 )
 from squeezefilm.analysis.verdict import Finding, verdict
+from squeezefilm.chain.active_area import ActiveArea, active_area
 from squeezefilm.chain.friction_models import FrictionModel
+from squeezefilm.chain.pad_place import Place
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError, OutOfRangeError
@@ -74,6 +76,7 @@ class Analysis(Result):
 
     display: Display
     prediction: Prediction
+    active_area: ActiveArea | None
     envelope_time_constant: si.Second
     envelope_bandwidth: si.Hertz
     other_models: tuple[OtherModel, ...]
@@ -109,6 +112,7 @@ class Analysis(Result):
         p = self.prediction
         return {
             **p.summary(),
+            "active_area": None if self.active_area is None else self.active_area.summary(),
             "relative_friction_interval": None
             if self.uncertainty is None
             else list(self.uncertainty.interval),
@@ -163,6 +167,7 @@ def analyze(
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
+    place: Place | None = None,
     strict: bool = False,
     samples: int = SAMPLES,
     progress: SayProgress | None = None,
@@ -184,6 +189,7 @@ def analyze(
         theory=theory,
         model=model,
         speed=speed,
+        place=place,
         strict=strict,
     )
     return _what_follows(display, prediction, samples, tell)
@@ -195,6 +201,8 @@ def _what_follows(
     """All that an analysis says, from a prediction."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
+    tell("friction over the active area")
+    area = active_area(display, prediction)
     tell("frequency response")
     response = frequency_response(prediction)
     tell("pressure under the finger")
@@ -222,6 +230,7 @@ def _what_follows(
     return Analysis(
         display=display,
         prediction=prediction,
+        active_area=area,
         envelope_time_constant=tau,
         envelope_bandwidth=float(envelope_bandwidth(mode.quality_factor, mode.resonance_frequency)),
         other_models=tuple(_other_models(display, prediction)),
@@ -236,7 +245,7 @@ def _what_follows(
         fidelity=table,
         compensated=compensated,
         survival=survival,
-        verdict=tuple(verdict(display, prediction, curves, table, films, unsure, why_not)),
+        verdict=tuple(verdict(display, prediction, area, curves, table, films, unsure, why_not)),
     )
 
 

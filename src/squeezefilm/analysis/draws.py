@@ -198,6 +198,7 @@ class Mixture:
             position=p.law.position,
             speed=p.law.speed,
             slip=draw.slip,
+            place=p.law.place,
         )
 
 

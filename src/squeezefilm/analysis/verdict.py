@@ -12,6 +12,7 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.analysis.uncertainty import UncertainFriction
+from squeezefilm.chain.active_area import ActiveArea
 from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
@@ -36,6 +37,7 @@ class Finding:
 def verdict(
     display: Display,
     p: Prediction,
+    area: ActiveArea | None,
     curves: tuple[FrictionCurve, ...],
     table: FidelityTable | None,
     films: FilmComparison | None,
@@ -44,7 +46,7 @@ def verdict(
 ) -> Iterator[Finding]:
     """What an analysis amounts to, in sentences; `why_not` says why no friction is `unsure`."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
-    yield friction_verdict(p, unsure, why_not)
+    yield friction_verdict(p, unsure, why_not, area)
     yield from _of_needed_amplitude(p, curves)
     if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
         yield Finding(
@@ -72,25 +74,39 @@ def verdict(
     )
 
 
-def friction_verdict(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
-    """How probable it is that the friction falls below the paper's criterion.
+def friction_verdict(
+    p: Prediction, unsure: UncertainFriction | None, why_not: str, area: ActiveArea | None
+) -> Finding:
+    """How probable it is that the friction falls below the paper's criterion, and over the area.
 
-    Good where all of the interval lies below it, a limit where it does not, a doubt where there is
-    no interval (`why_not` says why). The same sentence wherever this verdict is shown.
+    Good where all of the interval lies below it, and all of the active area as described; a limit
+    where they do not, a doubt where there is no interval (`why_not` says why). The same sentence
+    wherever this verdict is shown.
     """
+    found = _at_the_place(p, unsure, why_not)
+    if area is None:
+        return found
+    kind = found.kind
+    if kind == "good" and (area.worst is None or area.worst >= PAPER_CRITERION):
+        kind = "limit"
+    return Finding(kind, f"{found.text} {area.sentence}")
+
+
+def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
+    """Of the place that the prediction is of."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
     asked = f"{PAPER_CRITERION:.2f}, as the paper asks"
     if unsure is None:
         because = why_not or "no interval was computed"
         return Finding(
             "doubt",
-            f"µ′/µ is {p.relative_friction:.2f} as described at {amplitude} by the model "
-            f"'{p.model}'. How probable it is that it lies below {asked}, is not known: {because}.",
+            f"µ′/µ is {p.relative_friction:.2f} as described {p.place_said}, at {amplitude} of the "
+            f"best antinode, by the model '{p.model}'. How probable it is that it lies below {asked}, is not known: {because}.",
         )
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE
     text = (
-        f"µ′/µ is below {asked}, with probability "
+        f"{p.place_said[0].upper()}{p.place_said[1:]}, µ′/µ is below {asked}, with probability "
         f"{_probability(unsure.probability_below(PAPER_CRITERION))} ({unsure.level:.0%} interval "
         f"{low:.2f}–{high:.2f}, median {unsure.median:.2f}; {unsure.nominal:.2f} as described at "
         f"{amplitude}); below {noticed:.2f}, where people notice it, with probability "

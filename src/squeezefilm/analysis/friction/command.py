@@ -16,7 +16,9 @@ from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interva
 from squeezefilm.analysis.verdict import Finding, friction_verdict
 from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction import FrictionLaw
+from squeezefilm.chain.active_area import ActiveArea, active_area
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
+from squeezefilm.chain.pad_place import Place
 from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
 from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.contact.sharing.tapping import tapping_friction
@@ -76,6 +78,7 @@ class FrictionAnalysis(Result):
     wanted: Wanted | None
     tapping: Tapping
     verdict: Finding
+    active_area: ActiveArea | None
     apart: ToldApart | None = None
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.vibration_amplitude "
@@ -100,6 +103,8 @@ class FrictionAnalysis(Result):
             "amplitude_kept": p.touch.kept,
             "finger_impedance_N_s_per_m": to_json(p.touch.impedance),
             "amplitude_model": p.amplitude_model,
+            "place": p.place_summary(),
+            "active_area": None if self.active_area is None else self.active_area.summary(),
             "relative_friction": p.relative_friction,
             "relative_friction_interval": None if unsure is None else list(unsure.interval),
             "interval_level": None if unsure is None else unsure.level,
@@ -156,6 +161,7 @@ class FrictionRequest:
     model: FrictionModel | None = None
     position: si.Metre = 0.0
     speed: si.MetrePerSecond | None = None
+    place: Place | None = None
     ambient_pressure: si.Pascal | None = None
     wanted_friction: si.Dimensionless | None = None
     samples: int = SAMPLES
@@ -192,6 +198,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         model=asked.model,
         position=asked.position,
         speed=asked.speed,
+        place=asked.place,
     )
     wanted = _wanted(display, asked)
     tell("models side by side")
@@ -206,7 +213,8 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         if asked.tell_apart
         else None
     )
-    tell("ripple of the standing wave")
+    tell("ripple of the standing wave, and the active area")
+    area = active_area(display, prediction)
     return FrictionAnalysis(
         display,
         prediction,
@@ -216,7 +224,8 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         _ripple(prediction),
         wanted,
         Tapping(prediction.speed, without_gas(prediction.law, prediction.vibration_amplitude)),
-        friction_verdict(prediction, unsure, why_not),
+        friction_verdict(prediction, unsure, why_not, area),
+        area,
         apart,
     )
 
@@ -263,6 +272,7 @@ def _wanted(display: Display, asked: FrictionRequest) -> Wanted | None:
         surface=asked.surface,
         model=asked.model,
         speed=asked.speed,
+        place=asked.place,
     )
     return Wanted(asked.wanted_friction, amplitude, volts)
 
@@ -293,4 +303,6 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
 
 
 def _ripple(p: Prediction) -> FrictionRipple | None:
-    return None if p.touch.sharing is None else p.law.ripple(p.vibration_amplitude)
+    if p.touch.sharing is None or p.law.place is not None:
+        return None
+    return p.law.ripple(p.vibration_amplitude)

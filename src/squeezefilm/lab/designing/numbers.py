@@ -149,7 +149,7 @@ def predicted(display: Display, quality: str, point: WorkingPoint) -> Prediction
 
 def _paper(p: Prediction, amplitude: si.FloatArray) -> si.FloatArray:
     try:
-        return dataclasses.replace(p.law, model="paper2008").curve(amplitude)
+        return p.law.by("paper2008").curve(amplitude)
     except SqueezefilmError:
         return np.full(amplitude.size, np.nan)
 
