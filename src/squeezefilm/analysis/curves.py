@@ -11,7 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
 from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.friction_models import MODEL_KINDS, FrictionModel
+from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.film_load import is_still, line_film
 from squeezefilm.display import Surface

@@ -101,7 +101,8 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
         return Finding(
             "doubt",
             f"µ′/µ is {p.relative_friction:.2f} as described {p.place_said}, at {amplitude} of the "
-            f"best antinode, by the model '{p.model}'. How probable it is that it lies below {asked}, is not known: {because}.",
+            f"best antinode, by the model '{p.model}'. How probable it is that it lies below {asked}, "
+            f"is not known: {because}.",
         )
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE

@@ -52,8 +52,8 @@ class Prediction(Result):
 
     The pad is at the best antinode, of a wave whose antinodes are taken to be all alike, or, where
     the law has a place, there; `place` is its centre. `amplitude_model` made the vibration
-    amplitude (zero-to-peak, at the best antinode wherever the finger is, with it on), `touch` says what the finger took from it, `model` made pressure and friction.
-    `mean_pressure` is the film's, averaged over contact and period, divided by ambient,
+    amplitude (zero-to-peak, at the best antinode wherever the finger is, with it on), `touch` says
+    what the finger took from it, `model` made pressure and friction. `mean_pressure` is the film's, averaged over contact and period, divided by ambient,
     `mean_pressure_error` the solver's estimate of its error (0 for a closed form).
     `relative_friction_limits` are µ′/µ with each ridge at its own balance and with all ridges at
     one mean gap, None for a model that shares no load or where one of the two is out of range.
@@ -120,7 +120,7 @@ class Prediction(Result):
             return (
                 f"{1e3 * self.law.position:.4g} mm along the wave from the best antinode, {where}"
             )
-        return f"at the best antinode, {where}"
+        return f"at the best antinode, {where}, as if of an even wave"
 
     @property
     def amplitude_at_place(self) -> si.Metre:
@@ -349,8 +349,9 @@ def voltage_for_friction(
     """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
 
     The inverse of `predict`, the finger's damping and detuning included; linear in the voltage up
-    to there. The amplitude is the best antinode's, wherever the `place` is. Raises `UnreachableError` where no amplitude does, or where the voltage would be more
-    than the 2 kV that a `Drive` may have.
+    to there. The amplitude is the best antinode's, wherever the `place` is. Raises
+    `UnreachableError` where no amplitude does, or where the voltage would be more than the 2 kV
+    that a `Drive` may have.
     """
     mode = _mode(display.actuator, theory, False)
     drive_frequency = mode.resonance_frequency if frequency is None else frequency

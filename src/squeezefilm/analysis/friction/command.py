@@ -15,8 +15,8 @@ from squeezefilm.analysis.friction.tell_apart import ToldApart, tell_apart
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
 from squeezefilm.analysis.verdict import Finding, friction_verdict
 from squeezefilm.arguments import called_with
-from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.active_area import ActiveArea, active_area
+from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.pad_place import Place
 from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction

@@ -6,7 +6,6 @@ Two qualities: `screening` takes a plate as a Timoshenko beam and answers while 
 
 from __future__ import annotations
 
-import dataclasses
 import warnings
 from dataclasses import dataclass
 from typing import Any
