@@ -53,7 +53,7 @@ def test_so_are_those_of_the_glass_presets(name: str) -> None:
     test_the_nodes_of_a_preset_are_the_zeros_of_its_drawn_line(name)
 
 
-@pytest.mark.nightly
+@pytest.mark.slow
 def test_so_are_those_of_ten_random_plates() -> None:
     tried, seed = 0, 0
     while tried < 10:

@@ -28,7 +28,7 @@ CRITERIA: tuple[si.Dimensionless, ...] = (0.70, 0.80)
 
 # Places to a half wavelength, and to a side at the least and the most.
 _TO_A_HALF_WAVE = 12
-_LEAST_PLACES, _MOST_PLACES = 25, 96
+_LEAST_PLACES, _MOST_PLACES = 49, 96
 # Between places, for shares and the median: linear.
 _BETWEEN = 8
 _KNOTS = 257

@@ -195,6 +195,14 @@ class TrackSurface(SurfaceShape):
             "at one of them: how they differ, and what changes across the track, is not known"
         )
 
+    @si.checked_numbers
+    def on_face(
+        self, x: si.MetreArray, y: si.MetreArray
+    ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
+        """Whether points (m, broadcast) lie on the face: the track is closed, so every x does."""
+        _, _, inner, outer = self.bounds
+        return np.asarray(np.broadcast_arrays((y >= inner - _EDGE) & (y <= outer + _EDGE), x)[0])
+
     def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         return np.repeat(self._points(x, x)[:, None], y.size, axis=1)
 

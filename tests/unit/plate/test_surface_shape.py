@@ -74,6 +74,8 @@ def test_a_stators_track_carries_a_wave_with_all_antinodes_alike_and_says_so() -
     middle = np.full(17, shape.lobe[1])
     assert shape.at(antinodes, middle) == pytest.approx(1.0)
     assert shape.at(antinodes + half / 2, middle) == pytest.approx(0.0, abs=1e-12)
+    # The ring is closed: a pad over where it begins overhangs nothing.
+    assert shape.on_face(np.array([-1e-3]), middle[:1]).all()
 
 
 @pytest.mark.slow
