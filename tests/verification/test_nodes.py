@@ -69,7 +69,10 @@ def test_so_are_those_of_ten_random_plates() -> None:
 
 
 def test_the_nodes_of_a_disc_and_a_beam_are_those_of_their_maps() -> None:
-    plate, disc = load_display("biet2008-plate").actuator, load_display("winfield2007-tpad").actuator
+    plate, disc = (
+        load_display("biet2008-plate").actuator,
+        load_display("winfield2007-tpad").actuator,
+    )
     for actuator, theory in ((plate, "timoshenko"), (disc, "solid")):
         mode = working_mode(actuator, theory)  # type: ignore[arg-type]
         assert mode.line is not None

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.analysis.curves import (
     FrequencyResponse,
     FrictionCurve,
@@ -35,7 +36,7 @@ from squeezefilm.analysis.uncertainty import (
     interval_or_reason,
 )
 from squeezefilm.analysis.verdict import Finding, verdict
-from squeezefilm.chain.active_area import ActiveArea, active_area
+from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.pad_place import Place
 from squeezefilm.chain.prediction import Prediction, predict
@@ -76,7 +77,7 @@ class Analysis(Result):
 
     display: Display
     prediction: Prediction
-    active_area: ActiveArea | None
+    active_area: JudgedArea | None
     envelope_time_constant: si.Second
     envelope_bandwidth: si.Hertz
     other_models: tuple[OtherModel, ...]
@@ -202,7 +203,7 @@ def _what_follows(
     mode = prediction.mode
     tau = prediction.envelope_time_constant
     tell("friction over the active area")
-    area = active_area(display, prediction)
+    area = judged_area(display, prediction, active_area(display, prediction), samples=samples)
     tell("frequency response")
     response = frequency_response(prediction)
     tell("pressure under the finger")

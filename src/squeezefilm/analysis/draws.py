@@ -204,13 +204,18 @@ class Mixture:
 
 def friction_of(mixture: Mixture, draw: Draw, free_amplitude: si.Metre) -> tuple[float, si.Metre]:
     """µ′/µ of a draw at an amplitude (m) without its finger, and the amplitude with it."""
-    p, law = mixture.prediction, mixture.law(draw)
-    amplitude = free_amplitude
-    if p.voltage is not None and p.mode.modal_mass is not None:
-        quality = getattr(draw.display.actuator, "quality_factor", p.mode.quality_factor)
-        mode = dataclasses.replace(p.mode, quality_factor=float(quality))
-        amplitude = touch(mode, law, free_amplitude).amplitude
-    return float(between_limits(law, draw, np.array([amplitude]))[0]), amplitude
+    amplitude = amplitude_of(mixture, draw, free_amplitude)
+    return float(between_limits(mixture.law(draw), draw, np.array([amplitude]))[0]), amplitude
+
+
+def amplitude_of(mixture: Mixture, draw: Draw, free_amplitude: si.Metre) -> si.Metre:
+    """The amplitude (m) of a draw with its finger, from that without."""
+    p = mixture.prediction
+    if p.voltage is None or p.mode.modal_mass is None:
+        return free_amplitude
+    quality = getattr(draw.display.actuator, "quality_factor", p.mode.quality_factor)
+    mode = dataclasses.replace(p.mode, quality_factor=float(quality))
+    return touch(mode, mixture.law(draw), free_amplitude).amplitude
 
 
 def between_limits(law: FrictionLaw, draw: Draw, amplitude: si.MetreArray) -> si.DimensionlessArray:

@@ -9,10 +9,11 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.area_odds import JudgedArea
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.analysis.uncertainty import UncertainFriction
-from squeezefilm.chain.active_area import ActiveArea
+from squeezefilm.chain.active_area import CRITERIA
 from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
@@ -37,7 +38,7 @@ class Finding:
 def verdict(
     display: Display,
     p: Prediction,
-    area: ActiveArea | None,
+    area: JudgedArea | None,
     curves: tuple[FrictionCurve, ...],
     table: FidelityTable | None,
     films: FilmComparison | None,
@@ -75,21 +76,33 @@ def verdict(
 
 
 def friction_verdict(
-    p: Prediction, unsure: UncertainFriction | None, why_not: str, area: ActiveArea | None
+    p: Prediction, unsure: UncertainFriction | None, why_not: str, area: JudgedArea | None
 ) -> Finding:
     """How probable it is that the friction falls below the paper's criterion, and over the area.
 
-    Good where all of the interval lies below it, and all of the active area as described; a limit
-    where they do not, a doubt where there is no interval (`why_not` says why). The same sentence
+    Good where all of the interval lies below it, at the worst place of the active area too; a limit
+    where it does not, a doubt where there is no interval (`why_not` says why). The same sentence
     wherever this verdict is shown.
     """
     found = _at_the_place(p, unsure, why_not)
     if area is None:
         return found
-    kind = found.kind
-    if kind == "good" and (area.worst is None or area.worst >= PAPER_CRITERION):
-        kind = "limit"
-    return Finding(kind, f"{found.text} {area.sentence}")
+    worst = area.area.worst
+    highest = worst if area.odds is None else max(worst or 0.0, area.odds.worst_interval[1])
+    everywhere = highest is not None and worst is not None and highest < PAPER_CRITERION
+    kind = "limit" if found.kind == "good" and not everywhere else found.kind
+    return Finding(kind, f"{found.text} {area.area.sentence}{_odds(area)}")
+
+
+def _odds(area: JudgedArea) -> str:
+    """How probable the criterion is over the area, in a sentence."""
+    if area.odds is None:
+        return ""
+    best, median, worst = (_probability(p) for p in area.odds.probabilities_below(CRITERIA[0]))
+    return (
+        f" With all that is uncertain drawn, it is below {CRITERIA[0]:.2f} with probability {best} "
+        f"at the best place, {median} in the median and {worst} at the worst."
+    )
 
 
 def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
@@ -101,8 +114,8 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
         return Finding(
             "doubt",
             f"µ′/µ is {p.relative_friction:.2f} as described {p.place_said}, at {amplitude} of the "
-            f"best antinode, by the model '{p.model}'. How probable it is that it lies below {asked}, "
-            f"is not known: {because}.",
+            f"best antinode, by the model '{p.model}'. How probable it is that it lies below "
+            f"{asked}, is not known: {because}.",
         )
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE

@@ -96,7 +96,8 @@ class ActiveArea:
         if self.relative_friction is None:
             return None
         values, shares = self._finely
-        return float(min(np.sum(shares[values < relative_friction]), 1.0))
+        # A sum of many shares is 1 to rounding only.
+        return round(float(np.sum(shares[values < relative_friction])), 9)
 
     @property
     def uniformity(self) -> si.Dimensionless | None:

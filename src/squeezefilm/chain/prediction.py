@@ -53,8 +53,9 @@ class Prediction(Result):
     The pad is at the best antinode, of a wave whose antinodes are taken to be all alike, or, where
     the law has a place, there; `place` is its centre. `amplitude_model` made the vibration
     amplitude (zero-to-peak, at the best antinode wherever the finger is, with it on), `touch` says
-    what the finger took from it, `model` made pressure and friction. `mean_pressure` is the film's, averaged over contact and period, divided by ambient,
-    `mean_pressure_error` the solver's estimate of its error (0 for a closed form).
+    what the finger took from it, `model` made pressure and friction. `mean_pressure` is the film's,
+    averaged over contact and period, divided by ambient, `mean_pressure_error` the solver's
+    estimate of its error (0 for a closed form).
     `relative_friction_limits` are µ′/µ with each ridge at its own balance and with all ridges at
     one mean gap, None for a model that shares no load or where one of the two is out of range.
     `friction_reduction` is µ − µ′, `tangential_force` µ′ F of a finger that slides steadily.

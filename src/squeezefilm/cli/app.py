@@ -84,8 +84,8 @@ OnPlace = Annotated[
     str | None,
     typer.Option(
         "--place",
-        help="The finger's centre on the face, like \"30 mm, 20 mm\" (x, y from a plate's corner, a "
-        "disc's middle, or along a stator's track); the best antinode if not given.",
+        help="The finger's centre on the face, like \"30 mm, 20 mm\" (x, y from a plate's corner, "
+        "a disc's middle, or along a stator's track); the best antinode if not given.",
     ),
 ]
 Model = Annotated[

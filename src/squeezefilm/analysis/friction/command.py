@@ -9,13 +9,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve, model_curves
 from squeezefilm.analysis.friction.tell_apart import ToldApart, tell_apart
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
 from squeezefilm.analysis.verdict import Finding, friction_verdict
 from squeezefilm.arguments import called_with
-from squeezefilm.chain.active_area import ActiveArea, active_area
+from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.pad_place import Place
@@ -78,7 +79,7 @@ class FrictionAnalysis(Result):
     wanted: Wanted | None
     tapping: Tapping
     verdict: Finding
-    active_area: ActiveArea | None
+    active_area: JudgedArea | None
     apart: ToldApart | None = None
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.vibration_amplitude "
@@ -214,7 +215,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         else None
     )
     tell("ripple of the standing wave, and the active area")
-    area = active_area(display, prediction)
+    area = judged_area(display, prediction, active_area(display, prediction), samples=asked.samples)
     return FrictionAnalysis(
         display,
         prediction,

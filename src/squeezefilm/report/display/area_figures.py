@@ -20,19 +20,25 @@ if TYPE_CHECKING:
 
 _LEVELS = 16
 _PLACE: dict[str, Any] = {
-    "ms": 8, "color": style.PAPER, "mec": style.INK, "mew": 1.2, "ls": "", "clip_on": False,
+    "ms": 8,
+    "color": style.PAPER,
+    "mec": style.INK,
+    "mew": 1.2,
+    "ls": "",
+    "clip_on": False,
 }
 
 
 @style.drawn
 def active_area(analysis: Analysis) -> Figure:
     """The amplitude of the face and the friction under the pad, by the place of its centre."""
-    area = analysis.active_area
-    if area is None:
+    judged = analysis.active_area
+    if judged is None:
         return style.message_figure(
             "No map: the mode has no shape over a face",
             f"The model '{analysis.prediction.mode.model}' gives one amplitude only.",
         )
+    area = judged.area
     made = f"{area.shape_model} ({area.shape_words}); friction by {analysis.prediction.model}"
     is_line = 1 in area.amplitude.shape
     wide = not is_line and np.ptp(area.x) > 2.2 * np.ptp(area.y)

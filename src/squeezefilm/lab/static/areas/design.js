@@ -261,7 +261,7 @@ class DesignView {
       range ? `below 0.70 on ${plain(100 * area.share_below["0.70"])} % of it` : "known when the plate is solved");
     this.areaMap.set(area);
     this.areaCard.hidden = !area;
-    this.areaSaid.textContent = area?.said ?? "";
+    this.areaSaid.textContent = area ? `Dark is where the finger slides most easily. ${area.said}` : "";
     say(n.reduction, plain(found.friction_reduction), `of µ = ${plain(found.friction_coefficient)} on ${found.surface}`);
     say(n.squeeze, plain(found.squeeze_number), found.squeeze_number > 10 ? "" : "below the paper's 10");
     say(n.wave, quantity(found.half_wavelength_m, "m"));
