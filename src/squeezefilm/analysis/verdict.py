@@ -76,7 +76,10 @@ def verdict(
 
 
 def friction_verdict(
-    p: Prediction, unsure: UncertainFriction | None, why_not: str, area: JudgedArea | None
+    p: Prediction,
+    unsure: UncertainFriction | None,
+    why_not: str,
+    area: JudgedArea | None = None,
 ) -> Finding:
     """How probable it is that the friction falls below the paper's criterion, and over the area.
 
@@ -108,14 +111,16 @@ def _odds(area: JudgedArea) -> str:
 def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
     """Of the place that the prediction is of."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
+    if p.law.place is not None:
+        amplitude += " of the best antinode"
     asked = f"{PAPER_CRITERION:.2f}, as the paper asks"
     if unsure is None:
         because = why_not or "no interval was computed"
         return Finding(
             "doubt",
-            f"µ′/µ is {p.relative_friction:.2f} as described {p.place_said}, at {amplitude} of the "
-            f"best antinode, by the model '{p.model}'. How probable it is that it lies below "
-            f"{asked}, is not known: {because}.",
+            f"µ′/µ is {p.relative_friction:.2f} as described {p.place_said}, at {amplitude} by the "
+            f"model '{p.model}'. How probable it is that it lies below {asked}, is not known: "
+            f"{because}.",
         )
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE

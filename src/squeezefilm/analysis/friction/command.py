@@ -79,8 +79,8 @@ class FrictionAnalysis(Result):
     wanted: Wanted | None
     tapping: Tapping
     verdict: Finding
-    active_area: JudgedArea | None
     apart: ToldApart | None = None
+    active_area: JudgedArea | None = None
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.vibration_amplitude "
         "prediction.relative_friction uncertainty.interval wanted.voltage"
@@ -226,8 +226,8 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         wanted,
         Tapping(prediction.speed, without_gas(prediction.law, prediction.vibration_amplitude)),
         friction_verdict(prediction, unsure, why_not, area),
-        area,
         apart,
+        area,
     )
 
 
