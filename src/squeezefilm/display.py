@@ -139,8 +139,8 @@ class Display(Result):
     """A friction-modulation display, complete enough to be analysed.
 
     Read one with `load_display`. The first of `surfaces` is the default. `active_area` is where
-    fingers are meant to be; without one all of the face that a contact does not overhang. `provenance` says where
-    each value is from, by its dotted path in the file.
+    fingers are meant to be; without one all of the face that a contact does not overhang.
+    `provenance` says where each value is from, by its dotted path in the file.
     """
 
     name: str

@@ -43,7 +43,8 @@ def require_zeros(mode: SolidMode, line: ModeLine) -> None:
 @pytest.mark.parametrize("name", ["biet2008-plate"])
 def test_the_nodes_of_a_preset_are_the_zeros_of_its_drawn_line(name: str) -> None:
     mode = working_mode(load_display(name).actuator)
-    assert mode.solid is not None and mode.line is not None
+    assert mode.solid is not None
+    assert mode.line is not None
     require_zeros(mode.solid, mode.line)
 
 
@@ -63,7 +64,8 @@ def test_so_are_those_of_ten_random_plates() -> None:
             mode = working_mode(plate)
         except InputError:
             continue  # This plate has no such mode.
-        assert mode.solid is not None and mode.line is not None
+        assert mode.solid is not None
+        assert mode.line is not None
         require_zeros(mode.solid, mode.line)
         tried += 1
 

@@ -46,7 +46,7 @@ PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
 
 @dataclass(frozen=True, eq=False)
 class ModeLine:
-    """The mode along the line across its nodal lines: deflection, 1 at the largest interior lobe."""
+    """The mode along the line across its nodal lines: 1 at the largest interior lobe."""
 
     position: si.MetreArray
     deflection: si.FloatArray
@@ -64,8 +64,8 @@ class WorkingMode:
     `model` names what made the numbers, `frequency_error` is the solver's estimate where one
     solved it; `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe
     does, where it is known. `lobe` is where that is (x, y): from a plate's corner, from a disc's
-    middle, along a stator's track. `disc` is a disc's mode; `beam` is the plate as a beam: what made the numbers, or stands beside
-    them.
+    middle, along a stator's track. `disc` is a disc's mode; `beam` is the plate as a beam: what
+    made the numbers, or stands beside them.
     """
 
     label: str

@@ -69,8 +69,9 @@ def test_a_verdict_is_the_probability_of_the_criterion(point: Prediction) -> Non
     assert inside == Finding(
         "limit",
         "At the best antinode, x 0 mm, y 5 mm, as if of an even wave, µ′/µ is below 0.70, as the "
-        "paper asks, with probability 0.50 (90% interval 0.20–0.81, median 0.40; 0.51 as described at 2 µm); below 0.80, where people notice it, with "
-        "probability 0.75. The criterion lies inside the interval: whether it is met is open.",
+        "paper asks, with probability 0.50 (90% interval 0.20–0.81, median 0.40; 0.51 as "
+        "described at 2 µm); below 0.80, where people notice it, with probability 0.75. The "
+        "criterion lies inside the interval: whether it is met is open.",
     )
     good = friction_verdict(p, unsure(0.2, 0.69, [0.2, 0.5, 0.6, 0.69]), "")
     assert good.kind == "good"

@@ -14,7 +14,8 @@ MODE = working_mode(PLATE.actuator, "timoshenko")
 
 def test_the_amplitude_is_in_proportion_to_the_voltage() -> None:
     own = free_vibration(PLATE, MODE, None, None, None)
-    assert own.voltage == PLATE.drive.voltage and own.frequency == MODE.resonance_frequency
+    assert own.voltage == PLATE.drive.voltage
+    assert own.frequency == MODE.resonance_frequency
     assert own.amplitude == pytest.approx(PLATE.drive.voltage * MODE.amplitude_per_volt)
     assert free_vibration(PLATE, MODE, None, 3.0, None).amplitude == pytest.approx(
         own.amplitude * 3.0 / PLATE.drive.voltage

@@ -168,8 +168,8 @@ def pad_friction(
     """The friction of plateaus at `points` (m from the pad's centre) over a standing wave.
 
     `amplitude` (m, at an antinode) may be an array; the plate's amplitude at x is
-    a |cos(πx/half_wavelength)|, unless the posture has its own swings. Without a `shear` friction is
-    the asperities' share of the load. Raises as `share_load` does.
+    a |cos(πx/half_wavelength)|, unless the posture has its own swings. Without a `shear` friction
+    is the asperities' share of the load. Raises as `share_load` does.
     """
     posture = posture or PadPosture()
     a = np.atleast_1d(np.asarray(amplitude, dtype=float))

@@ -88,7 +88,8 @@ def _map(axes: Axes, area: ActiveArea, values: FloatArray, label: str) -> None:
 def _places(axes: Axes, area: ActiveArea) -> None:
     """The best and the worst place, and where the criteria lie."""
     assert area.relative_friction is not None, "drawn only where there is a friction"
-    assert area.best_place is not None and area.worst_place is not None
+    assert area.best_place is not None
+    assert area.worst_place is not None
     shown = np.ma.masked_invalid(area.relative_friction.T)
     within = [one for one in CRITERIA if shown.min() < one < shown.max()]
     if within:
