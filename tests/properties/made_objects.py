@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.chain.friction import FrictionLaw
+from squeezefilm.chain.pad_place import PadPlace
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.fingertip import Finger
@@ -192,6 +193,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     StatorAssumptions: StatorAssumptions,
     StatorFit: lambda: fit_stator(degree=3),
     WorkingMode: lambda: working_mode(PLATE, "timoshenko"),
+    PadPlace: lambda: PadPlace(made(SurfaceShape), 5e-3, 5e-3),
     SurfaceShape: lambda: surface_shape(PLATE, working_mode(PLATE, "timoshenko")),
     BeamSurface: lambda: surface_shape(PLATE, working_mode(PLATE, "timoshenko")),
     DiscSurface: lambda: surface_shape(TPAD, working_mode(TPAD)),
