@@ -187,6 +187,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.sound.rectangular_surface": _RADIATOR,
     "plate.sound.ring_surface": {"radius": np.linspace(0, 0.02, 9), "velocity": np.ones(9) + 0j},
     "plate.sound.RadiatingSurface": Later(lambda: fields_of(made(RadiatingSurface))),
+    "plate.solid.response.HarmonicResponse.motion": {"at": 0},
     "chain.pad_place.pad_place": {"place": (5e-3, 5e-3)},
     "chain.pad_place.place_words": {"place": (5e-3, 5e-3)},
     "chain.pad_place.met_by_pads": {"points": (WAYS, WAYS)},
