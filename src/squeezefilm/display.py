@@ -110,6 +110,29 @@ class Drive:
         return tuple(name for name in self._assumed(1.0) if getattr(self, name) is None)
 
 
+_FACE = (si.AtLeast(-10.0), si.AtMost(10.0))
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class ActiveRegion:
+    """The rectangle of places of the finger's centre that a display is judged on.
+
+    From the corner of a plate, the middle of a disc, or, of a stator, x along the mean
+    circumference from an antinode and y from the track's inner edge. A finger at its rim may
+    overhang the face. Raises `InputError` where a side ends before it begins.
+    """
+
+    x_from: Annotated[si.Metre, *_FACE]
+    x_to: Annotated[si.Metre, *_FACE]
+    y_from: Annotated[si.Metre, *_FACE]
+    y_to: Annotated[si.Metre, *_FACE]
+
+    def __post_init__(self) -> None:
+        si.require("x_to", self.x_to, si.Unit("m"), at_least=self.x_from)
+        si.require("y_to", self.y_to, si.Unit("m"), at_least=self.y_from)
+
+
 # Frozen, so that all displays may share it.
 _STILL_AIR = Thermal()
 
@@ -118,9 +141,10 @@ _STILL_AIR = Thermal()
 class Display(Result):
     """A friction-modulation display, complete enough to be analysed.
 
-    Read one with `load_display`. The first of `surfaces` is the default. `provenance` says where
-    each value is from, by its dotted path in the file. In a file `references` are resolved: a
-    material by its name, and the preset that it is a changed copy of.
+    Read one with `load_display`. The first of `surfaces` is the default. `active_area` is where
+    fingers are meant to be; without one all of the face that a contact does not overhang.
+    `provenance` says where each value is from, by its dotted path in the file. In a file
+    `references` are resolved: a material by its name, and the preset that it is a changed copy of.
     """
 
     references: ClassVar[References] = References(
@@ -139,6 +163,7 @@ class Display(Result):
     finger: Finger
     gas: Gas
     thermal: Thermal = _STILL_AIR
+    active_area: ActiveRegion | None = None
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.chain.friction import FrictionLaw
+from squeezefilm.chain.pad_place import PadPlace
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.fingertip import Finger
@@ -68,6 +69,13 @@ from squeezefilm.plate.solid.response import HarmonicResponse, SurfaceLoad, harm
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface
+from squeezefilm.plate.surface_shape import (
+    BeamSurface,
+    DiscSurface,
+    SurfaceShape,
+    TrackSurface,
+    surface_shape,
+)
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.quantities import Unit
 from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
@@ -92,6 +100,8 @@ from squeezefilm.render.texture.shapes import SineWave, SquareWave
 
 BRASS = ElasticMaterial("brass", 100e9, 0.35, 8500.0, 200.0)
 PZT = Piezoceramic("PZT", 67.9e9, 0.29, 23e9, 7700.0, -247e-12, 1900.0, 60.0)
+TPAD = load_display("winfield2007-tpad").actuator
+STATOR = load_display("biet2008-stator").actuator
 PLATE = RectangularPlate(
     30e-3, 10e-3, 2e-3, 4, 60.0, BRASS, PZT, (CeramicPatch(12e-3, 0.0, 6e-3, 10e-3, 1e-3),)
 )
@@ -194,6 +204,11 @@ MADE: dict[Any, Callable[[], Any]] = {
     StatorAssumptions: StatorAssumptions,
     StatorFit: lambda: fit_stator(degree=3),
     WorkingMode: lambda: working_mode(PLATE, "timoshenko"),
+    PadPlace: lambda: PadPlace(made(SurfaceShape), 5e-3, 5e-3),
+    SurfaceShape: lambda: surface_shape(PLATE, working_mode(PLATE, "timoshenko")),
+    BeamSurface: lambda: surface_shape(PLATE, working_mode(PLATE, "timoshenko")),
+    DiscSurface: lambda: surface_shape(TPAD, working_mode(TPAD)),
+    TrackSurface: lambda: surface_shape(STATOR, working_mode(STATOR)),
     Unit: lambda: Unit("m"),
     CompensatedDrive: lambda: compensated_drive(np.full(50, 1e-6), 1e-4, ENVELOPE),
     DrivenEnvelope: lambda: ENVELOPE,

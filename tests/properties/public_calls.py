@@ -22,6 +22,7 @@ from squeezefilm.quantities import unit_of
 
 ROOMS = {
     "film", "plate", "contact", "render", "chain.friction", "chain.prediction", "chain.touch",
+    "chain.pad_place",
     "materials",
     "quantities", "distributions", "formats",
 }  # fmt: skip

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.analysis.curves import (
     FrequencyResponse,
     FrictionCurve,
@@ -47,7 +48,9 @@ from squeezefilm.analysis.uncertainty import (
     interval_or_reason,
 )
 from squeezefilm.analysis.verdict import Finding, ears_finding, unless_undriven, verdict
+from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction_models import FrictionModel
+from squeezefilm.chain.pad_place import Place
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError, OutOfRangeError
@@ -87,6 +90,7 @@ class Analysis(Result):
 
     display: Display
     prediction: Prediction
+    active_area: JudgedArea | None
     envelope_time_constant: si.Second
     envelope_bandwidth: si.Hertz
     other_models: tuple[OtherModel, ...]
@@ -156,6 +160,7 @@ class Analysis(Result):
         p = self.prediction
         return {
             **p.summary(),
+            "active_area": None if self.active_area is None else self.active_area.summary(),
             "relative_friction_interval": None
             if self.uncertainty is None
             else list(self.uncertainty.interval),
@@ -216,6 +221,7 @@ def analyze(
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
+    place: Place | None = None,
     strict: bool = False,
     samples: int = SAMPLES,
     wanted_friction: si.Dimensionless | None = None,
@@ -247,6 +253,7 @@ def analyze(
         theory=theory,
         model=model,
         speed=speed,
+        place=place,
         strict=strict,
         pace=Pace(None if budget is None else budget / 2, said_with_time_left(tell)),
     )
@@ -284,6 +291,8 @@ def _what_follows(
     out."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
+    tell("friction over the active area")
+    area = judged_area(display, prediction, active_area(display, prediction), samples=samples)
     tell("frequency response")
     response = frequency_response(prediction)
     tell("pressure under the finger")
@@ -315,6 +324,7 @@ def _what_follows(
     return Analysis(
         display=display,
         prediction=prediction,
+        active_area=area,
         envelope_time_constant=tau,
         envelope_bandwidth=float(envelope_bandwidth(mode.quality_factor, mode.resonance_frequency)),
         other_models=tuple(_other_models(display, prediction)),
@@ -329,7 +339,7 @@ def _what_follows(
         fidelity=table,
         compensated=compensated,
         survival=survival,
-        verdict=tuple(verdict(display, prediction, curves, table, films, unsure, why_not)),
+        verdict=tuple(verdict(display, prediction, area, curves, table, films, unsure, why_not)),
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
 from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.friction_models import MODEL_KINDS, FrictionModel
+from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.sharing.film_load import is_still, line_film
 from squeezefilm.display import Surface
@@ -102,7 +102,7 @@ def pressure_profiles(prediction: Prediction) -> tuple[PressureProfile, ...]:
 def friction_curve(prediction: Prediction, surface: Surface, model: FrictionModel) -> FrictionCurve:
     """Relative friction against amplitude on one surface by one model."""
     p = prediction
-    law = dataclasses.replace(p.law, surface=surface, model=model, position=0.0)
+    law = dataclasses.replace(p.law.by(model), surface=surface)
     zero = _reached(law, 0.0)
     # Room for where the paper's finger floats; a solved one may never float.
     top = max(10e-6, 1.25 * p.vibration_amplitude, 1.1 * min(zero or 0.0, 15e-6))
@@ -133,7 +133,7 @@ def wavelength_curves(prediction: Prediction) -> tuple[WavelengthCurve, ...]:
         p.law.gap(0.0), PAPER_HALF_WAVELENGTHS, PAPER_CRITERION, p.law.normal_force, ambient
     )
     amplitude = np.linspace(0.0, 4e-6, 121)
-    asymptote = dataclasses.replace(p.law, model="paper2008", position=0.0)
+    asymptote = p.law.by("paper2008")
     found = []
     for half, at in zip(PAPER_HALF_WAVELENGTHS, needed, strict=True):
         law = dataclasses.replace(asymptote, half_wavelength=half)
@@ -174,9 +174,7 @@ def model_curves(prediction: Prediction) -> tuple[ModelCurve, ...]:
     top = max(4e-6, 1.25 * p.vibration_amplitude)
     found = []
     for model, points in COMPARED:
-        shared = MODEL_KINDS[model].film == "shared"
-        position = p.law.position if shared else 0.0
-        law = dataclasses.replace(p.law, model=model, position=position)
+        law = p.law.by(model)
         # Denser at small amplitudes, where a smooth film lifts the finger off.
         amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)
         friction = np.full(amplitude.size, np.nan)

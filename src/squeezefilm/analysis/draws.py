@@ -236,6 +236,7 @@ class Mixture:
             position=p.law.position,
             speed=p.law.speed,
             slip=draw.slip,
+            place=p.law.place,
         )
 
 

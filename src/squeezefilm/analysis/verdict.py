@@ -9,11 +9,13 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.area_odds import JudgedArea
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.ears import AUDIBLE, EarExposure
 from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.analysis.plate.mode_doubts import mode_doubts
 from squeezefilm.analysis.uncertainty import UncertainFriction
+from squeezefilm.chain.active_area import CRITERIA
 from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.config.stated import source_doubt
@@ -42,6 +44,7 @@ class Finding:
 def verdict(
     display: Display,
     p: Prediction,
+    area: JudgedArea | None,
     curves: tuple[FrictionCurve, ...],
     table: FidelityTable | None,
     films: FilmComparison | None,
@@ -57,7 +60,7 @@ def verdict(
     doubts = () if p.voltage is None else mode_doubts(display, p.mode)
     yield from (Finding("doubt", doubt.text) for doubt in doubts)
     undriven = any(doubt.kind == "undriven" for doubt in doubts)
-    for finding in _findings(display, p, curves, table, films, unsure, why_not):
+    for finding in _findings(display, p, curves, table, films, unsure, why_not, area):
         yield unless_undriven(finding, "") if undriven else finding
 
 
@@ -77,10 +80,11 @@ def _findings(
     films: FilmComparison | None,
     unsure: UncertainFriction | None,
     why_not: str,
+    area: JudgedArea | None,
 ) -> Iterator[Finding]:
     """The sentences of a verdict but for those on the working mode."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
-    yield friction_verdict(p, unsure, why_not)
+    yield friction_verdict(p, unsure, why_not, area)
     yield from _of_needed_amplitude(p, curves)
     if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
         yield Finding(
@@ -118,26 +122,57 @@ def ears_finding(ears: EarExposure | None) -> Finding:
     return Finding(kind.get(ears.standing, "doubt"), ears.sentence)
 
 
-def friction_verdict(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
-    """How probable it is that the friction falls below the paper's criterion.
+def friction_verdict(
+    p: Prediction,
+    unsure: UncertainFriction | None,
+    why_not: str,
+    area: JudgedArea | None = None,
+) -> Finding:
+    """How probable it is that the friction falls below the paper's criterion, and over the area.
 
-    Good where all of the interval lies below it and no objection stands, a limit where it does not,
-    a doubt where there is no interval (`why_not` says why). The same sentence wherever this verdict
-    is shown.
+    Good where all of the interval lies below it, at the worst place of the active area too, and no
+    objection stands; a limit where it does not, a doubt where there is no interval (`why_not` says
+    why). The same sentence wherever this verdict is shown.
     """
+    found = _at_the_place(p, unsure, why_not)
+    if area is None:
+        return found
+    worst = area.area.worst
+    highest = worst if area.odds is None else max(worst or 0.0, area.odds.worst_interval[1])
+    everywhere = highest is not None and worst is not None and highest < PAPER_CRITERION
+    kind = "limit" if found.kind == "good" and not everywhere else found.kind
+    return Finding(kind, f"{found.text} {area.area.sentence}{_odds(area)}")
+
+
+def _odds(area: JudgedArea) -> str:
+    """How probable the criterion is over the area, in a sentence."""
+    if area.odds is None:
+        return ""
+    best, median, worst = (_probability(p) for p in area.odds.probabilities_below(CRITERIA[0]))
+    return (
+        f" With all that is uncertain drawn, it is below {CRITERIA[0]:.2f} with probability {best} "
+        f"at the best place, {median} in the median and {worst} at the worst."
+    )
+
+
+def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
+    """Of the place that the prediction is of."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
+    if p.law.place is not None:
+        amplitude += " of the best antinode"
     asked = f"{PAPER_CRITERION:.2f}, as the paper asks"
     if unsure is None:
         because = why_not or "no interval was computed"
         return Finding(
             "doubt",
-            f"µ′/µ is {p.relative_friction:.2f} as described at {amplitude} by the model "
-            f"'{p.model}'. How probable it is that it lies below {asked}, is not known: {because}.",
+            f"µ′/µ is {p.relative_friction:.2f} as described {p.place_said}, at {amplitude} by the "
+            f"model '{p.model}'. How probable it is that it lies below {asked}, is not known: "
+            f"{because}.",
         )
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE
     text = (
-        f"µ′/µ is below {asked}, with probability "
+        f"{p.place_said[0].upper()}{p.place_said[1:]}, µ′/µ is below {asked}, with probability "
         f"{_probability(unsure.probability_below(PAPER_CRITERION))} ({unsure.level:.0%} interval "
         f"{low:.2f}–{high:.2f}, median {unsure.median:.2f}; {unsure.nominal:.2f} as described at "
         f"{amplitude}); below {noticed:.2f}, where people notice it, with probability "

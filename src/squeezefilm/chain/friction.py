@@ -7,12 +7,13 @@ curves, textures. Each law names its model.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, cast
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.amplitude_search import least_amplitude
 from squeezefilm.chain.friction_models import (
     DEFAULT_MODEL,
     MODEL_KINDS,
@@ -20,7 +21,8 @@ from squeezefilm.chain.friction_models import (
     FrictionModel,
     ModelKind,
 )
-from squeezefilm.chain.friction_table import FrictionTable
+from squeezefilm.chain.friction_table import FrictionTable, tabulated
+from squeezefilm.chain.pad_place import PadPlace
 from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED, Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw
@@ -38,13 +40,13 @@ from squeezefilm.contact.sharing.pad import (
 )
 from squeezefilm.contact.sharing.shear import AsperityShear
 from squeezefilm.display import Display, Surface
-from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
+from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
 from squeezefilm.hard_limits import FINGER_SPEED
 from squeezefilm.materials import Gas
+from squeezefilm.plate.loaded_mode import mean_square_wave
 
-HIGHEST_AMPLITUDE: si.Metre = 50e-6
 TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 47))
 """Where a law that depends on the speed is tabulated: toward rest, and from creeping to faster than
 fingers explore. Linear between; held beyond."""
@@ -62,8 +64,9 @@ class FrictionLaw:
     "partial-levitation-shear", takes friction to be in proportion to the real contact area, where
     the finger's law of asperities knows it, and what touches within a period to be elastic until
     it slips: it alone depends on `speed`, that of sliding, at which `at` and `curve` answer.
-    `position` is the pad's centre from an antinode, along the wave, `slip` the gas's law of slip
-    where the load is shared.
+    `position` is the pad's centre from an antinode, along a wave whose antinodes are all alike; a
+    `place` on the face, with what the ridges meet there, stands in its stead, and amplitudes are
+    still the best antinode's. `slip` is the gas's law of slip where the load is shared.
     """
 
     surface: Surface
@@ -76,20 +79,29 @@ class FrictionLaw:
     position: si.Metre = 0.0
     speed: Annotated[si.MetrePerSecond, FINGER_SPEED] = EXPLORING_SPEED
     slip: str = "first"
+    place: PadPlace | None = None
 
     def __post_init__(self) -> None:
-        if self.position and self.kind.film != "shared":
+        elsewhere = self.position != 0 or self.place is not None
+        if elsewhere and self.kind.film != "shared":
             raise InputError(
-                f"position = {si.format_quantity(self.position, si.Unit('m'))} from the antinode: "
                 f"the model '{self.model}' knows the finger over an antinode only; ask a "
-                "partial-levitation model",
-                quantity="position",
+                "partial-levitation model, or leave position and place out",
+                quantity="place" if self.place is not None else "position",
             )
+        if self.position and self.place is not None:
+            raise InputError("give a position along the wave or a place on the face, not both")
 
     @property
     def kind(self) -> ModelKind:
         """What the model makes of film and skin."""
         return MODEL_KINDS[self.model]
+
+    def by(self, model: FrictionModel) -> FrictionLaw:
+        """The law by another model, over an antinode where that model knows no other place."""
+        if MODEL_KINDS[model].film == "shared":
+            return replace(self, model=model)
+        return replace(self, model=model, position=0.0, place=None)
 
     @si.checked_numbers
     def gap(self, amplitude: si.MetreLike) -> PaperGap:
@@ -167,9 +179,32 @@ class FrictionLaw:
         return self.finger.asperity_law(self.surface.roughness)
 
     @property
-    def _ridges(self) -> si.MetreArray:
-        side = float(np.sqrt(self.finger.contact_area(self.normal_force)))
-        return ridge_points(self.finger, side)
+    def contact_side(self) -> si.Metre:
+        """The side of the square contact at this force (m)."""
+        return float(np.sqrt(self.finger.contact_area(self.normal_force)))
+
+    @property
+    def mean_square(self) -> si.Dimensionless:
+        """The mean square over the contact of the amplitude over the best antinode's."""
+        if self.place is None:
+            return mean_square_wave(self.half_wavelength, self.contact_side, self.position)
+        return float(np.mean(self.place.ridges(self.finger, self.contact_side)[1] ** 2))
+
+    def _ridges(self) -> tuple[si.MetreArray, PadPosture]:
+        """The points of the ridges and how the pad lies on the vibration."""
+        if self.place is None:
+            points = ridge_points(self.finger, self.contact_side)
+            return points, PadPosture(position=self.position)
+        points, swings = self.place.ridges(self.finger, self.contact_side)
+        return points, PadPosture(swings=swings)
+
+    @si.checked_numbers
+    def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
+        """µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,): the pad's in the limit
+        "own" is the mean over its ridges."""
+        posture, at = PadPosture(swings=np.ones(1)), np.zeros(1)
+        found = self._pad(amplitude, self.speed, limit="own", points=at, posture=posture)
+        return found.relative_friction
 
     @property
     def friction_coefficient(self) -> si.Dimensionless:
@@ -184,19 +219,21 @@ class FrictionLaw:
         speed: si.MetrePerSecondLike,
         *,
         limit: Limit,
+        points: si.MetreArray | None = None,
         posture: PadPosture | None = None,
         skin: Skin | None = None,
     ) -> PadFriction:
+        ridges, level = self._ridges() if points is None else (points, posture)
         try:
             return pad_friction(
                 self._films,
                 self._asperities,
                 amplitude,
                 self.half_wavelength,
-                self._ridges,
+                ridges,
                 self.finger.plateau_pressure(self.normal_force),
                 limit=limit,
-                posture=posture or PadPosture(position=self.position),
+                posture=posture or level,
                 skin=skin,
                 shear=self._shear(speed),
             )
@@ -214,8 +251,8 @@ class FrictionLaw:
 
     def ridge_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
         """The amplitudes that ridges meet over an antinode's, and the shares that meet them."""
-        points = self._ridges
-        wave = np.abs(np.cos(np.pi * (points + self.position) / self.half_wavelength))
+        points, level = self._ridges()
+        wave = level.over_the_antinode(points, self.half_wavelength)
         kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
         return np.asarray(kinds, dtype=float), counts / points.size
 
@@ -246,7 +283,7 @@ class FrictionLaw:
         if not self.kind.shear:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
         # A pad of thousands of ridges takes them in parts, within some 100 MB.
-        parts = min(math.ceil(a.size * speeds.size * self._ridges.size / 1e7), a.size)
+        parts = min(math.ceil(a.size * speeds.size * self._ridges()[0].size / 1e7), a.size)
         asked, kind = np.array_split(a, parts), limit or self.kind.limit
         return np.hstack([self._pad(one, speeds, limit=kind).relative_friction for one in asked])
 
@@ -300,49 +337,21 @@ class FrictionLaw:
     ) -> si.Metre:
         """The least amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
 
-        Raises `InputError` for a value outside [0, 1] and `UnreachableError` where no amplitude up
-        to 50 µm does.
+        Raises `UnreachableError` where no amplitude up to 50 µm does.
         """
         if self.kind.film == "asymptote":
+            still, ambient = self.gap(0.0), self.gas.ambient_pressure
             return paper.vibration_amplitude_for(
-                relative_friction,
-                self.gap(0.0),
-                self.normal_force,
-                self.gas.ambient_pressure,
-                self._closed_form,
+                relative_friction, still, self.normal_force, ambient, self._closed_form
             )
-        return self._search(relative_friction)
+        return least_amplitude(self._falling, relative_friction, self.model)
 
-    def _search(self, wanted: si.Dimensionless) -> si.Metre:
-        from scipy.optimize import brentq
-
-        if wanted == 1:
-            return 0.0
-        pressure = self.normal_force / self.finger.contact_length**2 / self.gas.ambient_pressure
-
-        def excess(amplitude: float) -> float:
-            if self.kind.film == "shared":
-                return self.at(amplitude) - wanted
-            return 1 - self.load(amplitude).over_pressure / pressure - wanted
-
-        # What is asked for may be within the rounding of what a still surface has.
-        if excess(0.0) <= 0:
-            return 0.0
-        low, least = 0.0, 1.0
-        for high in np.geomspace(2e-8, HIGHEST_AMPLITUDE, 24):
-            try:
-                left = excess(float(high))
-            except OutOfRangeError:
-                # So strong a vibration closes the gap at some ridge: it is no way to get there.
-                break
-            if left <= 0:
-                return float(brentq(excess, low, high, xtol=1e-13, rtol=1e-6))
-            low, least = float(high), min(least, left + wanted)
-        raise UnreachableError(
-            f"relative_friction = {wanted:.4g} is not reached by any vibration amplitude up to "
-            f"{si.format_quantity(HIGHEST_AMPLITUDE, si.Unit('m'))}: the model '{self.model}' "
-            f"gives {least:.4g} at the least; press less, take a smoother surface or ask for less"
-        )
+    def _falling(self, amplitude: float) -> float:
+        """µ′/µ that goes on falling where the finger floats, so that a search finds its way."""
+        if self.kind.film == "shared":
+            return self.at(amplitude)
+        ambient = self.gas.ambient_pressure * self.finger.contact_length**2
+        return 1 - self.load(amplitude).over_pressure * ambient / self.normal_force
 
     @si.checked_numbers
     def table(
@@ -354,22 +363,11 @@ class FrictionLaw:
         points (257; 65 where the film is solved) it is within 1e-4 (1e-3) of the law for the
         paper's devices; over speeds, tabulated at `TABLE_SPEEDS`, within 1e-2.
         """
-        if points is not None:
-            si.require("points", points, at_least=2)
-        count = points or (257 if self.kind.film == "asymptote" else 65)
-        # Denser at small amplitudes, where the law bends within the roughness.
-        grid = highest_amplitude * np.linspace(0.0, 1.0, count) ** 2
-        if self.kind.shear:
-            # A row of its own for the speed that is asked for most.
-            speeds = np.union1d(TABLE_SPEEDS, [self.speed])
-            return FrictionTable(grid, speeds, self.over_speeds(grid, speeds), self.speed)
-        law = self.curve(grid)
-        if law[-1] == 0:
-            # The law has a kink where the finger lifts off; a point of its own keeps it sharp.
-            kink = self.amplitude_for(0.0)
-            at = int(np.searchsorted(grid, kink))
-            grid, law = np.insert(grid, at, kink), np.insert(law, at, 0.0)
-        return FrictionTable(grid, np.zeros(1), law[None, :], self.speed)
+        count = (257 if self.kind.film == "asymptote" else 65) if points is None else points
+        si.require("points", count, at_least=2)
+        # A row of its own for the speed that is asked for most.
+        speeds = np.union1d(TABLE_SPEEDS, [self.speed]) if self.kind.shear else None
+        return tabulated(self, highest_amplitude, count, speeds)
 
 
 @si.checked_numbers
@@ -383,6 +381,7 @@ def friction_law(
     model: FrictionModel = DEFAULT_MODEL,
     position: si.Metre = 0.0,
     speed: si.MetrePerSecond | None = None,
+    place: PadPlace | None = None,
 ) -> FrictionLaw:
     """The friction law of a display; surface, force and the finger's speed default to the display's
     own, the pad to an antinode."""
@@ -396,4 +395,5 @@ def friction_law(
         model=model,
         position=position,
         speed=display.finger.speed if speed is None else speed,
+        place=place,
     )

@@ -12,15 +12,15 @@ import dataclasses
 import functools
 import warnings
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
-
-import numpy as np
+from typing import Any, ClassVar
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.chosen_mode import beam_objection, chosen_mode
+from squeezefilm.chain.free_vibration import FreeVibration, amplitude_per_volt, free_vibration
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.friction_table import FrictionTable
+from squeezefilm.chain.pad_place import Place, pad_place, place_words
 from squeezefilm.chain.touch import Touch, kept_at, touch
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.display import Display, NamedDisplay, Surface
@@ -28,7 +28,6 @@ from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning, U
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
 from squeezefilm.from_text import reads_text
-from squeezefilm.hard_limits import TOUCHED_VIBRATION, require_within
 from squeezefilm.plate.heat.warming import Warming, warming_of_mode
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.working_mode import PlateTheory, WorkingMode
@@ -43,10 +42,12 @@ from squeezefilm.results import Result, to_json
 class Prediction(Result):
     """What a display does at one voltage, frequency and force on one surface.
 
-    `amplitude_model` made the vibration amplitude (zero-to-peak, at an antinode, with the finger
-    on it), `touch` says what the finger took from it, `model` made pressure and friction.
-    `mean_pressure` is the film's, averaged over contact and period, divided by ambient,
-    `mean_pressure_error` the solver's estimate of its error (0 for a closed form).
+    The pad is at the best antinode, of a wave whose antinodes are taken to be all alike, or, where
+    the law has a place, there; `place` is its centre. `amplitude_model` made the vibration
+    amplitude (zero-to-peak, at the best antinode wherever the finger is, with it on), `touch` says
+    what the finger took from it, `model` made pressure and friction. `mean_pressure` is the film's,
+    averaged over contact and period, divided by ambient, `mean_pressure_error` the solver's
+    estimate of its error (0 for a closed form).
     `relative_friction_limits` are µ′/µ with each ridge at its own balance and with all ridges at
     one mean gap, None for a model that shares no load or where one of the two is out of range.
     `friction_reduction` is µ − µ′, `tangential_force` µ′ F of a finger that slides steadily.
@@ -100,6 +101,40 @@ class Prediction(Result):
         return self.friction.inverse(self.law.over_speeds, self.vibration_amplitude)
 
     @property
+    def place(self) -> tuple[si.Metre, si.Metre]:
+        """Where the pad's centre is (m): at the best antinode, unless a place was asked for."""
+        at = self.law.place
+        return self.mode.lobe if at is None else (at.x, at.y)
+
+    @property
+    def place_said(self) -> str:
+        """The same for people, with the amplitude there where it is not the best antinode's."""
+        at, where = self.law.place, place_words(self.place)
+        if at is not None:
+            return f"at {where}, where the face moves {1e6 * self.amplitude_at_place:.3g} µm"
+        if self.law.position:
+            return (
+                f"{1e3 * self.law.position:.4g} mm along the wave from the best antinode, {where}"
+            )
+        return f"at the best antinode, {where}, as if of an even wave"
+
+    @property
+    def amplitude_at_place(self) -> si.Metre:
+        """The amplitude of the face at the pad's centre (m), zero-to-peak, with the finger on."""
+        at = self.law.place
+        return self.vibration_amplitude * (1.0 if at is None else at.at_centre)
+
+    def place_summary(self) -> dict[str, Any]:
+        """What JSON has under `place`; keys carry units."""
+        return {
+            "x_m": self.place[0],
+            "y_m": self.place[1],
+            "is_best_antinode": self.law.place is None and not self.law.position,
+            "amplitude_m": self.amplitude_at_place,
+            "said": self.place_said,
+        }
+
+    @property
     def envelope_time_constant(self) -> si.Second:
         """Of the resonator's envelope without a finger (s)."""
         mode = self.mode
@@ -120,6 +155,7 @@ class Prediction(Result):
             "half_wavelength_m": self.mode.half_wavelength,
             "amplitude_per_volt_m_per_V": self.mode.amplitude_per_volt,
             "vibration_amplitude_m": self.vibration_amplitude,
+            "place": self.place_summary(),
             "amplitude_model": self.amplitude_model,
             "squeeze_number": self.squeeze_number,
             "mean_pressure": self.mean_pressure,
@@ -154,6 +190,7 @@ def predict(
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
+    place: Place | None = None,
     strict: bool = False,
     pace: Pace = NO_HURRY,
 ) -> Prediction:
@@ -162,7 +199,9 @@ def predict(
     The frequency defaults to the resonance without a finger; voltage, force, surface and the
     finger's `speed` of sliding (m/s) to the display's own. A `vibration_amplitude` (m,
     zero-to-peak, with the finger on it) given directly takes the place of voltage and plate.
-    `position` is the pad's centre from an antinode, along the wave.
+    `position` is the pad's centre from an antinode, along a wave whose antinodes are all alike;
+    `place` (x, y in m, from a plate's corner, a disc's middle or along a stator's track) puts it
+    where the solved shape of the vibration says what each of its ridges meets.
     `theory` says how a plate is computed; without one it is solved in three dimensions, and taken
     as a beam, with a warning, where its working mode cannot be found so.
     Without a `model`, film and asperities share the load of each ridge (partial levitation), and
@@ -188,7 +227,7 @@ def predict(
         if isinstance(display.actuator, RectangularPlate):
             display.actuator.ceramic.check_consistency(strict=strict)
         mode, replaced = chosen_mode(display.actuator, theory, strict=strict, pace=pace)
-        drive = _drive(display, mode, frequency, voltage, vibration_amplitude)
+        drive = free_vibration(display, mode, frequency, voltage, vibration_amplitude)
         law = friction_law(
             display,
             mode.half_wavelength,
@@ -198,6 +237,7 @@ def predict(
             model=model or DEFAULT_MODEL,
             position=position,
             speed=speed,
+            place=pad_place(display.actuator, mode, drive.frequency, place),
         )
         asked_for_asymptote = model is not None and law.kind.film == "asymptote"
         found = _felt(display, mode, drive, law, strict=strict and asked_for_asymptote)
@@ -207,36 +247,8 @@ def predict(
     return dataclasses.replace(found, warnings=tuple(dict.fromkeys(doubts)), objections=objections)
 
 
-class _Drive(NamedTuple):
-    """A plate that vibrates without a finger: its voltage where that is known, and what made the
-    amplitude."""
-
-    frequency: si.Hertz
-    voltage: si.Volt | None
-    amplitude: si.Metre
-    source: str
-
-
-def _drive(
-    display: Display,
-    mode: WorkingMode,
-    frequency: si.Hertz | None,
-    voltage: si.Volt | None,
-    vibration_amplitude: si.Metre | None,
-) -> _Drive:
-    """The vibration at a voltage, the display's own by default, or the one given."""
-    frequency = mode.resonance_frequency if frequency is None else frequency
-    si.require("frequency", frequency, si.Unit("Hz"), above=0)
-    if vibration_amplitude is not None:
-        require_within(TOUCHED_VIBRATION, vibration_amplitude, "vibration_amplitude")
-        return _Drive(frequency, None, vibration_amplitude, "given")
-    volts = display.drive.voltage if voltage is None else voltage
-    si.require("voltage", volts, si.Unit("V"), at_least=0)
-    return _Drive(frequency, volts, float(volts * _per_volt(mode, frequency)), mode.model)
-
-
 def _felt(
-    display: Display, mode: WorkingMode, drive: _Drive, law: FrictionLaw, *, strict: bool
+    display: Display, mode: WorkingMode, drive: FreeVibration, law: FrictionLaw, *, strict: bool
 ) -> Prediction:
     """The finger on the vibration, the film under it, and the friction that is left."""
     taking = mode if drive.voltage is not None else dataclasses.replace(mode, modal_mass=None)
@@ -338,12 +350,14 @@ def voltage_for_friction(
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
+    place: Place | None = None,
 ) -> tuple[si.Volt, si.Metre]:
     """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
 
     The inverse of `predict`, the finger's damping and detuning included; linear in the voltage up
-    to there. Raises `UnreachableError` where no amplitude does, or where the voltage would be more
-    than the 2 kV that a `Drive` may have.
+    to there. The amplitude is the best antinode's, wherever the `place` is. Raises
+    `UnreachableError` where no amplitude does, or where the voltage would be more than the 2 kV
+    that a `Drive` may have.
     """
     require_plausible(display)
     mode, _ = chosen_mode(display.actuator, theory)
@@ -357,11 +371,12 @@ def voltage_for_friction(
         normal_force=normal_force,
         model=model or DEFAULT_MODEL,
         speed=speed,
+        place=pad_place(display.actuator, mode, drive_frequency, place),
     )
     amplitude = law.amplitude_for(relative_friction)
     if amplitude == 0:
         return 0.0, 0.0
-    volts = amplitude / (_per_volt(mode, drive_frequency) * kept_at(mode, law, amplitude))
+    volts = amplitude / (amplitude_per_volt(mode, drive_frequency) * kept_at(mode, law, amplitude))
     if volts > HIGHEST_VOLTAGE:
         raise UnreachableError(
             f"relative_friction = {relative_friction:.4g} needs {amplitude * 1e6:.3g} µm and so "
@@ -369,10 +384,3 @@ def voltage_for_friction(
             "for less, or take a plate with more amplitude per volt"
         )
     return float(volts), amplitude
-
-
-def _per_volt(mode: WorkingMode, frequency: si.Hertz) -> si.MetrePerVolt:
-    """The amplitude per volt (m/V) without a finger; off resonance with the mode's neighbours."""
-    if frequency == mode.resonance_frequency:
-        return mode.amplitude_per_volt
-    return float(mode.response(np.array([frequency]))[0])

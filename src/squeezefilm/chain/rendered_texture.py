@@ -16,6 +16,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction_models import FrictionModel
+from squeezefilm.chain.pad_place import Place
 from squeezefilm.chain.played_texture import (
     FingerMotion,
     PlayedTexture,
@@ -155,6 +156,7 @@ class RenderAnalysis(Result):
             "surface": p.surface.name,
             "voltage_V": p.voltage,
             "normal_force_N": p.normal_force,
+            "place": p.place_summary(),
             "largest_amplitude_m": stroke.envelope.amplitude_limit,
             "least_relative_friction": self.least_friction,
             "friction_inverse_error": self.played.inverse.max_error,
@@ -214,6 +216,7 @@ class RenderRequest:
     normal_force: si.Newton | None = None
     surface: str | None = None
     model: FrictionModel | None = None
+    place: Place | None = None
     sensor: str | SensorModel | None = None
     compensation: str = "none"
     braking: bool = False
@@ -224,12 +227,15 @@ class RenderRequest:
 
     def prediction(self) -> Prediction:
         """What the display does at its largest amplitude; refused where it changes no friction."""
+        if self.place is not None and self.wave != "ignored":
+            raise InputError("a place keeps the finger there; leave --place or --wave out")
         p = predict(
             self.display,
             voltage=self.voltage,
             normal_force=self.normal_force,
             surface=self.surface,
             model=self.model,
+            place=self.place,
         )
         if p.vibration_amplitude <= 0.0 or p.relative_friction >= 1.0:
             raise InputError(
@@ -249,7 +255,8 @@ def render_texture(asked: RenderRequest) -> RenderAnalysis:
             what it makes under the finger the largest amplitude.
         texture: what is to be felt; x = 0 is an antinode where the wave counts.
         motion: of the finger, along x or (not on a stator) in the plane.
-        normal_force, surface, model: as `predict`.
+        normal_force, surface, model: as `predict`; so is `place`, whose friction is then that of
+            the whole way, without the wave.
         sensor: what the loop sees the finger with, by name; without one it knows the place.
         compensation: "none", "inverse" or "preview".
         braking: whether the drive may invert the carrier's phase.

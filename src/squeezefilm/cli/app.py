@@ -88,6 +88,14 @@ Speed = Annotated[
     typer.Option("--speed", help='Of the finger that slides, like "80 mm/s"; else the display\'s.'),
 ]
 OnSurface = Annotated[str | None, typer.Option("--surface", help="Which of its surfaces.")]
+OnPlace = Annotated[
+    str | None,
+    typer.Option(
+        "--place",
+        help="The finger's centre on the face, like \"30 mm, 20 mm\" (x, y from a plate's corner, "
+        "a disc's middle, or along a stator's track); the best antinode if not given.",
+    ),
+]
 Model = Annotated[
     str | None,
     typer.Option(

@@ -15,6 +15,7 @@ from squeezefilm.cli.app import (
     Frequency,
     In,
     Model,
+    OnPlace,
     OnSurface,
     Speed,
     Strict,
@@ -91,6 +92,7 @@ class AnalyzeOptions:
     surface: OnSurface = None
     model: Model = None
     speed: Speed = None
+    place: OnPlace = None
     samples: Annotated[
         int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
     ] = 32
@@ -157,6 +159,7 @@ class FrictionOptions:
         str, In("m"), typer.Option(help="The pad's centre from an antinode, along the wave.")
     ] = "0 mm"
     speed: Speed = None
+    place: OnPlace = None
     ambient_pressure: Annotated[
         str | None,
         In("Pa"),

@@ -14,6 +14,7 @@ from squeezefilm.cli.app import (
     LargestVoltage,
     Model,
     OnDisplay,
+    OnPlace,
     OnSurface,
     Pickup,
     Texture,
@@ -57,6 +58,7 @@ class RenderOptions:
     normal_force: Force = None
     surface: OnSurface = None
     model: Model = None
+    place: OnPlace = None
     table: Annotated[str, typer.Option(help="The trace as csv or parquet.")] = "csv"
     drive: Annotated[
         bool, typer.Option("--drive", help="Write the carrier as drive.wav, 192 kHz.")

@@ -18,11 +18,11 @@ from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.ring.body import (
     half_wavelength_of,
-    nodal_circles,
     ring_body,
     surface_profile,
 )
 from squeezefilm.plate.ring.modes import AnnularMode
+from squeezefilm.plate.solid.modes import zero_crossings
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.progress import NO_HURRY, Pace
 
@@ -47,11 +47,15 @@ PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
 
 @dataclass(frozen=True, eq=False)
 class ModeLine:
-    """The mode along the plate's length: deflection, 1 at the largest interior lobe."""
+    """The mode along the line across its nodal lines: 1 at the largest interior lobe."""
 
     position: si.MetreArray
     deflection: si.FloatArray
-    nodal_positions: si.MetreArray
+
+    @property
+    def nodal_positions(self) -> si.MetreArray:
+        """Where the deflection is zero (m), between the points by straight lines as it is drawn."""
+        return zero_crossings(self.position, self.deflection)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +64,9 @@ class WorkingMode:
 
     `model` names what made the numbers, `frequency_error` is the solver's estimate where one
     solved it; `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe
-    does, where it is known. `beam` is the plate as a beam: what made the numbers, or stands beside
-    them.
+    does, where it is known. `lobe` is where that is (x, y): from a plate's corner, from a disc's
+    middle, along a stator's track. `disc` is a disc's mode; `beam` is the plate as a beam: what
+    made the numbers, or stands beside them.
     """
 
     label: str
@@ -70,11 +75,13 @@ class WorkingMode:
     quality_factor: si.Dimensionless
     amplitude_per_volt: si.MetrePerVolt
     model: str
+    lobe: tuple[si.Metre, si.Metre]
     frequency_error: si.Hertz | None = None
     modal_mass: si.Kilogram | None = None
     line: ModeLine | None = None
     solid: SolidMode | None = None
     beam: BeamResponse | None = None
+    disc: AnnularMode | None = None
 
     @si.checked_numbers
     def amplitude_per_volt_at(self, frequency: si.HertzLike) -> si.MetrePerVoltLike:
@@ -121,6 +128,7 @@ def working_mode(
             quality_factor=actuator.quality_factor,
             amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage,
             model="measured_stator",
+            lobe=(0.0, actuator.radial_width / 2),
         )
     if isinstance(actuator, DiscPlate):
         return _disc(actuator)
@@ -134,14 +142,16 @@ def working_mode(
             quality_factor=solid.quality_factor,
             amplitude_per_volt=solid.amplitude_per_volt,
             model=solid.model,
+            lobe=solid.lobe,
             frequency_error=solid.frequency_error,
             modal_mass=solid.modal_mass,
-            line=ModeLine(solid.position, solid.deflection, solid.nodal_positions),
+            line=ModeLine(solid.position, solid.deflection),
             solid=solid,
             beam=_beam_beside(actuator),
         )
     beam = beam_response(actuator, theory, cross_section)
-    shape = beam.mode
+    shape, middle = beam.mode, beam.plate.width / 2
+    lobe = _beam_lobe(beam)[0], middle
     return WorkingMode(
         label="({},{})".format(*actuator.working_label),
         resonance_frequency=shape.frequency,
@@ -149,8 +159,9 @@ def working_mode(
         quality_factor=actuator.quality_factor,
         amplitude_per_volt=beam.amplitude_per_volt,
         model=beam.model,
+        lobe=lobe if actuator.lines_across == "length" else lobe[::-1],
         modal_mass=_beam_mass(beam),
-        line=ModeLine(shape.position, shape.deflection, shape.nodal_positions),
+        line=ModeLine(shape.position, shape.deflection),
         beam=beam,
     )
 
@@ -172,10 +183,17 @@ def _disc(disc: DiscPlate) -> WorkingMode:
         quality_factor=mode.quality_factor,
         amplitude_per_volt=mode.amplitude_per_volt(body.drive),
         model=mode.model,
+        lobe=(_antinode(mode), 0.0),
         frequency_error=mode.frequency_error,
         modal_mass=mode.modal_mass,
         line=_diameter(mode),
+        disc=mode,
     )
+
+
+def _antinode(mode: AnnularMode) -> si.Metre:
+    """The radius of the surface's highest antinode."""
+    return float(mode.surface_radius[np.argmax(np.abs(mode.surface_shape))])
 
 
 def _diameter(mode: AnnularMode) -> ModeLine:
@@ -187,8 +205,7 @@ def _diameter(mode: AnnularMode) -> ModeLine:
     whole = radius[0] == 0
     position = np.concatenate([-radius[::-1], radius[1:] if whole else radius])
     deflection = np.concatenate([other[::-1], shape[1:] if whole else shape])
-    circles = nodal_circles(mode)
-    return ModeLine(position, deflection, np.concatenate([-circles[::-1], circles]))
+    return ModeLine(position, deflection)
 
 
 def _beam_mass(beam: BeamResponse) -> si.Kilogram:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.analysis.area_odds import AreaOdds, JudgedArea
 from squeezefilm.analysis.curves import FrictionCurve
 from squeezefilm.analysis.draws import Refusals
 from squeezefilm.analysis.film.models import (
@@ -19,6 +20,7 @@ from squeezefilm.analysis.film.models import (
 )
 from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.analysis.verdict import Finding, friction_verdict, verdict
+from squeezefilm.chain.active_area import ActiveArea
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.config.provenance import UNSTATED, Provenance
 from squeezefilm.display import load_display
@@ -50,7 +52,7 @@ def said(p: Prediction, needed: float | None = 2.5e-6, **changes: Any) -> tuple[
         curve(8e-6, model="another"),
         curve(needed, model=p.model),
     )
-    return findings(STATOR, p, curves, None, None)
+    return findings(STATOR, p, None, curves, None, None)
 
 
 def unsure(low: float, high: float, samples: list[float], refused: int = 0) -> Any:
@@ -66,9 +68,10 @@ def test_a_verdict_is_the_probability_of_the_criterion(point: Prediction) -> Non
     inside = friction_verdict(p, unsure(0.2, 0.81, [0.2, 0.5, 0.75, 0.9]), "")
     assert inside == Finding(
         "limit",
-        "µ′/µ is below 0.70, as the paper asks, with probability 0.50 (90% interval 0.20–0.81, "
-        "median 0.40; 0.51 as described at 2 µm); below 0.80, where people notice it, with "
-        "probability 0.75. The criterion lies inside the interval: whether it is met is open.",
+        "At the best antinode, x 0 mm, y 5 mm, as if of an even wave, µ′/µ is below 0.70, as the "
+        "paper asks, with probability 0.50 (90% interval 0.20–0.81, median 0.40; 0.51 as "
+        "described at 2 µm); below 0.80, where people notice it, with probability 0.75. The "
+        "criterion lies inside the interval: whether it is met is open.",
     )
     good = friction_verdict(p, unsure(0.2, 0.69, [0.2, 0.5, 0.6, 0.69]), "")
     assert good.kind == "good"
@@ -91,11 +94,42 @@ def test_without_an_interval_nothing_is_good(point: Prediction) -> None:
     p = dataclasses.replace(point, vibration_amplitude=2e-6, relative_friction=0.3)
     assert friction_verdict(p, None, "too many draws are refused") == Finding(
         "doubt",
-        f"µ′/µ is 0.30 as described at 2 µm by the model '{p.model}'. How probable it is that it "
-        "lies below 0.70, as the paper asks, is not known: too many draws are refused.",
+        "µ′/µ is 0.30 as described at the best antinode, x 0 mm, y 5 mm, as if of an even wave, "
+        f"at 2 µm by the model '{p.model}'. How probable it is that it lies below 0.70, as the "
+        "paper asks, is not known: too many draws are refused.",
     )
     assert friction_verdict(p, None, "").text.endswith("not known: no interval was computed.")
     assert said(point)[0].kind == "doubt"
+
+
+def area(worst: float, draws: list[float] | None) -> JudgedArea:
+    """An area from 0.2 to `worst`; draws at the worst place where there are any."""
+    friction = np.repeat(np.linspace(0.2, worst, 5)[:, None], 3, axis=1)
+    ones = np.ones_like(friction)
+    whole = ActiveArea(
+        x=np.linspace(0, 1, 5), y=np.linspace(0, 1, 3), amplitude=ones, lobe_amplitude=ones,
+        amplitude_under_pad=ones, relative_friction=friction, contact_side=1e-2, rule="by hand",
+        shape_model="a-model", shape_words="by hand",
+    )  # fmt: skip
+    if draws is None:
+        return JudgedArea(whole, None)
+    samples = np.array([[0.2, 0.5, one] for one in draws])
+    return JudgedArea(whole, AreaOdds(samples))
+
+
+def test_good_is_only_what_is_good_at_the_worst_place_too(point: Prediction) -> None:
+    sure = unsure(0.2, 0.69, [0.2, 0.5, 0.6, 0.69])
+    assert friction_verdict(point, sure, "", area(0.6, [0.3, 0.5, 0.65])).kind == "good"
+    assert friction_verdict(point, sure, "", area(0.6, None)).kind == "good"
+    # As described, or in some draws, the worst place misses it.
+    assert friction_verdict(point, sure, "", area(0.72, None)).kind == "limit"
+    missed = friction_verdict(point, sure, "", area(0.6, [0.3, 0.5, 0.75, 0.9]))
+    assert missed.kind == "limit"
+    assert missed.text.endswith(
+        "it is below 0.70 with probability above 0.99 at the best place, above 0.99 in the median "
+        "and 0.50 at the worst."
+    )
+    assert "µ′/µ is 0.20 at the best place" in missed.text
 
 
 def test_what_the_criterion_takes_is_said_where_it_is_missed(point: Prediction) -> None:
@@ -135,7 +169,7 @@ def table(kept: list[list[float]]) -> FidelityTable:
 
 def test_gratings_that_survive_the_fastest_finger_are_named(point: Prediction) -> None:
     curves = (curve(1e-6),)
-    some = findings(STATOR, point, curves, table([[1.0, 0.9], [1.0, 0.5], [1.0, 1.0]]), None)
+    some = findings(STATOR, point, None, curves, table([[1.0, 0.9], [1.0, 0.5], [1.0, 1.0]]), None)
     assert (
         Finding(
             "good",
@@ -144,7 +178,7 @@ def test_gratings_that_survive_the_fastest_finger_are_named(point: Prediction) -
         )
         in some
     )
-    none = findings(STATOR, point, curves, table([[1.0, 0.8], [1.0, 0.5], [1.0, 0.2]]), None)
+    none = findings(STATOR, point, None, curves, table([[1.0, 0.8], [1.0, 0.5], [1.0, 0.2]]), None)
     assert Finding(
         "limit",
         "Square gratings of no listed mm keep 90 % of their swing, peak to peak, up to 150 mm/s; "
@@ -166,7 +200,7 @@ def test_assumed_values_are_counted(point: Prediction) -> None:
         "c": Provenance("nowhere", "assumed"),
     }
     display = dataclasses.replace(STATOR, provenance=sources)
-    found = findings(display, point, (curve(1e-6),), None, None)
+    found = findings(display, point, None, (curve(1e-6),), None, None)
     assert Finding(
         "doubt",
         "2 of 3 values of this display are assumed, not measured or published: squeezefilm show "
@@ -205,7 +239,7 @@ def films(sealed: float, opened: float, plateau: float, **others: Any) -> FilmCo
 
 def test_films_are_compared_by_their_over_pressure(point: Prediction) -> None:
     p = dataclasses.replace(point, squeeze_number=20.42)
-    found = findings(STATOR, p, (curve(1e-6),), None, films(0.012, 0.0005, 0.04))
+    found = findings(STATOR, p, None, (curve(1e-6),), None, films(0.012, 0.0005, 0.04))
     assert Finding(
         "doubt",
         "The paper's asymptote promises 2.5 times the over-pressure of the solved film with sealed "
@@ -224,19 +258,19 @@ def test_films_are_compared_by_their_over_pressure(point: Prediction) -> None:
 def test_a_film_without_over_pressure_is_in_no_ratio(
     point: Prediction, sealed: float, opened: float
 ) -> None:
-    found = findings(STATOR, point, (curve(1e-6),), None, films(sealed, opened, 0.05))
+    found = findings(STATOR, point, None, (curve(1e-6),), None, films(sealed, opened, 0.05))
     assert not any("promises" in one.text for one in found)
     assert any("ridges pressed flat all of it. Partial" in one.text for one in found)
 
 
 def test_plateaus_and_teeth_add_their_own_sentences(point: Prediction) -> None:
-    before = len(findings(STATOR, point, (curve(1e-6),), None, films(0.01, 0.01, 0.1)))
+    before = len(findings(STATOR, point, None, (curve(1e-6),), None, films(0.01, 0.01, 0.1)))
     both = films(
         0.01, 0.01, 0.1,
         balance=PlateauBalance(1e-6, 1e-9, 1e-6, 7e3, "It floats."),
         teeth=ToothResult(2e-3, 1e-3, 0.1, 0.1, 1.0, "Teeth do not matter."),
     )  # fmt: skip
-    found = findings(STATOR, point, (curve(1e-6),), None, both)
+    found = findings(STATOR, point, None, (curve(1e-6),), None, both)
     assert len(found) == before + 2
     assert Finding("limit", "It floats.") in found
     assert Finding("limit", "Teeth do not matter.") in found

@@ -18,7 +18,9 @@ from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.loaded_mode import LoadedMode
 
 F, Q = 30e3, 60.0
-LAW: Any = SimpleNamespace(frequency=1.001 * F, model="partial-levitation")
+LAW: Any = SimpleNamespace(
+    frequency=1.001 * F, model="partial-levitation", place=None, mean_square=0.5
+)
 
 
 def mode(modal_mass: float | None = 4e-3) -> Any:

@@ -21,7 +21,7 @@ from squeezefilm.twin.working_point import FORCES, POINTS, working_point
 SETTINGS = TwinSettings()
 MODE = WorkingMode(
     label="by hand", resonance_frequency=40e3, half_wavelength=8e-3, quality_factor=60.0,
-    amplitude_per_volt=2e-8, model="by hand", modal_mass=3e-3,
+    amplitude_per_volt=2e-8, model="by hand", lobe=(0.0, 0.0), modal_mass=3e-3,
 )  # fmt: skip
 STATOR, PLATE = load_display("biet2008-stator"), load_display("biet2008-plate")
 

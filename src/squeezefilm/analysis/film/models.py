@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,7 +98,7 @@ def compare_film_models(display: Display, prediction: Prediction) -> FilmCompari
     results, curves = [], []
     top = max(4e-6, 1.25 * p.vibration_amplitude)
     for model in FILM_MODELS:
-        law = dataclasses.replace(p.law, model=model, position=0.0)
+        law = p.law.by(model)
         results.append(_result(law, model, p.vibration_amplitude, pressure))
         amplitude = np.linspace(top / 40, top, _POINTS[model])
         share = np.full(amplitude.size, np.nan)

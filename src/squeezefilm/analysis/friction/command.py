@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve, model_curves
 from squeezefilm.analysis.friction.tell_apart import ToldApart, tell_apart
@@ -17,8 +18,10 @@ from squeezefilm.analysis.plate.mode_doubts import why_undriven
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
 from squeezefilm.analysis.verdict import Finding, friction_verdict, unless_undriven
 from squeezefilm.arguments import called_with
+from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
+from squeezefilm.chain.pad_place import Place
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.contact.sharing.tapping import tapping_friction
@@ -70,6 +73,7 @@ class FrictionAnalysis(Result):
     tapping: Tapping
     verdict: Finding
     apart: ToldApart | None = None
+    active_area: JudgedArea | None = None
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.vibration_amplitude "
         "prediction.relative_friction uncertainty.interval wanted.voltage"
@@ -93,6 +97,8 @@ class FrictionAnalysis(Result):
             "amplitude_kept": p.touch.kept,
             "finger_impedance_N_s_per_m": to_json(p.touch.impedance),
             "amplitude_model": p.amplitude_model,
+            "place": p.place_summary(),
+            "active_area": None if self.active_area is None else self.active_area.summary(),
             "relative_friction": p.relative_friction,
             "relative_friction_interval": None if unsure is None else list(unsure.interval),
             "interval_level": None if unsure is None else unsure.level,
@@ -149,6 +155,7 @@ class FrictionRequest:
     model: FrictionModel | None = None
     position: si.Metre = 0.0
     speed: si.MetrePerSecond | None = None
+    place: Place | None = None
     ambient_pressure: si.Pascal | None = None
     wanted_friction: si.Dimensionless | None = None
     samples: int = SAMPLES
@@ -185,6 +192,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         model=asked.model,
         position=asked.position,
         speed=asked.speed,
+        place=asked.place,
         pace=Pace(tell=said_with_time_left(tell)),
     )
     wanted = (
@@ -211,7 +219,8 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         if asked.tell_apart
         else None
     )
-    tell("ripple of the standing wave")
+    tell("ripple of the standing wave, and the active area")
+    area = judged_area(display, prediction, active_area(display, prediction), samples=asked.samples)
     return FrictionAnalysis(
         display,
         prediction,
@@ -222,10 +231,11 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         wanted,
         Tapping(prediction.speed, without_gas(prediction.law, prediction.vibration_amplitude)),
         unless_undriven(
-            friction_verdict(prediction, unsure, why_not),
+            friction_verdict(prediction, unsure, why_not, area),
             None if prediction.voltage is None else why_undriven(display, prediction.mode),
         ),
         apart,
+        area,
     )
 
 
@@ -285,4 +295,6 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
 
 
 def _ripple(p: Prediction) -> FrictionRipple | None:
-    return None if p.touch.sharing is None else p.law.ripple(p.vibration_amplitude)
+    if p.touch.sharing is None or p.law.place is not None:
+        return None
+    return p.law.ripple(p.vibration_amplitude)

@@ -21,7 +21,8 @@ from squeezefilm.analysis.draws import (
 )
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, refusal_words, sobol_points
-from squeezefilm.chain.friction import HIGHEST_AMPLITUDE, FrictionLaw
+from squeezefilm.chain.amplitude_search import HIGHEST_AMPLITUDE
+from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.prediction import Prediction, voltage_for_friction
 from squeezefilm.chain.touch import kept_at
 from squeezefilm.display import Display

@@ -37,12 +37,28 @@ class PadPosture:
 
     `position` is the pad's centre from an antinode (m, along the wave). `pressure_tilt` τ makes
     the pressure p(1 + τ x/(l0/2)) across the pad, −1 < τ < 1 (limit "own"); `gap_tilt` is the
-    angle (rad) by which the pad as a whole leans against the surface (limit "one-gap").
+    angle (rad) by which the pad as a whole leans against the surface (limit "one-gap"). `swings`
+    are the amplitudes that the points meet over the antinode's, one for each, where the wave is no
+    |cos|: then `position` means nothing.
     """
 
     position: si.Metre = 0.0
     pressure_tilt: Annotated[si.Dimensionless, si.Above(-1), si.Below(1)] = 0.0
     gap_tilt: Annotated[si.Radian, si.AtLeast(-0.01), si.AtMost(0.01)] = 0.0
+    swings: Annotated[si.DimensionlessArray, si.AtLeast(0.0)] | None = None
+
+    def over_the_antinode(
+        self, points: si.MetreArray, half_wavelength: si.Metre
+    ) -> si.DimensionlessArray:
+        """The amplitudes that points (m from the pad's centre) meet, over the antinode's."""
+        if self.swings is None:
+            return np.abs(np.cos(np.pi * (points + self.position) / half_wavelength))
+        if self.swings.shape != points.shape:
+            raise InputError(
+                f"{self.swings.size} swings for {points.size} points; give one for each",
+                quantity="swings",
+            )
+        return self.swings
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,23 +103,52 @@ def ridge_points(
     """
     side = finger.contact_length if contact_length is None else contact_length
     si.require("ridges in the contact", side / finger.ridge_period, at_most=_MOST_RIDGES)
+    return np.asarray(_ridge_places(finger, side, 1)[0])
+
+
+# Along a ridge that stands across the wave, over a pattern that changes along it too.
+_ALONG = 8
+
+
+@si.checked_numbers
+def pad_points(
+    finger: Finger, contact_length: Annotated[si.Metre, si.Above(0.0)] | None = None
+) -> tuple[si.FloatArray, si.FloatArray]:
+    """Where the ridges are sampled over the pad (m from its centre), along the wave and across it.
+
+    The points of `ridge_points`, spread along the ridges too: eight to a ridge that stands across
+    the wave. Raises as it does.
+    """
+    side = finger.contact_length if contact_length is None else contact_length
+    si.require("ridges in the contact", side / finger.ridge_period, at_most=_MOST_RIDGES)
+    return _ridge_places(finger, side, _ALONG)
+
+
+def _ridge_places(
+    finger: Finger, side: si.Metre, spread: int
+) -> tuple[si.FloatArray, si.FloatArray]:
+    """The points of the ridges in a square, along and across the wave; `spread` of them along a
+    ridge that has one place along the wave."""
     half, period, angle = side / 2, finger.ridge_period, finger.ridge_angle
     reach = half * (abs(np.cos(angle)) + abs(np.sin(angle)))
     count = int(np.floor(reach / period + 0.5))
     across = (np.arange(-count, count) + 0.5) * period
     if abs(np.sin(angle)) < 1e-9:
-        points = across[np.abs(across) <= half]
+        ridges = across[np.abs(across) <= half]
+        y = (np.arange(spread) + 0.5) / spread * side - half
+        points, beside = np.repeat(ridges, spread), np.tile(y, ridges.size)
     else:
         along = (np.arange(64) + 0.5) / 64 * 2 * reach - reach
         x = across[:, None] * np.cos(angle) - along * np.sin(angle)
         y = across[:, None] * np.sin(angle) + along * np.cos(angle)
-        points = x[(np.abs(x) <= half) & (np.abs(y) <= half)]
+        inside = (np.abs(x) <= half) & (np.abs(y) <= half)
+        points, beside = x[inside], y[inside]
     if points.size == 0:
         raise InputError(
             f"a contact of {si.format_quantity(side, si.Unit('m'))} holds no ridge of period "
             f"{si.format_quantity(period, si.Unit('m'))}; make the contact longer"
         )
-    return np.asarray(points, dtype=float)
+    return np.asarray(points, dtype=float), np.asarray(beside, dtype=float)
 
 
 @si.checked_numbers
@@ -123,12 +168,12 @@ def pad_friction(
     """The friction of plateaus at `points` (m from the pad's centre) over a standing wave.
 
     `amplitude` (m, at an antinode) may be an array; the plate's amplitude at x is
-    a |cos(πx/half_wavelength)|. Without a `shear` friction is the asperities' share of the load.
-    Raises as `share_load` does.
+    a |cos(πx/half_wavelength)|, unless the posture has its own swings. Without a `shear` friction
+    is the asperities' share of the load. Raises as `share_load` does.
     """
     posture = posture or PadPosture()
     a = np.atleast_1d(np.asarray(amplitude, dtype=float))
-    wave = np.abs(np.cos(np.pi * (points + posture.position) / half_wavelength))
+    wave = posture.over_the_antinode(points, half_wavelength)
     if limit == "one-gap":
         offset = np.tan(posture.gap_tilt) * points
         swings = np.outer(a, wave)

@@ -6,7 +6,6 @@ Two qualities: `screening` takes a plate as a Timoshenko beam and answers while 
 
 from __future__ import annotations
 
-import dataclasses
 import warnings
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +14,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.uncertainty import friction_band
+from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
@@ -31,6 +31,7 @@ QUALITIES = ("screening", "solved")
 _POINTS = 49
 _LEAST_SPAN = 2e-6
 _GRID = (84, 42)
+_MAP = 64
 
 
 def opened(text: str) -> dict[str, Any]:
@@ -108,6 +109,7 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
             "frequency_Hz": frequency.tolist(),
             "amplitude_per_volt_m_per_V": to_json(mode.response(frequency)),
         },
+        "active_area": _area(display, p),
         "line": _line(p, display.actuator),
         "shape": _shape(p),
         "drive_electronics": to_json(load_of_mode(display.actuator, mode, p.voltage, p.frequency)),
@@ -152,9 +154,30 @@ def predicted(display: Display, quality: str, point: WorkingPoint) -> Prediction
         )
 
 
+def _area(display: Display, p: Prediction) -> dict[str, Any] | None:
+    """The range of friction over the active area and a small map, row by row in y.
+
+    None for a plate that is not solved: a beam's is alike all across, which no plate is.
+    """
+    solved = p.mode.solid is not None or not isinstance(display.actuator, RectangularPlate)
+    area = active_area(display, p) if solved else None
+    if area is None:
+        return None
+    found = {**area.summary(), "said": area.sentence, "map": None}
+    if area.relative_friction is not None:
+        every = [max(-(-size // _MAP), 1) for size in area.relative_friction.shape]
+        thin = area.relative_friction[:: every[0], :: every[1]].T
+        found["map"] = {
+            "columns": thin.shape[1],
+            "rows": thin.shape[0],
+            "relative_friction": to_json(np.round(thin.ravel(), 4)),
+        }
+    return found
+
+
 def _paper(p: Prediction, amplitude: si.FloatArray) -> si.FloatArray:
     try:
-        return dataclasses.replace(p.law, model="paper2008").curve(amplitude)
+        return p.law.by("paper2008").curve(amplitude)
     except SqueezefilmError:
         return np.full(amplitude.size, np.nan)
 

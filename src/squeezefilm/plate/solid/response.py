@@ -85,6 +85,16 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         return np.asarray(np.tensordot(self._coordinates, values, 1))
 
     @si.checked_numbers
+    def motion(self, at: int, x: si.MetreArray, y: si.MetreArray) -> si.ComplexArray:
+        """Complex w per volt (m/V) as `displacement` has it, at frequency number `at` only, shape
+        (x, y)."""
+        si.require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
+        si.require("x", x, si.Unit("m"), axes=1)
+        si.require("y", y, si.Unit("m"), axes=1)
+        values = surface_values(self._parts, x, y, self.plate.thickness)
+        return np.asarray(np.tensordot(self._coordinates[at], values, 1))
+
+    @si.checked_numbers
     def amplitude_at(self, x: si.Metre, y: si.Metre) -> si.FloatArray:
         """|w| per volt (m/V) at a point, for every frequency."""
         return np.abs(self.displacement(np.array([x]), np.array([y]))[:, 0, 0])

@@ -16,7 +16,8 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import OutOfTimeError
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
-from squeezefilm.plate.solid.modes import MODEL, Label, PlateModes
+from squeezefilm.plate.solid.layers import Resolution
+from squeezefilm.plate.solid.modes import MODEL, Label, PlateModes, zero_crossings
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.size import solve_size
 from squeezefilm.plate.solid.solve import solve_modes
@@ -53,9 +54,9 @@ class SolidMode:
     `modes` holds it at `index`; `response` surrounds the resonance. `position` and `deflection` are
     the mode along the centreline of the upper face that crosses its nodal lines (along the length,
     or the width), 1 at its largest interior lobe, which is at `lobe` (x, y);
-    `nodal_positions` the nodal lines along it; `amplitude_per_volt` is the largest
-    answer of that lobe within the mode's bandwidth, `modal_amplitude_per_volt` what this mode has
-    in it, Q F φ / ω²: much less where the drive moves its neighbours only.
+    `amplitude_per_volt` is the largest answer of that lobe within the mode's bandwidth,
+    `modal_amplitude_per_volt` what this mode has in it, Q F φ / ω²: much less where the drive moves
+    its neighbours only.
     `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe does.
     """
 
@@ -64,7 +65,6 @@ class SolidMode:
     response: HarmonicResponse
     position: si.MetreArray
     deflection: si.FloatArray
-    nodal_positions: si.MetreArray
     lobe: tuple[si.Metre, si.Metre]
     amplitude_per_volt: si.MetrePerVolt
     modal_amplitude_per_volt: si.MetrePerVolt
@@ -105,12 +105,49 @@ class SolidMode:
         wanted = np.atleast_1d(np.asarray(frequency, dtype=float))
         si.require("frequency", wanted, si.Unit("Hz"), above=0)
         ascending, back = np.unique(wanted, return_inverse=True)
-        plate = self.modes.plate
         # With the resonance in the band, its mode is in the reduced space and not far outside.
         band = np.union1d(ascending, self.frequency)
-        response = harmonic_response(plate, band, resolution=self.modes.resolution)
-        amplitude = response.amplitude_at(*self.lobe)
+        amplitude = self._response(band).amplitude_at(*self.lobe)
         return np.asarray(amplitude[np.searchsorted(band, ascending)][back])
+
+    @si.checked_numbers
+    def driven_at(self, frequency: si.Hertz | None = None) -> tuple[HarmonicResponse, int]:
+        """A response of the plate, and which of its frequencies is the one asked for (Hz).
+
+        Without one that at which the lobe answers most within the mode's bandwidth, whose answer
+        is `amplitude_per_volt`. Raises `InputError` unless it is above 0.
+        """
+        if frequency is None or frequency == self.frequency:
+            at, _ = _strongest(self.response, self.frequency, self.quality_factor, self.lobe)
+            return self.response, at
+        si.require("frequency", frequency, si.Unit("Hz"), above=0)
+        band = np.union1d([frequency], self.frequency)
+        return self._response(band), int(np.searchsorted(band, frequency))
+
+    def _response(self, frequencies: si.HertzArray) -> HarmonicResponse:
+        return _response(self.modes.plate, tuple(frequencies.tolist()), self.modes.resolution)
+
+
+@functools.lru_cache(maxsize=4)
+def _response(
+    plate: RectangularPlate, frequencies: tuple[float, ...], resolution: Resolution
+) -> HarmonicResponse:
+    """The last few responses beside a resonance: amplitude and shape are both asked of one."""
+    return harmonic_response(plate, np.array(frequencies), resolution=resolution)
+
+
+def _strongest(
+    response: HarmonicResponse,
+    frequency: si.Hertz,
+    quality_factor: si.Dimensionless,
+    lobe: tuple[si.Metre, si.Metre],
+) -> tuple[int, si.MetrePerVolt]:
+    """Where the lobe answers most, of the frequencies within a mode's bandwidth, and how much."""
+    amplitude = response.amplitude_at(*lobe)
+    # At the mode, not at the highest point of the band: a neighbour may move more.
+    near = np.abs(response.frequencies / frequency - 1) < 1 / quality_factor
+    at = int(np.argmax(np.where(near, amplitude, 0.0)))
+    return at, float(amplitude[at])
 
 
 @si.checked_numbers
@@ -158,23 +195,19 @@ def _solid_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pa
         line = modes.field(index, x, middle, plate.thickness)[:, 0, 2]
     else:
         line = modes.field(index, middle, x, plate.thickness)[0, :, 2]
-    nodes = modes.nodal_positions(index)
-    inside = _interior(x, nodes)
+    inside = _interior(x, zero_crossings(x, line))
     at = int(np.flatnonzero(inside)[np.argmax(np.abs(line[inside]))])
-    # At the mode, not at the highest point of the band: a neighbour may move more.
-    near = np.abs(response.frequencies / frequency - 1) < 1 / quality
     lobe = float(x[at]), across / 2
     lobe = lobe if lengthwise else lobe[::-1]
-    amplitude = response.amplitude_at(*lobe)
+    _, amplitude = _strongest(response, frequency, quality, lobe)
     return SolidMode(
         modes=modes,
         index=index,
         response=response,
         position=x,
         deflection=line / line[at],
-        nodal_positions=nodes,
         lobe=lobe,
-        amplitude_per_volt=float(np.max(np.where(near, amplitude, 0.0))),
+        amplitude_per_volt=amplitude,
         modal_amplitude_per_volt=float(
             quality * abs(modes.drive_forces[index] * line[at]) / (2 * np.pi * frequency) ** 2
         ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from squeezefilm.report.display import (
+    area_figures,
     fidelity_figures,
     friction_figures,
     layout_figures,
@@ -23,8 +24,16 @@ FIGURES: tuple[FigureOf, ...] = (
         "mode",
         "Mode shape and nodal lines",
         plate_figures.mode_shape,
-        "Deflection at the two extremes of a period. Along the nodal lines nothing moves, and "
-        "nothing is felt.",
+        "Deflection at the two extremes of a period, along the line through the best antinode. "
+        "The dashed lines are its zeros: nothing moves there, but a finger is wide enough to meet "
+        "the antinodes beside them.",
+    ),
+    FigureOf(
+        "area",
+        "Amplitude and friction over the active area",
+        area_figures.active_area,
+        "What the face does and what a finger with its centre there meets of it. The finger damps "
+        "the vibration at each place as it does there.",
     ),
     FigureOf(
         "response",

@@ -74,6 +74,7 @@ def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
             "wavelength": analysis.wavelength_curves,
             "texture": None if analysis.texture is None else _trace(analysis.texture),
             "fidelity": analysis.fidelity,
+            "active_area": None if analysis.active_area is None else analysis.active_area.area,
         },
         "display_description": analysis.display,
     }

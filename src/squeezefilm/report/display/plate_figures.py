@@ -122,7 +122,7 @@ def _half_wave_arrow(axes: Axes, nodes: FloatArray, height: float, half: float) 
         arrowprops={"arrowstyle": "<->", "color": style.INK, "lw": 1, "shrinkA": 0, "shrinkB": 0},
     )
     axes.annotate(
-        f"λ/2 = {shown(half, M, 4)}",
+        f"λ/2 = {shown(half, M, 4)} in the mean",
         ((left + right) / 2, height),
         (0, 4),
         textcoords="offset points",

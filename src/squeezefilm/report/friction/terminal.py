@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
 from squeezefilm.report.friction.told_apart import show_told_apart
+from squeezefilm.report.kit.area_rows import place_rows
 from squeezefilm.report.kit.decisions import interval_rows, wanted_rows
 from squeezefilm.report.kit.numbers import (
     HZ,
@@ -116,6 +117,7 @@ def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     p = result.prediction
     rows = [
         ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", p.model),
+        *place_rows(p, result.active_area),
         reduction_row(p),
         ("Tangential force", shown(p.tangential_force, N, 3), "sliding steadily"),
     ]

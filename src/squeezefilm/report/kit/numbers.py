@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.record import missed_by
+from squeezefilm.report.kit.area_rows import place_rows
 
 if typing.TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -92,6 +93,7 @@ def key_numbers(analysis: Analysis) -> list[tuple[str, str, str]]:
         ("Squeeze number", f"{p.squeeze_number:.4g}", ""),
         ("Mean pressure", f"{p.mean_pressure:.4f}", "over ambient, contact and period"),
         ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", _sure(analysis)),
+        *place_rows(p, analysis.active_area),
         reduction_row(p),
         ("Amplitude for µ′/µ = 0.7", at_criterion, "the paper asks for it"),
         ("Amplitude for no friction", _reached(here.zero_friction_amplitude), "the finger floats"),

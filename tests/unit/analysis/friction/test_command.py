@@ -66,7 +66,7 @@ def prediction(**changes: Any) -> Any:
         "relative_friction_limits": (0.35, 0.45), "friction_reduction": 0.24,
         "friction_coefficient": 0.4, "tangential_force": 0.08, "heat": None,
         "warnings": ("mind this",),
-        "speed": 0.1, "mode": None,
+        "speed": 0.1, "mode": None, "place_summary": lambda: {"x_m": 0.1},
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -106,10 +106,13 @@ def test_a_map_is_by_a_model_that_balances_loads(stator: Display, model: str, ma
 
 
 def test_the_ripple_is_of_the_standing_wave_under_the_finger() -> None:
-    law = SimpleNamespace(ripple=lambda amplitude: ("ripple", amplitude))
+    law = SimpleNamespace(ripple=lambda amplitude: ("ripple", amplitude), place=None)
     assert command._ripple(prediction(law=law)) == ("ripple", 2e-6)
     # A model that holds the gap has no balance that could ripple.
     assert command._ripple(prediction(law=law, touch=SimpleNamespace(sharing=None))) is None
+    # At a place of the face the wave is no even one.
+    law.place = "a place"
+    assert command._ripple(prediction(law=law)) is None
 
 
 @pytest.fixture
@@ -126,7 +129,8 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
     stand_in("predict", PREDICTION)
     stand_in("wanted_friction", "the wanted")
-    for name in ("model_curves", "friction_map", "_ripple", "tell_apart"):
+    names = ("model_curves", "friction_map", "_ripple", "tell_apart", "active_area", "judged_area")
+    for name in names:
         stand_in(name, f"the {name}")
     stand_in("interval_or_reason", ("the interval", "a reason"))
     stand_in("friction_verdict", "the verdict")
@@ -148,6 +152,7 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     )  # fmt: skip
     thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(5e4))
     point = {"frequency": 41e3, "normal_force": 0.3, "surface": "bare", "model": "film-open"}
+    point["place"] = None
     more = {"voltage": 100.0, "vibration_amplitude": None, "position": 1e-3}
     assert parts == [
         ("predict", (thin,), point | more | {"speed": 0.1, "pace": NO_HURRY}),
@@ -162,9 +167,11 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
             {"samples": 16, "seed": 9, "progress": said},
         ),
         ("tell_apart", (thin, PREDICTION), {"seed": 9, "progress": said}),
+        ("active_area", (thin, PREDICTION), {}),
+        ("judged_area", (thin, PREDICTION, "the active_area"), {"samples": 16}),
         ("_ripple", (PREDICTION,), {}),
         ("without_gas", ("the law", 2e-6), {}),
-        ("friction_verdict", (PREDICTION, "the interval", "a reason"), {}),
+        ("friction_verdict", (PREDICTION, "the interval", "a reason", "the judged_area"), {}),
     ]  # fmt: skip
     assert (found.display, found.prediction) == (thin, PREDICTION)
     assert (found.curves, found.map, found.uncertainty, found.ripple) == (
@@ -173,17 +180,18 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     assert found.wanted == "the wanted"
     assert found.tapping == Tapping(0.1, 0.6)
     assert (found.verdict, found.apart) == ("the verdict", "the tell_apart")
+    assert found.active_area == "the judged_area"
     assert told == [
         "amplitude and load balance", "models side by side", "map over amplitude and force",
-        "ripple of the standing wave",
+        "ripple of the standing wave, and the active area",
     ]  # fmt: skip
 
 
 def test_what_is_not_asked_for_is_not_computed(stator: Display, parts: list[Any]) -> None:
     found = analyze_friction(stator, vibration_amplitude=2e-6, samples=0)
     assert [name for name, *_ in parts] == [
-        "predict", "model_curves", "friction_map", "interval_or_reason", "_ripple", "without_gas",
-        "friction_verdict",
+        "predict", "model_curves", "friction_map", "interval_or_reason", "active_area",
+        "judged_area", "_ripple", "without_gas", "friction_verdict",
     ]  # fmt: skip
     assert parts[0][1][0] is stator
     assert parts[0][2]["vibration_amplitude"] == 2e-6
@@ -204,7 +212,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
     assert said == {
         "display": "biet2008-stator", "surface": "bare", "voltage_V": 15.0, "frequency_Hz": 40e3,
         "normal_force_N": 0.5, "finger_speed_m_per_s": 0.1, "ambient_pressure_Pa": 1e5,
-        "vibration_amplitude_m": 2e-6,
+        "vibration_amplitude_m": 2e-6, "place": {"x_m": 0.1}, "active_area": None,
         "free_amplitude_m": 2.5e-6, "amplitude_kept": 0.8, "amplitude_model": "an-amplitude",
         "finger_impedance_N_s_per_m": [1.5, -2.0],
         "relative_friction": 0.4, "relative_friction_interval": [0.3, 0.5], "interval_level": 0.9,

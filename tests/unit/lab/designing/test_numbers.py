@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis.uncertainty import FrictionBand
+from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.prediction import predict
 from squeezefilm.errors import InputError
 from squeezefilm.lab.designing import numbers
@@ -92,8 +93,14 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
         # What every prediction says of itself beside.
         "display", "frequency_Hz", "amplitude_model", "mean_pressure", "mean_pressure_error",
         "amplitude_kept_under_finger", "finger_impedance_N_s_per_m", "finger_speed_m_per_s", "heat",
-        "model", "validity", "objections", "drive_electronics",
+        "model", "validity", "objections", "drive_electronics", "place", "active_area",
     }  # fmt: skip
+    area, whole = found["active_area"], active_area(display, p)
+    assert whole is not None
+    assert {key: area[key] for key in whole.summary()} == whole.summary()
+    assert area["said"] == whole.sentence
+    assert len(area["map"]["relative_friction"]) == area["map"]["columns"] * area["map"]["rows"]
+    assert np.nanmin(area["map"]["relative_friction"]) >= round(whole.best or 0.0, 4)
     curve = found["friction_curve"]
     amplitude = np.linspace(0.0, max(2 * p.vibration_amplitude, 2e-6), 49)
     np.testing.assert_allclose(curve["amplitude_m"], amplitude, rtol=1e-12)
@@ -104,6 +111,11 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
     told = mode.response(np.array(response["frequency_Hz"]))
     assert response["amplitude_per_volt_m_per_V"] == pytest.approx(told)
     assert found["shape"] is None
+
+
+def test_a_plate_has_no_area_before_it_is_solved() -> None:
+    found = designed(WorkingPoint(preset_text("biet2008-plate")), "screening")
+    assert found["active_area"] is None
 
 
 def test_the_line_of_a_stator_is_the_wave_round_its_mean_circumference() -> None:

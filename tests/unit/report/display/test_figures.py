@@ -21,8 +21,8 @@ from squeezefilm.report.kit import style
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = (
-    "layout", "mode", "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
-    "fidelity", "compensation", "survival",
+    "layout", "mode", "area", "response", "pressure", "friction", "chain", "films", "wavelength",
+    "texture", "fidelity", "compensation", "survival",
 )  # fmt: skip
 # The odd displays, each with the figures that its oddness can spoil.
 ODD = {

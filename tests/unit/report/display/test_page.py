@@ -19,8 +19,8 @@ from squeezefilm.report.display.page import report_page, write_analysis
 from squeezefilm.report.kit.numbers import shown
 
 FIGURE_KEYS = (
-    "layout", "mode", "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
-    "fidelity", "compensation", "survival",
+    "layout", "mode", "area", "response", "pressure", "friction", "chain", "films", "wavelength",
+    "texture", "fidelity", "compensation", "survival",
 )  # fmt: skip
 VOID = {"meta", "br", "link", "img", "hr", "input"}
 
@@ -143,7 +143,7 @@ def test_json_is_strict_and_carries_curves_and_description(
     curves = data["curves"]
     assert set(curves) == {
         "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
-    "fidelity",
+    "fidelity", "active_area",
     }  # fmt: skip
     assert len(curves["response"]["frequency_Hz"]) == 200
     trace = curves["texture"]

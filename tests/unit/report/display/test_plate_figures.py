@@ -311,7 +311,7 @@ def test_a_mode_is_drawn_at_its_amplitude_between_its_nodal_lines() -> None:
     arrow, text = (one for one in axes.texts if one.get_text()[:1] in ("", "λ"))
     assert (arrow.xy[0], arrow.xyann[0]) == pytest.approx((30, 50))
     assert arrow.xy[1] == arrow.xyann[1] > 3
-    assert text.get_text().replace("\u00a0", " ") == "λ/2 = 20 mm"
+    assert text.get_text().replace("\u00a0", " ") == "λ/2 = 20 mm in the mean"
     assert text.xy == pytest.approx((40, arrow.xy[1]))
     # The ceramics below it, in their places; the last is too narrow for a sign.
     assert [one[0::2] for one in boxes(axes, PLUS)] == [

@@ -52,7 +52,7 @@ def prediction(**changes: Any) -> SimpleNamespace:
         "surface": SimpleNamespace(name="copper", roughness=0.7e-6), "friction_reduction": 0.11357,
         "friction_coefficient": 0.2, "tangential_force": 0.043216, "speed": 0.08,
         "relative_friction_limits": (0.41, 0.49), "heat": WARM,
-        "warnings": ("mind this", "and that"),
+        "warnings": ("mind this", "and that"), "place_said": "at the best antinode, somewhere",
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -104,6 +104,7 @@ def analysis(**changes: Any) -> Any:
         "tapping": Tapping(0.08, 0.91234),
         "verdict": Finding("limit", "Whether it is met is open."),
         "apart": None,
+        "active_area": None,
     }
     return SimpleNamespace(**{**values, **changes})
 
@@ -130,6 +131,8 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "Film carries 56.8 % of the load",
         "Asperities carry 43.2 % mean gap 1.23 µm",
         "Relative friction µ′/µ 0.432 a-model",
+        "Place of the finger at the best antinode, somewhere",
+        "µ′/µ over the active area not known",
         "Friction reduction µ − µ′ 0.114 of µ = 0.2",
         "Tangential force 43.2 mN sliding steadily",
         "A softer, a stiffer pad 0.410, 0.490 each ridge at its own balance, all at one mean gap",

@@ -1,5 +1,6 @@
 // Design: the display as a form, and what follows from it while a slider moves.
 
+import { AreaMap } from "../area_map.js";
 import { Chart } from "../chart.js";
 import { displayForm } from "../display_form.js";
 import { element, number, plain, quantity } from "../numbers.js";
@@ -50,6 +51,7 @@ class DesignView {
       frequency: number("resonance frequency", "resonance_frequency"),
       amplitude: number("vibration amplitude", "vibration_amplitude"),
       friction: number("relative friction", "relative_friction"),
+      area: number("over the active area", "active_area"),
       reduction: number("friction reduction", "friction_reduction"),
       squeeze: number("squeeze number", "squeeze_number"),
       wave: number("half wavelength", "half_wavelength"),
@@ -79,8 +81,12 @@ class DesignView {
         element("section", { class: "card" }, this.quality, this.work.box,
           element("div", { class: "numbers" }, ...Object.values(this.numbers).map((one) => one.box))),
         element("section", { class: "card" }, this.canvas),
+        this.areaCard = element("section", { class: "card", hidden: true },
+          element("h2", { text: "Relative friction by the place of the finger", "data-tip": "active_area", tabindex: "0" }),
+          this.areaCanvas = element("canvas", { class: "area-map", role: "img" }), this.areaSaid = element("p", { class: "muted" })),
         element("div", { class: "pair" }, friction.box, response.box), this.warnings)));
     this.plan = new PlanView(this.canvas);
+    this.areaMap = new AreaMap(this.areaCanvas);
     this.lab.frames((now) => this.plan.draw(now));
     this.frictionChart = new Chart(friction.inside, {
       x: "vibration amplitude (µm)", y: "µ′/µ", range: [0, 1.02],
@@ -252,7 +258,13 @@ class DesignView {
     say(n.frequency, quantity(found.resonance_frequency_Hz, "Hz", 5), error ? `± ${quantity(error, "Hz", 2)} of the solver` : `mode ${found.mode}`);
     say(n.amplitude, quantity(found.vibration_amplitude_m, "m"), `${quantity(found.free_amplitude_m, "m")} without finger`);
     const pace = `at ${plain(found.finger_speed_m_per_s * 1e3)} mm/s`;
-    say(n.friction, plain(found.relative_friction), `µ′/µ, 1 = no effect; ${pace}`);
+    say(n.friction, plain(found.relative_friction), `µ′/µ, 1 = no effect; ${pace}, at the best antinode`);
+    const area = found.active_area, range = area?.relative_friction;
+    say(n.area, range ? `${plain(range.best)} to ${plain(range.worst)}` : "–",
+      range ? `below 0.70 on ${plain(100 * area.share_below["0.70"])} % of it` : "known when the plate is solved");
+    this.areaMap.set(area);
+    this.areaCard.hidden = !area;
+    this.areaSaid.textContent = area ? `Dark is where the finger slides most easily. ${area.said}` : "";
     say(n.reduction, plain(found.friction_reduction), `of µ = ${plain(found.friction_coefficient)} on ${found.surface}`);
     say(n.squeeze, plain(found.squeeze_number), found.squeeze_number > 10 ? "" : "below the paper's 10");
     say(n.wave, quantity(found.half_wavelength_m, "m"));

@@ -1,0 +1,121 @@
+"""A pad anywhere on a vibrating face: what each of its ridges meets there."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.contact.finger.fingertip import Finger
+from squeezefilm.contact.sharing.pad import pad_points
+from squeezefilm.errors import GeometryError, QuantityError
+from squeezefilm.from_text import ReadBy
+from squeezefilm.plate.layout import Actuator
+from squeezefilm.plate.surface_shape import SurfaceShape, surface_shape
+from squeezefilm.plate.working_mode import WorkingMode
+
+
+def place_words(place: tuple[si.Metre, si.Metre]) -> str:
+    """A place as every page writes it: "x 41.5 mm, y 24.5 mm"."""
+    return ", ".join(
+        f"{axis} {round(1e3 * value, 1) + 0.0:g} mm"
+        for axis, value in zip("xy", place, strict=True)
+    )
+
+
+def read_place(text: str) -> tuple[si.Metre, si.Metre]:
+    """A place from text: "30 mm, 20 mm", or as it is printed, "x 30 mm, y 20 mm".
+
+    Raises `QuantityError` for anything else.
+    """
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise QuantityError(
+            f"place = '{text}' is no place; give x and y with their units, like \"30 mm, 20 mm\"",
+            quantity="place",
+        )
+    x, y = (part.strip().removeprefix(axis) for part, axis in zip(parts, "xy", strict=True))
+    try:
+        return si.parse_quantity(x, si.Unit("m")), si.parse_quantity(y, si.Unit("m"))
+    except QuantityError as error:
+        raise QuantityError(f"place: {error}", quantity="place") from error
+
+
+Place = Annotated[tuple[si.Metre, si.Metre], ReadBy(read_place)]
+"""A place on a face, x and y in m, or its text (see `reads_text`)."""
+
+
+@si.checked_numbers
+@dataclass(frozen=True, eq=False)
+class PadPlace:
+    """A pad with its centre at (`x`, `y`) on a face that vibrates in `shape`.
+
+    Amplitudes are over the best antinode's. Of a pad that overhangs the face the points beside it
+    are left out: what is left carries as if it were all. Raises `GeometryError` for a centre that
+    is not on the face.
+    """
+
+    shape: SurfaceShape
+    x: si.Metre
+    y: si.Metre
+
+    def __post_init__(self) -> None:
+        if not self.shape.on_face(np.array([self.x]), np.array([self.y]))[0]:
+            left, right, front, back = (1e3 * one for one in self.shape.bounds)
+            raise GeometryError(
+                f"place = {place_words((self.x, self.y))} is not on the face; it goes from x "
+                f"{left:.4g} mm to {right:.4g} mm and from y {front:.4g} mm to {back:.4g} mm"
+                + (", as far as it is round" if left < 0 else ""),
+                quantity="place",
+            )
+
+    @functools.cached_property
+    def at_centre(self) -> si.Dimensionless:
+        """The amplitude at the pad's centre."""
+        return float(self.shape.grid(np.array([self.x]), np.array([self.y]))[0, 0])
+
+    @si.checked_numbers
+    def ridges(
+        self, finger: Finger, contact_length: si.Metre
+    ) -> tuple[si.MetreArray, si.DimensionlessArray]:
+        """The points of the ridges along the wave (m from the pad's centre), and their amplitudes.
+
+        Raises `InputError` where the contact holds no ridge.
+        """
+        along, across = pad_points(finger, contact_length)
+        x, y = np.array([self.x]), np.array([self.y])
+        swings, there = met_by_pads(self.shape, x, y, (along, across))
+        return along[there[0]], swings[there]
+
+
+def pad_place(
+    actuator: Actuator,
+    mode: WorkingMode,
+    frequency: si.Hertz,
+    place: tuple[si.Metre, si.Metre] | None,
+) -> PadPlace | None:
+    """A place (x, y in m) on an actuator that is driven in a mode at a frequency (Hz); None without
+    one. Raises `GeometryError` for a place beside the face, and what `surface_shape` raises."""
+    if place is None:
+        return None
+    return PadPlace(surface_shape(actuator, mode, frequency), *place)
+
+
+@si.checked_numbers
+def met_by_pads(
+    shape: SurfaceShape,
+    x: si.MetreArray,
+    y: si.MetreArray,
+    points: tuple[si.MetreArray, si.MetreArray],
+) -> tuple[si.DimensionlessArray, np.ndarray[tuple[int, ...], np.dtype[np.bool]]]:
+    """The amplitudes over the antinode's under pads centred at places (m), and which points of the
+    pads are on the face at all, both of shape (places, points).
+
+    `points` (m) are those of a pad, along the wave and across it.
+    """
+    dx, dy = points if shape.along == "x" else points[::-1]
+    at_x, at_y = x[:, None] + dx, y[:, None] + dy
+    return shape.at(at_x, at_y), shape.on_face(at_x, at_y)

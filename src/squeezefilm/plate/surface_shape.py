@@ -1,0 +1,238 @@
+"""How far each place of the upper face moves, over how far the best antinode does.
+
+The seam between the vibrating bodies and what lies on them anywhere: a solved plate has its
+harmonic response, all modes in; a beam moves alike all across; a disc varies as cos mθ around; a
+measured stator carries a standing wave along its track, every antinode alike.
+"""
+
+from __future__ import annotations
+
+import functools
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import OutOfRangeError
+from squeezefilm.plate.beam.response import BeamResponse
+from squeezefilm.plate.layout import Actuator, AnnularStator
+from squeezefilm.plate.ring.body import surface_profile
+from squeezefilm.plate.ring.modes import AnnularMode
+from squeezefilm.plate.solid.response import HarmonicResponse
+from squeezefilm.plate.working_mode import WorkingMode
+
+# Knots to a half wavelength for places between them: within 3e-4 of the paper's solved plate.
+_KNOTS = 24
+_MOST_KNOTS = 700
+# A hair beyond an edge is rounding.
+_EDGE: si.Metre = 1e-9
+
+Axis = Literal["x", "y"]
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceShape(ABC):
+    """The size of the upper face's vibration, 1 at the best antinode `lobe` (x, y).
+
+    `bounds` are the least and largest x and y (m): of a plate from its corner, of a disc from its
+    middle, of a stator x along the mean circumference and y across the track. `along` is the axis
+    that the working mode's wave runs along. `model` made it, `words` say what it leaves out.
+    """
+
+    bounds: tuple[si.Metre, si.Metre, si.Metre, si.Metre]
+    lobe: tuple[si.Metre, si.Metre]
+    along: Axis
+    half_wavelength: si.Metre
+    model: str
+
+    @property
+    @abstractmethod
+    def words(self) -> str:
+        """What the shape is taken from, in a sentence."""
+
+    @abstractmethod
+    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        """|w| over the lobe's on the grid of `x` × `y`, whether there is a face or not."""
+
+    @abstractmethod
+    def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        """|w| over the lobe's at points of one shape."""
+
+    @si.checked_numbers
+    def on_face(
+        self, x: si.MetreArray, y: si.MetreArray
+    ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
+        """Whether points (m, broadcast) lie on the face."""
+        left, right, front, back = self.bounds
+        return np.asarray(
+            (x >= left - _EDGE) & (x <= right + _EDGE) & (y >= front - _EDGE) & (y <= back + _EDGE)
+        )
+
+    @si.checked_numbers
+    def grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        """|w| over the lobe's on the grid of `x` × `y` (m), shape (x, y), as exactly as it was
+        solved; 0 beside the face."""
+        si.require("x", x, si.Unit("m"), axes=1)
+        si.require("y", y, si.Unit("m"), axes=1)
+        there = self.on_face(x[:, None], y[None, :])
+        return np.where(there, self._grid(x, y), 0.0)
+
+    @si.checked_numbers
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        """|w| over the lobe's at points (m, broadcast), 0 beside the face; a solved plate's
+        between knots a 24th of a half wavelength apart, by cubic splines."""
+        x, y = np.broadcast_arrays(x, y)
+        found = np.zeros(x.shape)
+        there = self.on_face(x, y)
+        found[there] = self._points(x[there], y[there])
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedSurface(SurfaceShape):
+    """Of a plate solved in three dimensions: its response at frequency number `number`."""
+
+    response: HarmonicResponse
+    number: int
+
+    @property
+    def words(self) -> str:
+        """See `SurfaceShape.words`."""
+        return "the solved plate's response at the drive's frequency, neighbouring modes included"
+
+    @functools.cached_property
+    def _at_lobe(self) -> float:
+        x, y = self.lobe
+        return float(abs(self.response.motion(self.number, np.array([x]), np.array([y]))[0, 0]))
+
+    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        return np.asarray(np.abs(self.response.motion(self.number, x, y)) / self._at_lobe)
+
+    @functools.cached_property
+    def _splines(self) -> tuple[RectBivariateSpline, RectBivariateSpline]:
+        """Real and imaginary part: their size has kinks at nodes, they have none."""
+        left, right, front, back = self.bounds
+        step = self.half_wavelength / _KNOTS
+        x, y = (
+            np.linspace(low, high, int(np.clip(np.ceil((high - low) / step), 24, _MOST_KNOTS)) + 1)
+            for low, high in ((left, right), (front, back))
+        )
+        motion = self.response.motion(self.number, x, y) / self._at_lobe
+        return RectBivariateSpline(x, y, motion.real), RectBivariateSpline(x, y, motion.imag)
+
+    def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        real, imaginary = self._splines
+        return np.asarray(np.hypot(real.ev(x, y), imaginary.ev(x, y)))
+
+
+@dataclass(frozen=True, eq=False)
+class BeamSurface(SurfaceShape):
+    """Of a plate taken as a beam: its working mode along the wave, the same all across."""
+
+    beam: BeamResponse
+
+    @property
+    def words(self) -> str:
+        """See `SurfaceShape.words`."""
+        return "a beam's mode, which moves alike all across the plate: a solved plate does not"
+
+    def _line(self, along: si.MetreArray) -> si.DimensionlessArray:
+        mode = self.beam.mode
+        at_lobe = mode.deflection_at(np.array([self.lobe[0 if self.along == "x" else 1]]))
+        found: si.DimensionlessArray = np.abs(mode.deflection_at(along) / at_lobe)
+        return found
+
+    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        if self.along == "x":
+            return np.repeat(self._line(x)[:, None], y.size, axis=1)
+        return np.repeat(self._line(y)[None, :], x.size, axis=0)
+
+    def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        return self._line(x if self.along == "x" else y)
+
+
+@dataclass(frozen=True, eq=False)
+class DiscSurface(SurfaceShape):
+    """Of a disc or a plate with a hole, u_z = W(r) cos mθ with θ from the x axis."""
+
+    mode: AnnularMode
+
+    @property
+    def words(self) -> str:
+        """See `SurfaceShape.words`."""
+        return "the disc's own mode alone, turned so that the x axis crosses antinodes"
+
+    @si.checked_numbers
+    def on_face(
+        self, x: si.MetreArray, y: si.MetreArray
+    ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
+        """Whether points (m, broadcast) lie on the face."""
+        r, known = np.hypot(x, y), self.mode.surface_radius
+        return np.asarray((r >= known[0] - _EDGE) & (r <= known[-1] + _EDGE))
+
+    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        return self._points(*np.meshgrid(x, y, indexing="ij"))
+
+    def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        known = self.mode.surface_radius
+        r = np.clip(np.hypot(x, y), known[0], known[-1])
+        shape = surface_profile(self.mode, r.ravel()).reshape(r.shape)
+        return np.asarray(np.abs(shape * np.cos(self.mode.harmonic * np.arctan2(y, x))))
+
+
+@dataclass(frozen=True, eq=False)
+class TrackSurface(SurfaceShape):
+    """Of a stator whose amplitude was measured: |cos(πx/λ_half)| along the mean circumference."""
+
+    @property
+    def words(self) -> str:
+        """See `SurfaceShape.words`."""
+        return (
+            "a standing wave along the track with one amplitude at all its antinodes, as measured "
+            "at one of them: how they differ, and what changes across the track, is not known"
+        )
+
+    @si.checked_numbers
+    def on_face(
+        self, x: si.MetreArray, y: si.MetreArray
+    ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
+        """Whether points (m, broadcast) lie on the face: the track is closed, so every x does."""
+        _, _, inner, outer = self.bounds
+        return np.asarray(np.broadcast_arrays((y >= inner - _EDGE) & (y <= outer + _EDGE), x)[0])
+
+    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        return np.repeat(self._points(x, x)[:, None], y.size, axis=1)
+
+    def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        return np.abs(np.cos(np.pi * x / self.half_wavelength))
+
+
+@si.checked_numbers
+def surface_shape(
+    actuator: Actuator, mode: WorkingMode, frequency: si.Hertz | None = None
+) -> SurfaceShape:
+    """The shape of an actuator's vibration in its working mode, driven at a frequency (Hz).
+
+    Without a frequency at its resonance. Only a plate solved in three dimensions changes its shape
+    with the frequency (it is then solved once more), as its neighbouring modes do more or less.
+    Raises `OutOfRangeError` for a mode that has no shape over a face.
+    """
+    across = actuator.lines_across == "width"
+    along: Axis = "y" if across else "x"
+    half, lobe = mode.half_wavelength, mode.lobe
+    if mode.disc is not None:
+        outer = float(mode.disc.surface_radius[-1])
+        return DiscSurface((-outer, outer, -outer, outer), lobe, along, half, mode.model, mode.disc)
+    width, depth = actuator.extent
+    bounds = 0.0, width, 0.0, depth
+    if isinstance(actuator, AnnularStator):
+        return TrackSurface(bounds, lobe, along, half, mode.model)
+    if mode.solid is not None:
+        response, number = mode.solid.driven_at(frequency)
+        return SolvedSurface(bounds, lobe, along, half, mode.model, response, number)
+    if mode.beam is None:
+        raise OutOfRangeError(f"the model '{mode.model}' has no shape over the face")
+    return BeamSurface(bounds, lobe, along, half, mode.model, mode.beam)

@@ -1,0 +1,64 @@
+"""Where a friction is meant and its range over the active area, as rows of a table."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+from squeezefilm.analysis.area_odds import area_odds, judged_area
+from squeezefilm.chain.active_area import active_area, percent
+from squeezefilm.chain.pad_place import place_words
+from squeezefilm.chain.prediction import predict
+from squeezefilm.display import load_display
+from squeezefilm.report.display.area_figures import active_area as figure_of
+from squeezefilm.report.kit.area_rows import place_rows
+
+STATOR = load_display("biet2008-stator")
+POINT = predict(STATOR)
+AREA = active_area(STATOR, POINT)
+
+
+def test_rows_and_figure_say_the_range_and_its_places() -> None:
+    assert AREA is not None
+    assert AREA.best_place is not None
+    assert AREA.worst_place is not None
+    judged = judged_area(STATOR, POINT, AREA, samples=0)
+    first, second = place_rows(POINT, judged)
+    assert first[1] == POINT.place_said
+    assert second[1] == f"{AREA.best:.3f} to {AREA.worst:.3f}"
+    assert place_words(AREA.worst_place) in second[2]
+    assert f"{percent(AREA.share_below(0.7))} below 0.70" in second[2]
+    drawn = figure_of(_analysis(judged))
+    assert f"{AREA.best:.2f} to {AREA.worst:.2f}" in drawn.get_suptitle()
+
+
+def test_without_an_area_nothing_is_known_and_the_figure_says_why() -> None:
+    assert place_rows(POINT, None)[1][1] == "not known"
+    assert "No map" in figure_of(_analysis(None)).get_suptitle()
+
+
+def test_a_model_without_ridges_of_their_own_says_why() -> None:
+    p = predict(STATOR, model="paper2008")
+    judged = judged_area(STATOR, p, active_area(STATOR, p), samples=32)
+    assert judged is not None
+    assert judged.odds is None
+    assert "paper2008" in place_rows(p, judged)[1][2]
+    assert "root mean square" in figure_of(_analysis(judged)).get_suptitle()
+
+
+def test_odds_fall_from_the_best_place_to_the_worst() -> None:
+    assert AREA is not None
+    odds = area_odds(STATOR, POINT, AREA)
+    assert odds is not None
+    best, median, worst = odds.probabilities_below(0.7)
+    assert 1 >= best >= median >= worst >= 0
+    low, high = odds.worst_interval
+    assert 0 <= low < AREA.worst < high <= 1  # type: ignore[operator]
+    assert odds.summary()["probability_below_0.70"]["worst"] == worst
+    # As described, an even wave of the worst place's amplitude has the worst place's friction.
+    amplitude = POINT.law.amplitude_for(AREA.worst)  # type: ignore[arg-type]
+    assert abs(POINT.law.at(amplitude) - AREA.worst) < 1e-5  # type: ignore[operator]
+
+
+def _analysis(judged: Any) -> Any:
+    return SimpleNamespace(display=STATOR, prediction=POINT, active_area=judged)
