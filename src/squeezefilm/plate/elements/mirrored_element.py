@@ -146,8 +146,8 @@ def _block(made: SliceMatrices, a: int, b: int, sign: int) -> Matrix:
     def factor(line: Matrix, i: int, j: int, k: int, m: int) -> Matrix:
         return np.asarray(line[i, j] + turned * line[k, m])
 
-    out = made.P2 * factor(made.stiffness, a, b, a, image)
-    out += made.P0 * factor(made.mass, a, b, a, image)
+    out = made.P0 * factor(made.mass, a, b, a, image)
+    out += made.P2 * factor(made.stiffness, a, b, a, image)
     out += made.P1 * factor(made.slope, a, b, a, image)
     out += made.P1.T * factor(made.slope, b, a, image, a)
     return out

@@ -28,6 +28,7 @@ from squeezefilm.plate.elements.mirrored_element import (
 from squeezefilm.plate.elements.slabs import Slabs, relabelled
 
 Matrix = NDArray[Any]
+_REPEATED = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,10 +82,13 @@ class SlabFactor:
         self._mirror_signs = np.where(slabs.components == 0, -1.0, 1.0)
         cells: dict[Any, _Cell] = {}
         self._places: list[_Place] = []
-        for elements in self._stretches():
+        for elements, repeated in self._stretches():
             forward, backward = self._key(elements), self._key(elements[::-1])
             mirrored = forward not in cells and backward in cells and _mirrors(slabs, elements)
             key = backward if mirrored else forward
+            if not repeated:
+                # Its end slices may have more unknowns than its own: it is like no other.
+                mirrored, key = False, tuple(elements)
             if key not in cells:
                 cells[key] = self._cell(elements)
             first = slabs.model.x.first_node
@@ -100,15 +104,17 @@ class SlabFactor:
 
     # -- factorisation ----------------------------------------------------------------------
 
-    def _stretches(self) -> list[list[int]]:
-        """Cells that occur three times or more, and single elements of all others: eliminating a
-        stretch onto its two ends costs three times what it does to go through it from the left."""
+    def _stretches(self) -> list[tuple[list[int], bool]]:
+        """Cells that occur three times or more, and by themselves the elements of all others (and
+        whether it is one of the former): to eliminate a stretch onto its two ends costs nearly
+        three times what it costs to go through it from the left."""
         cells = _cut(self._slabs)
-        keys = [min((self._key(one), self._key(one[::-1])), key=repr) for one in cells]
+        keys = [frozenset((self._key(cell), self._key(cell[::-1]))) for cell in cells]
         counts = collections.Counter(keys)
-        out: list[list[int]] = []
+        out: list[tuple[list[int], bool]] = []
         for cell, key in zip(cells, keys, strict=True):
-            out.extend([cell] if counts[key] >= 3 else [[e] for e in cell])
+            repeated = counts[key] >= _REPEATED
+            out.extend([(cell, True)] if repeated else [([e], False) for e in cell])
         return out
 
     def _key(self, elements: Sequence[int]) -> tuple[Any, ...]:
