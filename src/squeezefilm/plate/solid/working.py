@@ -6,6 +6,7 @@ kept.
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from dataclasses import dataclass, field
 from typing import Annotated
@@ -16,7 +17,7 @@ from squeezefilm import quantities as si
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.modes import MODEL, PlateModes
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
-from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.solve import solve_for_response
 from squeezefilm.progress import ShareProgress
 
 RESPONSE_POINTS = 200
@@ -25,7 +26,7 @@ _LINE_POINTS = 401
 # for a display, and the estimate stands beside the frequency.
 _TOLERANCE = 3e-3
 # The part of the time that the modes take; the response takes the rest.
-_MODES = 0.5
+_MODES = 0.8
 
 
 @si.checked_numbers
@@ -142,13 +143,17 @@ def _solid_mode(
     plate: RectangularPlate, label: tuple[int, int] | None, listener: _Listener
 ) -> SolidMode:
     wanted = label or plate.working_label
-    modes = solve_modes(
-        plate, mode=wanted, tolerance=_TOLERANCE, progress=listener.share(0.0, _MODES)
-    )
+    modes, pieces = solve_for_response(plate, wanted, _TOLERANCE, listener.share(0.0, _MODES))
     index = modes.index(wanted)
     frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
-    response = harmonic_response(
-        plate, response_frequencies(frequency, quality), progress=listener.share(_MODES, 1.0)
+    response = dataclasses.replace(
+        harmonic_response(
+            plate,
+            response_frequencies(frequency, quality),
+            progress=listener.share(_MODES, 1.0),
+            solved=pieces,
+        ),
+        _again=functools.partial(_response_again, plate, label),
     )
     lengthwise = wanted[0] >= wanted[1]
     span, across = (plate.length, plate.width)[:: 1 if lengthwise else -1]
@@ -179,6 +184,10 @@ def _solid_mode(
         ),
         modal_mass=float(1 / line[at] ** 2),
     )
+
+
+def _response_again(plate: RectangularPlate, label: tuple[int, int] | None) -> HarmonicResponse:
+    return solid_mode(plate, label).response
 
 
 def _interior(
