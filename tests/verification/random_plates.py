@@ -95,3 +95,37 @@ def slice_unknowns(plate: RectangularPlate) -> int:
     parity = all_classes(plate)[0]
     model = plate_model(plate, 1.15 * guess(plate), REFINED, parity).model
     return max(Slabs(model).sizes)
+
+
+def random_glass(seed: int) -> RectangularPlate:
+    """A large sheet of glass with strips on a part of it: along two edges, long or short, or along
+    one only, so that it may have one symmetry and not the other."""
+    rng = np.random.default_rng([seed, 18])
+    length, width = rng.uniform(60e-3, 120e-3), rng.uniform(40e-3, 80e-3)
+    strip, thick = rng.uniform(4e-3, 10e-3), rng.uniform(0.2e-3, 0.6e-3)
+    # Nodal lines 8 to 13 mm apart, across the strips or along them.
+    lines = round(width / rng.uniform(8e-3, 13e-3))
+    along = bool(rng.integers(2))
+    if along:
+        lines = round(length / rng.uniform(8e-3, 13e-3))
+    span = length if along else width
+    spot = rng.choice([0.0, rng.uniform(1e-3, 4e-3)])
+    places = (spot, span - spot - strip)[: 1 if rng.random() < 0.3 else 2]
+    patches = tuple(
+        CeramicPatch(p, 0.0, strip, width, thick, 1 if k == 0 or lines % 2 == 0 else -1)
+        if along
+        else CeramicPatch(0.0, p, length, strip, thick, 1 if k == 0 or lines % 2 == 0 else -1)
+        for k, p in enumerate(places)
+    )
+    return RectangularPlate(
+        length=length,
+        width=width,
+        thickness=rng.uniform(0.6e-3, 1.6e-3),
+        nodal_lines=lines,
+        lines_across="length" if along else "width",
+        quality_factor=200,
+        substrate=SUBSTRATES[1],
+        ceramic=CERAMICS[int(rng.integers(3))],
+        patches=patches,
+        glue=GlueLayer(rng.uniform(10e-6, 40e-6), 3e9) if rng.random() < 0.5 else None,
+    )
