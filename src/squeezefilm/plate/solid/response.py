@@ -102,6 +102,26 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         values = surface_values(self._parts, x, np.array([across]), self.plate.thickness)[:, :, 0]
         return x, self._coordinates[at] @ values
 
+    @si.checked_numbers
+    def at(self, frequencies: si.HertzArray) -> HarmonicResponse:
+        """The same response at other frequencies (Hz, ascending) within its band: the plate is not
+        solved again. Raises `InputError` for frequencies outside it."""
+        first, last = float(self.frequencies[0]), float(self.frequencies[-1])
+        f = np.asarray(frequencies, dtype=float)
+        si.require("frequencies", f, si.Unit("Hz"), at_least=first, at_most=last, axes=1)
+        omega, parts = 2 * np.pi * f, self._parts
+        with one_blas_thread():
+            added = _load_stiffness(self.plate, parts, self._loads, omega) if self._loads else None
+            q, potentials, charge = harmonic_solution(parts, omega, added, None, 1.0)
+        return dataclasses.replace(
+            self,
+            frequencies=f,
+            admittance=1j * omega * charge,
+            _coordinates=q,
+            _potentials=potentials,
+            _again=functools.partial(self.at, f),
+        )
+
     @functools.cached_property
     def maximum(self) -> si.FloatArray:
         """The largest |w| per volt (m/V) anywhere on the upper face, for every frequency."""
