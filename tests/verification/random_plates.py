@@ -111,8 +111,6 @@ def affordable_glass(seed: int) -> RectangularPlate:
                 return plate
 
 
-
-
 def random_glass(seed: int) -> RectangularPlate:
     """A large sheet of glass with strips on a part of it: along two edges, long or short, or along
     one only, so that it may have one symmetry and not the other."""

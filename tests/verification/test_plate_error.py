@@ -5,7 +5,8 @@ estimate had been chosen (on plates of other seeds, see refined_modes.py), and a
 listed, whatever came out. Two thirds are metal or glass with strips over the whole face, one third
 are large sheets of glass with strips along an edge or two. What is left out, and why, say
 `affordable_plate` and `affordable_glass`. The refined solution is itself some 5 % of the ordinary
-mesh's error above the limit, which is counted against the estimate.
+mesh's error above the limit, which is counted against the estimate. On sheets of glass an affordable
+refined solution is no nearer to the limit than the second refinement, so only the first is judged.
 """
 
 import functools
@@ -38,11 +39,9 @@ QUICK = ((False, 1801), (False, 1802), (True, 1801), (True, 1803))
 
 
 @functools.cache
-def judged(
-    glass: bool, seed: int, levels: int = 2
-) -> tuple[tuple[int, float, float, float], ...]:
+def judged(glass: bool, seed: int, levels: int = 2) -> tuple[tuple[int, float, float, float], ...]:
     """(level, frequency, estimated error, refined frequency) of two modes of one class of a plate,
-    for the first refinement and for the second."""
+    for the first refinement and, of `levels` 2 and no sheet of glass, for the second."""
     plate = affordable_glass(seed) if glass else affordable_plate(seed)
     classes = all_classes(plate)
     parity = classes[seed % len(classes)]
@@ -50,9 +49,14 @@ def judged(
     with one_blas_thread():
         found = coarse_modes(plate, parity, guess(plate), highest, None, 2)
         index = np.arange(found.values.size)
-        pieces = [refined_modes(plate, found, index, highest, t) for t in (0.9, 1e-9)[:levels]]
+        pieces = [
+            refined_modes(plate, found, index, highest, t)
+            for t in (0.9, 1e-9)[: 1 if glass else levels]
+        ]
         last = pieces[-1]
-        slabs = Slabs(plate_model(plate, highest, REFINED_GLASS if glass else REFINED, parity).model)
+        slabs = Slabs(
+            plate_model(plate, highest, REFINED_GLASS if glass else REFINED, parity).model
+        )
         shift = float(np.mean(last.values)) * (1 - 2e-3)
 
         def wanted(values: np.ndarray) -> np.ndarray:
@@ -92,7 +96,7 @@ def test_estimates_of_quick_random_plates_hold(glass: bool, seed: int) -> None:
 @pytest.mark.parametrize(("glass", "seed"), PLATES)
 def test_the_estimate_of_a_random_plate_holds(glass: bool, seed: int) -> None:
     rows = judged(glass, seed)
-    assert len(rows) == 4
+    assert len(rows) == (2 if glass else 4)
     for _, frequency, error, refined in rows:
         assert abs(frequency - refined) <= error
 
@@ -101,6 +105,6 @@ def test_the_estimate_of_a_random_plate_holds(glass: bool, seed: int) -> None:
 @pytest.mark.parametrize("level", [0, 1])
 def test_the_estimate_is_sharp(level: int) -> None:
     rows = [row for plate in PLATES for row in judged(*plate) if row[0] == level]
-    assert len(rows) == 60
+    assert len(rows) == (60, 40)[level]
     ratio = [error / max(abs(f - refined), 1e-9) for _, f, error, refined in rows]
     assert np.median(ratio) < 6

@@ -136,7 +136,7 @@ def _krylov_space(
     steps: int,
     modes: si.FloatArray | None = None,
 ) -> si.FloatArray:
-    """The modes, (K − σM)⁻¹ applied to the columns, and `steps` times (K − σM)⁻¹M to that, with unit
+    """The modes, (K − σM)⁻¹ applied to the columns, and `steps` times (K − σM)⁻¹M to that, of unit
     mass."""
     X = factor.solve(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
     Q = np.zeros((slabs.unknowns, 0)) if modes is None else modes

@@ -306,9 +306,7 @@ def _reduced(
             part = reduced_class(plate, parity, band, steps, pressures, resolution)
         else:
             mesh = LEVELS[known.level]
-            part = reduced_model(
-                known.solved, known.factor, mesh, steps, pressures, known.vectors
-            )
+            part = reduced_model(known.solved, known.factor, mesh, steps, pressures, known.vectors)
         if not part.basis.shape[1]:
             raise InputError(
                 "the driven ceramics exert no force on the plate, so no resonance answers to "
