@@ -5,8 +5,9 @@ estimate had been chosen (on plates of other seeds, see refined_modes.py), and a
 listed, whatever came out. Two thirds are metal or glass with strips over the whole face, one third
 are large sheets of glass with strips along an edge or two. What is left out, and why, say
 `affordable_plate` and `affordable_glass`. The refined solution is itself some 5 % of the ordinary
-mesh's error above the limit, which is counted against the estimate. On sheets of glass an affordable
-refined solution is no nearer to the limit than the second refinement, so only the first is judged.
+mesh's error above the limit, which is counted against the estimate. On sheets of glass a refined
+solution that can be afforded is no nearer to the limit than the second refinement, so that only
+the first is judged there.
 """
 
 import functools

@@ -178,7 +178,7 @@ class SlabFactor:
             joint = partial_ldl(A, m0, count=self._count)
             joints.append(joint)
             front = joint.schur
-        negative = sum(part.negative for part in (*bubbles, *joints))
+        negative = sum(one.negative for one in bubbles) + sum(one.negative for one in joints)
         stops = np.cumsum([0, *(self._slabs.model.x.orders[e] for e in elements)]).tolist()
         spans = tuple(itertools.pairwise(stops))
         return _Cell(bubbles, tuple(joints), spans, tuple(places), front, negative)

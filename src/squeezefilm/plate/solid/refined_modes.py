@@ -124,9 +124,11 @@ def extrapolated_class(
     # Response at the band's nearest frequency: force squared over the distance of the squares.
     distance = np.maximum(0.0, np.maximum(band[0] - f[near], f[near] - band[1])) / f[near]
     mode = int(near[np.argmax(force[near] ** 2 / (distance + 0.01))])
-    same = [] if known is None else np.flatnonzero(np.abs(known.values / values[mode] - 1) < _SAME)
-    if known is not None and len(same):
-        wanted, _ = extrapolated(known.coarse_values[same[:1]], known.values[same[:1]], level)
+    same: list[int] = []
+    if known is not None:
+        same = np.flatnonzero(np.abs(known.values / values[mode] - 1) < _SAME)[:1].tolist()
+    if known is not None and same:
+        wanted, _ = extrapolated(known.coarse_values[same], known.values[same], level)
     else:
         wanted = _compared(one, coarser, level, band, (values[mode], shapes[:, mode]))
     ratio = float(wanted[0] / f[mode]) ** 2
