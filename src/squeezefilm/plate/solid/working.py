@@ -22,8 +22,8 @@ from squeezefilm.progress import ShareProgress
 
 RESPONSE_POINTS = 200
 _LINE_POINTS = 401
-# A plate with strips on a part of it takes half a minute to a part in a thousand; this is enough
-# for a display, and the estimate stands beside the frequency.
+# Enough for a display, and nearly always met by the first refinement; the estimate stands beside
+# the frequency.
 _TOLERANCE = 3e-3
 # The part of the time that the modes take; the response takes the rest.
 _MODES = 0.8
