@@ -15,7 +15,10 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import MODEL, PlateModes
+from squeezefilm.plate.solid.reduced import class_drive
+from squeezefilm.plate.solid.refined_modes import RefinedModes
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_for_response
 from squeezefilm.progress import ShareProgress
@@ -54,6 +57,8 @@ class SolidMode:
     `nodal_positions` the nodal lines along it; `amplitude_per_volt` is the largest
     answer of that lobe within the mode's bandwidth, `modal_amplitude_per_volt` what this mode has
     in it, Q F φ / ω²: much less where the drive moves its neighbours only.
+    `amplitude_error` is the estimated error of `amplitude_per_volt`: of the discretisation, by
+    what the mode's answer to the drive differs between the two meshes, and of the reduction.
     `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe does.
     """
 
@@ -67,6 +72,7 @@ class SolidMode:
     amplitude_per_volt: si.MetrePerVolt
     modal_amplitude_per_volt: si.MetrePerVolt
     modal_mass: si.Kilogram
+    amplitude_error: si.MetrePerVolt
     model: str = MODEL
 
     @property
@@ -167,11 +173,13 @@ def _solid_mode(
     nodes = modes.nodal_positions(index)
     inside = _interior(x, nodes)
     at = int(np.flatnonzero(inside)[np.argmax(np.abs(line[inside]))])
-    # At the mode, not at the highest point of the band: a neighbour may move more.
     near = np.abs(response.frequencies / frequency - 1) < 1 / quality
     lobe = float(x[at]), across / 2
     lobe = lobe if lengthwise else lobe[::-1]
     amplitude = response.amplitude_at(*lobe)
+    # At the mode, not at the highest point of the band: a neighbour may move more.
+    per_volt = float(np.max(np.where(near, amplitude, 0.0)))
+    doubt = _answer_change(pieces, float(modes.mesh_frequencies[index]), lobe)
     return SolidMode(
         modes=modes,
         index=index,
@@ -180,12 +188,36 @@ def _solid_mode(
         deflection=line / line[at],
         nodal_positions=nodes,
         lobe=lobe,
-        amplitude_per_volt=float(np.max(np.where(near, amplitude, 0.0))),
+        amplitude_per_volt=per_volt,
         modal_amplitude_per_volt=float(
             quality * abs(modes.drive_forces[index] * line[at]) / (2 * np.pi * frequency) ** 2
         ),
         modal_mass=float(1 / line[at] ** 2),
+        amplitude_error=(doubt + response.truncation_error) * per_volt,
     )
+
+
+def _answer_change(
+    pieces: list[RefinedModes], frequency: si.Hertz, lobe: tuple[si.Metre, si.Metre]
+) -> si.Dimensionless:
+    """How much a mode's answer to the drive at a point, F φ / ω², changed from the coarse mesh to
+    the refined one: the refined one lacks less than that."""
+
+    def answer(solved: PlateModel, value: float, vector: si.FloatArray) -> float:
+        G, _ = solved.slabs.electrode_columns
+        x, y = (np.array([place]) for place in lobe)
+        w = solved.field(vector[:, None], x, y, solved.plate.thickness)[0, 0, 0, 2]
+        return float(abs((G @ class_drive(solved)) @ vector * w) / value)
+
+    wanted = (2 * np.pi * frequency) ** 2
+    piece = min(pieces, key=lambda one: float(np.min(np.abs(one.values - wanted))))
+    at = int(np.argmin(np.abs(piece.values - wanted)))
+    rough, number = piece.found, piece.index[at]
+    fine = answer(piece.solved, piece.values[at], piece.vectors[:, at])
+    if fine == 0:
+        return 0.0
+    coarse = answer(rough.solved, rough.values[number], rough.vectors[:, number])
+    return abs(coarse / fine - 1)
 
 
 def _response_again(plate: RectangularPlate, label: tuple[int, int] | None) -> HarmonicResponse:

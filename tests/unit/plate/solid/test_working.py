@@ -9,6 +9,7 @@ import pytest
 
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.plate.solid.layers import FINE
 from squeezefilm.plate.solid.response import harmonic_response
 from squeezefilm.plate.solid.solve import solve_for_response, solve_modes
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
@@ -70,3 +71,10 @@ def test_a_pickled_response_has_its_state_again(mode: SolidMode) -> None:
     again = pickle.loads(pickle.dumps(mode.response))
     assert np.array_equal(again.admittance, mode.response.admittance)
     assert again.maximum == pytest.approx(mode.response.maximum, rel=1e-12)
+
+
+def test_the_amplitude_s_error_holds_the_finer_mesh(mode: SolidMode) -> None:
+    f = mode.response.frequencies
+    finer = harmonic_response(PLATE, f, resolution=FINE).amplitude_at(*mode.lobe).max()
+    assert 0 < mode.amplitude_error < 0.05 * mode.amplitude_per_volt
+    assert abs(mode.amplitude_per_volt - finer) <= mode.amplitude_error
