@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.sensitivities import Effort
     from squeezefilm.bench.play import PlayResult
     from squeezefilm.chain.friction_models import FrictionModel
-    from squeezefilm.chain.pad_place import Place
+    from squeezefilm.chain.pad_place import FacePlace
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.chain.rendered_texture import RenderAnalysis
     from squeezefilm.display import Display, NamedDisplay
@@ -100,7 +100,7 @@ if TYPE_CHECKING:
         theory: PlateTheory | None = ...,
         model: FrictionModel | None = ...,
         speed: MetrePerSecond | str | None = ...,
-        place: Place | str | Path | None = ...,
+        place: FacePlace | str | Path | None = ...,
         strict: bool = ...,
         pace: Pace = ...,
     ) -> Prediction:
@@ -115,7 +115,7 @@ if TYPE_CHECKING:
         theory: PlateTheory | None = ...,
         model: FrictionModel | None = ...,
         speed: MetrePerSecond | str | None = ...,
-        place: Place | str | Path | None = ...,
+        place: FacePlace | str | Path | None = ...,
     ) -> tuple[Volt, Metre]:
         """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m)."""
     def analyze(
@@ -129,7 +129,7 @@ if TYPE_CHECKING:
         theory: PlateTheory | None = ...,
         model: FrictionModel | None = ...,
         speed: MetrePerSecond | str | None = ...,
-        place: Place | str | Path | None = ...,
+        place: FacePlace | str | Path | None = ...,
         strict: bool = ...,
         samples: int = ...,
         wanted_friction: Dimensionless | str | None = ...,
@@ -149,7 +149,7 @@ if TYPE_CHECKING:
         model: FrictionModel | None = ...,
         position: Metre | str = ...,
         speed: MetrePerSecond | str | None = ...,
-        place: Place | str | Path | None = ...,
+        place: FacePlace | str | Path | None = ...,
         ambient_pressure: Pascal | str | None = ...,
         wanted_friction: Dimensionless | str | None = ...,
         samples: int = ...,
@@ -299,7 +299,7 @@ if TYPE_CHECKING:
         normal_force: Newton | str | None = ...,
         surface: str | None = ...,
         model: FrictionModel | None = ...,
-        place: Place | str | Path | None = ...,
+        place: FacePlace | str | Path | None = ...,
         sensor: str | SensorModel | None = ...,
         compensation: str = ...,
         braking: bool = ...,

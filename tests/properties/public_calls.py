@@ -86,7 +86,9 @@ NOT_CALLED = {
     plate.ring.elements.HarmonicSystem
     plate.ring.elements.HarmonicSystem.field plate.ring.elements.RingMesh
     plate.ring.elements.harmonic_system plate.elements.block_ldl.PartialLDL
-    plate.elements.block_ldl.partial_ldl plate.elements.box_model.BoxModel
+    plate.elements.block_ldl.partial_ldl plate.elements.mirrored_element.MirroredElement
+    plate.elements.mirrored_element.SliceMatrices plate.elements.mirrored_element.mirrored_element
+    plate.elements.box_model.BoxModel
     plate.elements.box_model.Electrode
     plate.elements.box_model.Foundation plate.elements.box_model.Medium
     plate.elements.box_model.Medium.gradient_matrix plate.elements.box_model.kept_products
@@ -121,6 +123,7 @@ NOT_CALLED = {
     plate.solid.reduced.ReducedClass
     plate.solid.reduced.harmonic_solution
     plate.solid.reduced.reduced_class plate.solid.reduced.resolved_frequency
+    plate.solid.reduced.reduced_model plate.solid.solve.solve_for_response
     plate.solid.reduced.surface_values plate.solid.refined_modes.RefinedModes
     plate.solid.refined_modes.extrapolated plate.solid.refined_modes.refined_modes
     plate.solid.refined_modes.with_label plate.shear.elements.Axis

@@ -83,17 +83,21 @@ def affordable_plate(seed: int) -> RectangularPlate:
 
 def guess(plate: RectangularPlate) -> float:
     """The frequency (Hz) at which a random plate is judged: about that of its working mode."""
-    return estimated_frequency(plate, (plate.nodal_lines, 0))
+    return estimated_frequency(plate, plate.working_label)
 
 
 # Graded towards strip edges and bonds; on the paper's plate 5e-5 above what finer ones give.
 REFINED = Resolution((0.02, 0.12, 0.5, 1.7), (0.1,), 3, 4, 5.5, 6, (0.05,))
 
 
-def slice_unknowns(plate: RectangularPlate) -> int:
+# The same for a sheet of glass, on which the smooth part takes more of the unknowns.
+REFINED_GLASS = Resolution((0.03, 0.2, 0.9), (0.1,), 3, 3.5, 5.5, 6, (0.06,))
+
+
+def slice_unknowns(plate: RectangularPlate, resolution: Resolution = REFINED) -> int:
     """The largest slice of the refined plate."""
     parity = all_classes(plate)[0]
-    model = plate_model(plate, 1.15 * guess(plate), REFINED, parity).model
+    model = plate_model(plate, 1.15 * guess(plate), resolution, parity).model
     return max(Slabs(model).sizes)
 
 
@@ -151,4 +155,48 @@ def screened_plate(seed: int) -> RectangularPlate:
         glue=GlueLayer(rng.uniform(10e-6, 60e-6), rng.uniform(1e9, 4e9))
         if rng.random() < 0.5
         else None,
+    )
+
+
+def affordable_glass(seed: int) -> RectangularPlate:
+    """`random_glass`, drawn again until a slice of `REFINED_GLASS` has at most 1200 unknowns."""
+    rng = np.random.default_rng([seed, 2027])
+    while True:
+        plate = random_glass(int(rng.integers(1_000_000, 2_000_000)))
+        with contextlib.suppress(InputError):
+            if slice_unknowns(plate, REFINED_GLASS) <= 1200:
+                return plate
+
+
+def random_glass(seed: int) -> RectangularPlate:
+    """A large sheet of glass with strips on a part of it: along two edges, long or short, or along
+    one only, so that it may have one symmetry and not the other."""
+    rng = np.random.default_rng([seed, 18])
+    length, width = rng.uniform(60e-3, 120e-3), rng.uniform(40e-3, 80e-3)
+    strip, thick = rng.uniform(4e-3, 10e-3), rng.uniform(0.2e-3, 0.6e-3)
+    # Nodal lines 8 to 13 mm apart, across the strips or along them.
+    lines = round(width / rng.uniform(8e-3, 13e-3))
+    along = bool(rng.integers(2))
+    if along:
+        lines = round(length / rng.uniform(8e-3, 13e-3))
+    span = length if along else width
+    spot = rng.choice([0.0, rng.uniform(1e-3, 4e-3)])
+    places = (spot, span - spot - strip)[: 1 if rng.random() < 0.3 else 2]
+    patches = tuple(
+        CeramicPatch(p, 0.0, strip, width, thick, 1 if k == 0 or lines % 2 == 0 else -1)
+        if along
+        else CeramicPatch(0.0, p, length, strip, thick, 1 if k == 0 or lines % 2 == 0 else -1)
+        for k, p in enumerate(places)
+    )
+    return RectangularPlate(
+        length=length,
+        width=width,
+        thickness=rng.uniform(0.6e-3, 1.6e-3),
+        nodal_lines=lines,
+        lines_across="length" if along else "width",
+        quality_factor=200,
+        substrate=SUBSTRATES[1],
+        ceramic=CERAMICS[int(rng.integers(3))],
+        patches=patches,
+        glue=GlueLayer(rng.uniform(10e-6, 40e-6), 3e9) if rng.random() < 0.5 else None,
     )

@@ -1,9 +1,13 @@
 """The error estimate of `solve_modes` on random plates against refined solutions.
 
 The plates are a fresh sample: their seeds were drawn after the meshes and the constants of the
-estimate had been chosen (on seeds 0 to 7), and all of them are listed, whatever came out. What is
-left out, and why, says `affordable_plate`. The refined solution is itself some 5 % of the ordinary
-mesh's error above the limit, which is counted against the estimate.
+estimate had been chosen (on plates of other seeds, see refined_modes.py), and all of them are
+listed, whatever came out. Two thirds are metal or glass with strips over the whole face, one third
+are large sheets of glass with strips along an edge or two. What is left out, and why, say
+`affordable_plate` and `affordable_glass`. The refined solution is itself some 5 % of the ordinary
+mesh's error above the limit, which is counted against the estimate. On sheets of glass a refined
+solution that can be afforded is no nearer to the limit than the second refinement, so that only
+the first is judged there.
 """
 
 import functools
@@ -20,25 +24,40 @@ from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.refined_modes import extrapolated, refined_modes
 from squeezefilm.plate.solid.symmetry import all_classes
 
-from .random_plates import REFINED, affordable_plate, guess
+from .random_plates import (
+    REFINED,
+    REFINED_GLASS,
+    affordable_glass,
+    affordable_plate,
+    guess,
+)
 
-QUICK = (100, 122)
-SEEDS = tuple(range(100, 125))
+# (glass, seed): thirty plates, of which four are quick.
+PLATES = tuple((False, seed) for seed in range(1900, 1920)) + tuple(
+    (True, seed) for seed in range(1900, 1910)
+)
+QUICK = ((False, 1801), (False, 1802), (True, 1801), (True, 1803))
 
 
 @functools.cache
-def judged(seed: int, levels: int = 2) -> tuple[tuple[int, float, float, float], ...]:
+def judged(glass: bool, seed: int, levels: int = 2) -> tuple[tuple[int, float, float, float], ...]:
     """(level, frequency, estimated error, refined frequency) of two modes of one class of a plate,
-    for the first refinement and for the second."""
-    plate = affordable_plate(seed)
-    parity = all_classes(plate)[seed % 4]
+    for the first refinement and, of `levels` 2 and no sheet of glass, for the second."""
+    plate = affordable_glass(seed) if glass else affordable_plate(seed)
+    classes = all_classes(plate)
+    parity = classes[seed % len(classes)]
     highest = 1.15 * guess(plate)
     with one_blas_thread():
         found = coarse_modes(plate, parity, guess(plate), highest, None, 2)
         index = np.arange(found.values.size)
-        pieces = [refined_modes(plate, found, index, highest, t) for t in (0.9, 1e-9)[:levels]]
+        pieces = [
+            refined_modes(plate, found, index, highest, t)
+            for t in (0.9, 1e-9)[: 1 if glass else levels]
+        ]
         last = pieces[-1]
-        slabs = Slabs(plate_model(plate, highest, REFINED, parity).model)
+        slabs = Slabs(
+            plate_model(plate, highest, REFINED_GLASS if glass else REFINED, parity).model
+        )
         shift = float(np.mean(last.values)) * (1 - 2e-3)
 
         def wanted(values: np.ndarray) -> np.ndarray:
@@ -67,32 +86,26 @@ def judged(seed: int, levels: int = 2) -> tuple[tuple[int, float, float, float],
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", QUICK)
-def test_estimates_of_quick_random_plates_hold(seed: int) -> None:
-    for _, frequency, error, refined in judged(seed):
+@pytest.mark.parametrize(("glass", "seed"), QUICK)
+def test_estimates_of_quick_random_plates_hold(glass: bool, seed: int) -> None:
+    for _, frequency, error, refined in judged(glass, seed, levels=1):
         assert abs(frequency - refined) <= error
 
 
-# Each of them apart, so that a slow one hides no other: eight each night, the others in a campaign.
-@pytest.mark.parametrize(
-    "seed",
-    [
-        pytest.param(seed, marks=pytest.mark.nightly if place < 8 else pytest.mark.campaign)
-        for place, seed in enumerate(SEEDS)
-    ],
-)
-def test_the_estimate_of_a_random_plate_holds(seed: int) -> None:
-    rows = judged(seed)
-    assert len(rows) == 4
+# Each of them apart, so that a slow one hides no other.
+@pytest.mark.nightly
+@pytest.mark.parametrize(("glass", "seed"), PLATES)
+def test_the_estimate_of_a_random_plate_holds(glass: bool, seed: int) -> None:
+    rows = judged(glass, seed)
+    assert len(rows) == (2 if glass else 4)
     for _, frequency, error, refined in rows:
         assert abs(frequency - refined) <= error
 
 
 @pytest.mark.nightly
-def test_the_estimate_is_sharp() -> None:
-    # On the cheaper half of the plates: those with ceramics on one face.
-    some = [s for s in SEEDS if len({p.face for p in affordable_plate(s).patches}) == 1]
-    rows = [row for seed in some for row in judged(seed) if row[0] == 0]
-    assert len(rows) >= 20
+@pytest.mark.parametrize("level", [0, 1])
+def test_the_estimate_is_sharp(level: int) -> None:
+    rows = [row for plate in PLATES for row in judged(*plate) if row[0] == level]
+    assert len(rows) == (60, 40)[level]
     ratio = [error / max(abs(f - refined), 1e-9) for _, f, error, refined in rows]
-    assert np.median(ratio) <= 5
+    assert np.median(ratio) < 6

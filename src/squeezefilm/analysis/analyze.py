@@ -50,7 +50,7 @@ from squeezefilm.analysis.uncertainty import (
 from squeezefilm.analysis.verdict import Finding, ears_finding, unless_undriven, verdict
 from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction_models import FrictionModel
-from squeezefilm.chain.pad_place import Place
+from squeezefilm.chain.pad_place import FacePlace
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError, OutOfRangeError
@@ -221,7 +221,7 @@ def analyze(
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
-    place: Place | None = None,
+    place: FacePlace | None = None,
     strict: bool = False,
     samples: int = SAMPLES,
     wanted_friction: si.Dimensionless | None = None,

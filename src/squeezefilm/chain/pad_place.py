@@ -44,7 +44,7 @@ def read_place(text: str) -> tuple[si.Metre, si.Metre]:
         raise QuantityError(f"place: {error}", quantity="place") from error
 
 
-Place = Annotated[tuple[si.Metre, si.Metre], ReadBy(read_place)]
+FacePlace = Annotated[tuple[si.Metre, si.Metre], ReadBy(read_place)]
 """A place on a face, x and y in m, or its text (see `reads_text`)."""
 
 

@@ -20,7 +20,7 @@ from squeezefilm.chain.free_vibration import FreeVibration, amplitude_per_volt, 
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.friction_table import FrictionTable
-from squeezefilm.chain.pad_place import Place, pad_place, place_words
+from squeezefilm.chain.pad_place import FacePlace, pad_place, place_words
 from squeezefilm.chain.touch import Touch, kept_at, touch
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.display import Display, NamedDisplay, Surface
@@ -190,7 +190,7 @@ def predict(
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
-    place: Place | None = None,
+    place: FacePlace | None = None,
     strict: bool = False,
     pace: Pace = NO_HURRY,
 ) -> Prediction:
@@ -350,7 +350,7 @@ def voltage_for_friction(
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
-    place: Place | None = None,
+    place: FacePlace | None = None,
 ) -> tuple[si.Volt, si.Metre]:
     """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
 

@@ -16,7 +16,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.chain.friction_models import FrictionModel
-from squeezefilm.chain.pad_place import Place
+from squeezefilm.chain.pad_place import FacePlace
 from squeezefilm.chain.played_texture import (
     FingerMotion,
     PlayedTexture,
@@ -216,7 +216,7 @@ class RenderRequest:
     normal_force: si.Newton | None = None
     surface: str | None = None
     model: FrictionModel | None = None
-    place: Place | None = None
+    place: FacePlace | None = None
     sensor: str | SensorModel | None = None
     compensation: str = "none"
     braking: bool = False

@@ -21,7 +21,7 @@ from squeezefilm.arguments import called_with
 from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
-from squeezefilm.chain.pad_place import Place
+from squeezefilm.chain.pad_place import FacePlace
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.contact.sharing.tapping import tapping_friction
@@ -155,7 +155,7 @@ class FrictionRequest:
     model: FrictionModel | None = None
     position: si.Metre = 0.0
     speed: si.MetrePerSecond | None = None
-    place: Place | None = None
+    place: FacePlace | None = None
     ambient_pressure: si.Pascal | None = None
     wanted_friction: si.Dimensionless | None = None
     samples: int = SAMPLES

@@ -44,9 +44,7 @@ def lagrange_basis(
     vandermonde = legendre.legvander(nodes, count - 1)
     coefficients = np.linalg.inv(vandermonde)
     values = legendre.legvander(points, count - 1) @ coefficients
-    slopes = np.stack(
-        [legendre.legval(points, legendre.legder(np.eye(count)[k])) for k in range(count)], axis=1
-    )
+    slopes = legendre.legval(points, legendre.legder(np.eye(count))).T
     return values, slopes @ coefficients
 
 
@@ -157,13 +155,14 @@ class LineMesh:
         edges = np.array(self.edges)
         owner = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.elements - 1)
         out = np.zeros((points.size, self.nodes.size))
-        for k in np.unique(owner):
-            mine = owner == k
-            local = 2 * (points[mine] - edges[k]) / (edges[k + 1] - edges[k]) - 1
+        local = 2 * (points - edges[owner]) / (edges[owner + 1] - edges[owner]) - 1
+        orders, first = np.array(self.orders)[owner], np.array(self.first_node)[owner]
+        # All elements of one order at once.
+        for order in np.unique(orders).tolist():
+            mine = np.flatnonzero(orders == order)
             if hierarchic:
-                values = hierarchic_values(self.orders[k], tuple(local))
+                values = hierarchic_values(order, tuple(local[mine]))
             else:
-                values, _ = lagrange_basis(lobatto_nodes(self.orders[k]), local)
-            start = self.first_node[k]
-            out[np.ix_(mine, np.arange(start, start + self.orders[k] + 1))] = values
+                values, _ = lagrange_basis(lobatto_nodes(order), local[mine])
+            out[mine[:, None], first[mine, None] + np.arange(order + 1)] = values
         return out

@@ -8,6 +8,7 @@ most of the work is done once. The remaining chain of end slices is eliminated f
 
 from __future__ import annotations
 
+import collections
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,10 +18,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.plate.elements.block_ldl import PartialLDL, partial_ldl
+from squeezefilm.plate.elements.cross_section import code_parts
 from squeezefilm.plate.elements.lobatto import line_matrices
+from squeezefilm.plate.elements.mirrored_element import (
+    MirroredElement,
+    SliceMatrices,
+    mirrored_element,
+)
 from squeezefilm.plate.elements.slabs import Slabs, relabelled
 
 Matrix = NDArray[Any]
+_REPEATED = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +41,7 @@ class _Cell:
     where its unknowns stand in these two.
     """
 
-    bubbles: tuple[PartialLDL, ...]
+    bubbles: tuple[MirroredElement, ...]
     joints: tuple[PartialLDL, ...]
     spans: tuple[tuple[int, int], ...]
     at: tuple[tuple[Matrix, Matrix], ...]
@@ -69,15 +77,18 @@ class SlabFactor:
     def __init__(self, slabs: Slabs, shift: float, *, count: bool = False) -> None:
         self._slabs, self._shift, self._count = slabs, shift, count
         self._dynamic: dict[int, Matrix] = {}
-        self._bubbles: dict[Any, PartialLDL] = {}
+        self._bubbles: dict[Any, MirroredElement] = {}
         # Reflection along x turns u and nothing else.
         self._mirror_signs = np.where(slabs.components == 0, -1.0, 1.0)
         cells: dict[Any, _Cell] = {}
         self._places: list[_Place] = []
-        for elements in _cut(slabs):
+        for elements, repeated in self._stretches():
             forward, backward = self._key(elements), self._key(elements[::-1])
             mirrored = forward not in cells and backward in cells and _mirrors(slabs, elements)
             key = backward if mirrored else forward
+            if not repeated:
+                # Its end slices may have more unknowns than its own: it is like no other.
+                mirrored, key = False, tuple(elements)
             if key not in cells:
                 cells[key] = self._cell(elements)
             first = slabs.model.x.first_node
@@ -93,6 +104,19 @@ class SlabFactor:
 
     # -- factorisation ----------------------------------------------------------------------
 
+    def _stretches(self) -> list[tuple[list[int], bool]]:
+        """Cells that occur three times or more, and by themselves the elements of all others (and
+        whether it is one of the former): to eliminate a stretch onto its two ends costs nearly
+        three times what it costs to go through it from the left."""
+        cells = _cut(self._slabs)
+        keys = [frozenset((self._key(cell), self._key(cell[::-1]))) for cell in cells]
+        counts = collections.Counter(keys)
+        out: list[tuple[list[int], bool]] = []
+        for cell, key in zip(cells, keys, strict=True):
+            repeated = counts[key] >= _REPEATED
+            out.extend([(cell, True)] if repeated else [([e], False) for e in cell])
+        return out
+
     def _key(self, elements: Sequence[int]) -> tuple[Any, ...]:
         model = self._slabs.model
         x = model.x
@@ -105,32 +129,26 @@ class SlabFactor:
             tuple(x.orders[e] for e in elements),
         )
 
-    def _bubble(self, e: int) -> PartialLDL:
+    def _bubble(self, e: int) -> MirroredElement:
         slabs, x = self._slabs, self._slabs.model.x
         length, order = x.edges[e + 1] - x.edges[e], x.orders[e]
         section = slabs.sections[e]
-        n = section.codes.size
         key = (slabs.patterns[e], id(section.P2), round(length * 1e12), order)
         if key in self._bubbles:
             return self._bubbles[key]
-        M, D, S = line_matrices(length, order)
         if id(section) not in self._dynamic:
             self._dynamic[id(section)] = section.P0 - self._shift * section.R
-        P0 = self._dynamic[id(section)]
-        ranks = [*range(1, order), 0, order]
-        A = np.empty((n * (order + 1), n * (order + 1)), dtype=P0.dtype)
-        for i, a in enumerate(ranks):
-            for j, b in enumerate(ranks[i:], i):
-                block = S[a, b] * section.P2 + M[a, b] * P0
-                block += D[a, b] * section.P1
-                block += D[b, a] * section.P1.T
-                A[i * n : (i + 1) * n, j * n : (j + 1) * n] = block
-                if i != j:
-                    A[j * n : (j + 1) * n, i * n : (i + 1) * n] = block.T
-        self._bubbles[key] = partial_ldl(A, n * (order - 1), count=self._count)
+        made = SliceMatrices(
+            section.P2,
+            section.P1,
+            self._dynamic[id(section)],
+            *line_matrices(length, order),
+            np.where(code_parts(slabs.model, section.codes)[0] == 0, -1.0, 1.0),
+        )
+        self._bubbles[key] = mirrored_element(made, count=self._count)
         return self._bubbles[key]
 
-    def _ends(self, e: int, bubble: PartialLDL) -> tuple[Matrix, int, tuple[Matrix, Matrix]]:
+    def _ends(self, e: int, bubble: MirroredElement) -> tuple[Matrix, int, tuple[Matrix, Matrix]]:
         """The end matrix of an element over all unknowns of its two end slices, how many of them
         the first has, and where those of the element stand in each."""
         slabs, x = self._slabs, self._slabs.model.x
@@ -160,7 +178,7 @@ class SlabFactor:
             joint = partial_ldl(A, m0, count=self._count)
             joints.append(joint)
             front = joint.schur
-        negative = sum(part.negative for part in (*bubbles, *joints))
+        negative = sum(one.negative for one in bubbles) + sum(one.negative for one in joints)
         stops = np.cumsum([0, *(self._slabs.model.x.orders[e] for e in elements)]).tolist()
         spans = tuple(itertools.pairwise(stops))
         return _Cell(bubbles, tuple(joints), spans, tuple(places), front, negative)
@@ -263,13 +281,13 @@ class SlabFactor:
         block[0], block[-1] = np.zeros_like(block[0]), np.zeros_like(block[-1])
         return block
 
-    def _forward(self, cell: _Cell, block: list[Matrix]) -> list[Matrix]:
+    def _forward(self, cell: _Cell, block: list[Matrix]) -> list[Any]:
         """Carry right sides inside a cell to its ends (in place); returns the reduced sides."""
         spans = cell.spans
-        kept: list[Matrix] = []
+        kept: list[Any] = []
         for k, (bubble, (start, stop)) in enumerate(zip(cell.bubbles, spans, strict=True)):
             if stop - start == 1:
-                kept.append(np.empty(0))
+                kept.append(None)
                 continue
             reduced, update = bubble.forward(np.concatenate(block[start + 1 : stop]))
             kept.append(reduced)
@@ -285,7 +303,7 @@ class SlabFactor:
         return kept
 
     def _finish(
-        self, group: list[_Place], slices: list[Matrix], block: list[Matrix], kept: list[Matrix]
+        self, group: list[_Place], slices: list[Matrix], block: list[Matrix], kept: list[Any]
     ) -> None:
         """Solve inside the cells, their end slices being known."""
         cell, spans = group[0].cell, group[0].cell.spans

@@ -39,10 +39,11 @@ class Resolution:
 # To list modes in a second: one step from the edges of strips across the slices, none along them.
 # On the presets 1 % too high, see tests/verification/test_screening.py.
 SCREENING = Resolution((), (0.9,), 3, 1, 1, 2, trunk=1.3)
-# From each of these three to the next every kind of error (smooth, at strip edges, at the bond)
-# falls by a factor of three or more: only then does the difference of two say what the finer one
-# still lacks.
-COARSE = Resolution((0.9,), (0.9,), 3, 1, 2, 3, trunk=1.3)
+# From each to the next the error at strip edges and at the bond falls by a factor of three, and all
+# three have the orders that make the smooth part small against it (two orders less along a wave
+# and it would be ten times the rest on a sheet of glass): only then does the difference of two say
+# what the finer one still lacks.
+COARSE = Resolution((0.9,), (0.9,), 3, 3, 3, 3)
 NORMAL = Resolution((0.2, 1.2), (0.3,), 3, 3, 4, 6)
 FINE = Resolution((0.06, 0.4, 1.5), (0.15,), 3, 3, 5.5, 5, (0.1,))
 

@@ -86,15 +86,28 @@ def reduced_class(
     hold too.
     """
     solved = plate_model(plate, resolved_frequency(band), resolution, parity)
-    slabs = solved.slabs
     shift = (2 * np.pi) ** 2 * 0.5 * (band[0] ** 2 + band[1] ** 2) * 1.0007**2
-    factor = SlabFactor(slabs, shift)
+    return reduced_model(solved, SlabFactor(solved.slabs, shift), resolution, steps, loads)
+
+
+def reduced_model(
+    solved: PlateModel,
+    factor: SlabFactor,
+    resolution: Resolution,
+    steps: int,
+    loads: list[tuple[si.FloatArray, si.FloatArray, si.FloatArray]],
+    modes: si.FloatArray | None = None,
+) -> ReducedClass:
+    """Reduce a class that is discretised, at `resolution`, and factorised at a shift within the
+    band; `steps` and `loads` as in `reduced_class`. `modes` (unknowns × modes) that are known are
+    put into the space first: the steps are then left to the others."""
+    slabs, plate = solved.slabs, solved.plate
     G, C = slabs.electrode_columns
     drive, circuit = class_drive(solved), plate_circuit(solved)
     columns = [G @ drive] if np.any(drive) else []
     columns += [G[:, number] for number, _, _ in circuit]
     columns += [solved.force(x, y, plate.thickness, w) for x, y, w in loads]
-    basis = _krylov_space(slabs, factor, np.stack(columns, axis=1), steps)
+    basis = _krylov_space(slabs, factor, np.stack(columns, axis=1), steps, modes)
     sections = slabs.weighted_sections(lambda m: (m.loss or 0.0, 0.0), slabs.model.spring_losses)
     KW, LW = slabs.stiffness_times(basis), slabs.stiffness_times(basis, sections)
     n = float(solved.copies)
@@ -117,12 +130,17 @@ def _symmetric(matrix: si.FloatArray) -> si.FloatArray:
 
 
 def _krylov_space(
-    slabs: Slabs, factor: SlabFactor, columns: si.FloatArray, steps: int
+    slabs: Slabs,
+    factor: SlabFactor,
+    columns: si.FloatArray,
+    steps: int,
+    modes: si.FloatArray | None = None,
 ) -> si.FloatArray:
-    """(K − σM)⁻¹ applied to the columns, and `steps` times (K − σM)⁻¹M to that, with unit mass."""
+    """The modes, (K − σM)⁻¹ applied to the columns, and `steps` times (K − σM)⁻¹M to that, of unit
+    mass."""
     X = factor.solve(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
-    Q = np.zeros((slabs.unknowns, 0))
-    MQ = Q
+    Q = np.zeros((slabs.unknowns, 0)) if modes is None else modes
+    MQ = slabs.mass_times(Q)
     for _ in range(steps):
         MX = slabs.mass_times(X)
         norm = np.sqrt(np.maximum(np.sum(X * MX, axis=0), 1e-300))

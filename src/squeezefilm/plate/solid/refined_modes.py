@@ -14,7 +14,7 @@ from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import CoarseModes
 from squeezefilm.plate.solid.electrode_circuits import inverse_with_open
-from squeezefilm.plate.solid.layers import COARSE, FINE, NORMAL
+from squeezefilm.plate.solid.layers import COARSE, FINE, NORMAL, Resolution
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import COARSE_ERROR, Label, label_of, surface_shapes
@@ -27,12 +27,15 @@ UNREFINED = -1
 """The level of what a deadline left on the coarse mesh."""
 # Share of the difference between two meshes that is still missing on the finer one, and the
 # uncertainty of that share, for the first and the second refinement. Of the first difference 1 % to
-# 40 % was missing on the plates it was calibrated on (the smooth part of the error falls by ten and
-# more, the singular one by three), of the second up to 15 %. Checked on plates drawn afterwards in
-# tests/verification/test_plate_error.py. The floor is what a difference near zero may hide.
-EXTRAPOLATION = (0.22, 0.1)
-UNCERTAINTY = (0.22, 0.1)
-_FLOOR = 1e-4
+# 84 % was missing on the 118 modes it was calibrated on, of half of them 10 % to 37 % (a third is
+# what the singular lines at strip edges leave; all meshes resolve the smooth part), of the second
+# up to 69 %. Checked on plates drawn afterwards in tests/verification/test_plate_error.py. The
+# floor is what a difference near zero may hide and what thin plates lose in rounding (see mesh.py).
+EXTRAPOLATION = (0.42, 0.3)
+UNCERTAINTY = (0.46, 0.35)
+_FLOOR = 4e-5
+# Two solutions on one mesh are of one mode if their ω² agree to this.
+_SAME = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,28 +112,53 @@ def extrapolated(
     return b - share * (a - b), doubt * np.abs(a - b) + _FLOOR * b
 
 
-def extrapolated_class(one: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> ReducedClass:
+def extrapolated_class(
+    one: ReducedClass, band: tuple[si.Hertz, si.Hertz], known: RefinedModes | None = None
+) -> ReducedClass:
     """The same class with its stiffness and loss scaled so that the most strongly driven mode near
     the band stands at its frequency extrapolated from two meshes.
 
     Other modes move by the same ratio, nearer to theirs than the mesh alone. Unchanged where no
-    driven mode is near, and on meshes that have no coarser one to compare with.
+    driven mode is near, and on meshes that have no coarser one to compare with. `known` are refined
+    modes of the same mesh: one that is among them need not be solved on the coarser mesh again.
     """
-    solved = one.solved
     level = next((k for k, res in enumerate(LEVELS) if res == one.resolution), None)
     coarser = (COARSE, *LEVELS)[level] if level is not None else None
     values, shapes = eigh(one.stiffness, one.mass)
     f = np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
     force = np.abs(shapes.T @ (one.coupling @ one.drive))
-    near = np.flatnonzero((f > 0.9 * band[0]) & (f < 1.1 * band[1]) & (force > 1e-3 * force.max()))
+    # Far above the band the space holds no modes but what they add, with any force.
+    driven = force > 1e-3 * np.max(force, initial=0.0, where=f < 4 * band[1])
+    near = np.flatnonzero((f > 0.9 * band[0]) & (f < 1.1 * band[1]) & driven)
     if coarser is None or level is None or near.size == 0:
         return one
     # Response at the band's nearest frequency: force squared over the distance of the squares.
     distance = np.maximum(0.0, np.maximum(band[0] - f[near], f[near] - band[1])) / f[near]
     mode = int(near[np.argmax(force[near] ** 2 / (distance + 0.01))])
-    vector = (one.basis @ shapes[:, mode])[:, None]
+    same: list[int] = []
+    if known is not None:
+        same = np.flatnonzero(np.abs(known.values / values[mode] - 1) < _SAME)[:1].tolist()
+    if known is not None and same:
+        wanted, _ = extrapolated(known.coarse_values[same], known.values[same], level)
+    else:
+        wanted = _compared(one, coarser, level, band, (values[mode], shapes[:, mode]))
+    ratio = float(wanted[0] / f[mode]) ** 2
+    return dataclasses.replace(one, stiffness=ratio * one.stiffness, loss=ratio * one.loss)
+
+
+def _compared(
+    one: ReducedClass,
+    coarser: Resolution,
+    level: int,
+    band: tuple[si.Hertz, si.Hertz],
+    mode: tuple[float, si.FloatArray],
+) -> si.FloatArray:
+    """The extrapolated frequency (Hz) of a mode (value, coordinates) of a reduced class, compared
+    with the mode of its shape on a coarser mesh."""
+    value, coordinates = mode
+    solved, vector = one.solved, (one.basis @ coordinates)[:, None]
     rough = plate_model(solved.plate, resolved_frequency(band), coarser, solved.parity).slabs
-    shift = values[mode] * (1 + 2e-3)
+    shift = value * (1 + 2e-3)
     start = prolonged(solved.slabs, rough, vector)
     pairs = modes_near(
         rough,
@@ -140,6 +168,4 @@ def extrapolated_class(one: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> Re
         start,
         tolerance=1e-6,
     )
-    wanted, _ = extrapolated(pairs.values, values[mode : mode + 1], level)
-    ratio = float(wanted[0] / f[mode]) ** 2
-    return dataclasses.replace(one, stiffness=ratio * one.stiffness, loss=ratio * one.loss)
+    return extrapolated(pairs.values, np.array([value]), level)[0]

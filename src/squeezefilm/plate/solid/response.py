@@ -17,16 +17,22 @@ from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.layers import NORMAL, Resolution
+from squeezefilm.plate.solid.layers import COARSE, NORMAL, Resolution
 from squeezefilm.plate.solid.modes import MODEL
 from squeezefilm.plate.solid.reduced import (
     ReducedClass,
     class_slices,
     harmonic_solution,
     reduced_class,
+    reduced_model,
     surface_values,
 )
-from squeezefilm.plate.solid.refined_modes import extrapolated_class
+from squeezefilm.plate.solid.refined_modes import (
+    LEVELS,
+    UNREFINED,
+    RefinedModes,
+    extrapolated_class,
+)
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs
 
 _GRID = (121, 81)
@@ -110,6 +116,26 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         across = self.plate.width / 2 if y is None else y
         values = surface_values(self._parts, x, np.array([across]), self.plate.thickness)[:, :, 0]
         return x, self._coordinates[at] @ values
+
+    @si.checked_numbers
+    def at(self, frequencies: si.HertzArray) -> HarmonicResponse:
+        """The same response at other frequencies (Hz, ascending) within its band: the plate is not
+        solved again. Raises `InputError` for frequencies outside it."""
+        first, last = float(self.frequencies[0]), float(self.frequencies[-1])
+        f = np.asarray(frequencies, dtype=float)
+        si.require("frequencies", f, si.Unit("Hz"), at_least=first, at_most=last, axes=1)
+        omega, parts = 2 * np.pi * f, self._parts
+        with one_blas_thread():
+            added = _load_stiffness(self.plate, parts, self._loads, omega) if self._loads else None
+            q, potentials, charge = harmonic_solution(parts, omega, added, None, 1.0)
+        return dataclasses.replace(
+            self,
+            frequencies=f,
+            admittance=1j * omega * charge,
+            _coordinates=q,
+            _potentials=potentials,
+            _again=functools.partial(self.at, f),
+        )
 
     @functools.cached_property
     def maximum(self) -> si.FloatArray:
@@ -203,6 +229,7 @@ def harmonic_response(
     resolution: Resolution = NORMAL,
     extrapolate: bool = True,
     progress: Callable[[str, float], None] | None = None,
+    solved: Sequence[RefinedModes] = (),
 ) -> HarmonicResponse:
     """The response to one volt on the drive over a band of frequencies (Hz, ascending).
 
@@ -213,7 +240,8 @@ def harmonic_response(
     The stiffness is scaled, by a few 1e-4, so that the most strongly driven mode in or near the
     band stands at its frequency extrapolated from two meshes, where `solve_modes` has it (the
     largest amplitude lies a little beside it, by damping and other modes). Without `extrapolate`,
-    or on a mesh other than NORMAL and FINE, resonances lie where the mesh has them.
+    or on a mesh other than NORMAL and FINE, resonances lie where the mesh has them. `solved` are
+    modes in the band as `solve_for_response` has them: their meshes and factors serve again.
 
     Raises `InputError` for frequencies that are not ascending and positive or a plate without a
     driven electrode, `GeometryError` for a load beside the plate.
@@ -222,10 +250,12 @@ def harmonic_response(
     _require_answered(plate, f, loads)
     band = float(f[0]), float(f[-1])
     if steps is None:
-        steps = int(np.clip(14 + 40 * (band[1] - band[0]) / band[1], 14, 60))
+        # With the mode itself known few are left that the space must find over the band.
+        wider = (10 if solved else 40) * (band[1] - band[0]) / band[1]
+        steps = int(np.clip(14 + wider, 14, 60))
     si.require("steps", steps, at_least=1)
     with one_blas_thread():
-        parts = _reduced(plate, loads, band, steps, resolution, extrapolate, progress)
+        parts = _reduced(plate, loads, band, steps, resolution, extrapolate, progress, solved)
         omega = 2 * np.pi * f
         added = _load_stiffness(plate, parts, loads, omega) if loads else None
         q, potentials, charge = harmonic_solution(parts, omega, added, None, 1.0)
@@ -276,6 +306,7 @@ def _reduced(
     resolution: Resolution,
     extrapolate: bool,
     progress: Callable[[str, float], None] | None,
+    solved: Sequence[RefinedModes],
 ) -> list[ReducedClass]:
     """The classes of symmetry that answer, reduced; raises `InputError` where nothing drives."""
     # A load breaks the symmetry of the drive: then every class answers.
@@ -285,14 +316,19 @@ def _reduced(
     for number, parity in enumerate(classes):
         if progress is not None:
             progress(f"reducing class {number + 1} of {len(classes)}", number / len(classes))
-        part = reduced_class(plate, parity, band, steps, pressures, resolution)
+        known = next((piece for piece in solved if piece.found.parity == parity), None)
+        if known is None:
+            part = reduced_class(plate, parity, band, steps, pressures, resolution)
+        else:
+            mesh = COARSE if known.level == UNREFINED else LEVELS[known.level]
+            part = reduced_model(known.solved, known.factor, mesh, steps, pressures, known.vectors)
         if not part.basis.shape[1]:
             raise InputError(
                 "the driven ceramics exert no force on the plate, so no resonance answers to "
                 "the voltage; give them a charge_coefficient (d31) other than 0",
                 quantity="charge_coefficient",
             )
-        parts.append(extrapolated_class(part, band) if extrapolate else part)
+        parts.append(extrapolated_class(part, band, known) if extrapolate else part)
     return parts
 
 

@@ -80,7 +80,7 @@ def solve_modes(
         mode = plate.working_label
     tell = progress or (lambda text, fraction: None)
     with one_blas_thread():
-        found = _solved(plate, near, band, mode, count, tolerance, driven_only, tell, deadline)
+        found, _ = _solved(plate, near, band, mode, count, tolerance, driven_only, tell, deadline)
     again = functools.partial(
         solve_modes,
         plate,
@@ -94,6 +94,25 @@ def solve_modes(
     return dataclasses.replace(found, _again=again)
 
 
+def solve_for_response(
+    plate: RectangularPlate,
+    mode: Label,
+    tolerance: si.Dimensionless,
+    progress: ShareProgress | None = None,
+    deadline: Deadline | None = None,
+) -> tuple[PlateModes, list[RefinedModes]]:
+    """`solve_modes` of one label, and the refined modes of each class with their mesh and its
+    factors, on which `harmonic_response` can go on. Those take 50 to 500 MB: let them go soon.
+
+    Raises what `solve_modes` raises.
+    """
+    again = functools.partial(solve_modes, plate, mode=mode, tolerance=tolerance)
+    tell = progress or (lambda text, fraction: None)
+    with one_blas_thread():
+        modes, pieces = _solved(plate, None, None, mode, 1, tolerance, False, tell, deadline)
+    return dataclasses.replace(modes, _again=again), pieces
+
+
 def _solved(
     plate: RectangularPlate,
     near: float | None,
@@ -104,7 +123,7 @@ def _solved(
     driven_only: bool,
     tell: ShareProgress,
     deadline: Deadline | None,
-) -> PlateModes:
+) -> tuple[PlateModes, list[RefinedModes]]:
     classes = drive_classes(plate) if driven_only else all_classes(plate)
     if mode is not None:
         classes = [c for c in all_classes(plate) if class_fits(c, mode)]
@@ -141,7 +160,7 @@ def _solved(
         if labelled:
             pieces = labelled
             break
-    return collected_modes(plate, pieces, tolerance, band)
+    return collected_modes(plate, pieces, tolerance, band), pieces
 
 
 def _slowness(found: list[CoarseModes], took: si.Second) -> float:

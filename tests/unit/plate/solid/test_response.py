@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.solid import response
+from squeezefilm.plate.solid.layers import COARSE
 from squeezefilm.plate.solid.response import HarmonicResponse, SurfaceLoad, harmonic_response
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
@@ -233,3 +235,20 @@ def test_a_band_chooses_how_long_the_krylov_space_is_and_the_progress_is_told(
     with pytest.raises(InputError, match="exert no force"):
         harmonic_response(plate(), np.array([9e3, 10e3]), steps=3)
     assert asked[-1][1] == 3
+
+
+def test_a_response_is_asked_at_other_frequencies_of_its_band() -> None:
+    f = np.linspace(14e3, 16e3, 9)
+    whole = harmonic_response(plate(), f, resolution=COARSE)
+    some = whole.at(f[2:7])
+    assert np.array_equal(some.frequencies, f[2:7])
+    assert some.admittance == pytest.approx(whole.admittance[2:7], rel=1e-9)
+    assert some.amplitude_at(8e-3, 7e-3) == pytest.approx(
+        whole.amplitude_at(8e-3, 7e-3)[2:7], rel=1e-9
+    )
+    # Pickled, it leaves its state behind and has it again where it is asked.
+    again = pickle.loads(pickle.dumps(some))
+    assert again.maximum == pytest.approx(some.maximum, rel=1e-9)
+    for outside in (13.9e3, 16.1e3):
+        with pytest.raises(InputError, match="frequencies"):
+            whole.at(np.array([outside]))

@@ -139,7 +139,7 @@ def test_messages_tell_the_numbers_of_the_analysis(plate_analysis: Analysis) -> 
     }
     assert "7 ceramics cover 93 %" in titles["layout"]
     assert "8 nodal lines" in titles["mode"]
-    assert "33.58 kHz is 557 Hz wide" in titles["response"]
+    assert "33.57 kHz is 556 Hz wide" in titles["response"]
     assert "to 1.48 times ambient by the paper, to 1.01 in the solved film" in titles["pressure"]
     assert "how ridges are drawn decides" in titles["films"]
     assert "2.33 µm at λ/2 = 7.5 mm, 1.35 µm at 15 mm" in titles["wavelength"]

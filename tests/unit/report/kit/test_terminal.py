@@ -32,7 +32,7 @@ def test_analysis_at_80_columns(
     terminal.show_analysis(plate_analysis)
     text = printed(capsys)
     for part in (
-        "33.58 kHz",
+        "33.57 kHz",
         "Finger speed                 80 mm/s",
         "(8,0), solved to ± ",
         shown(plate_analysis.prediction.vibration_amplitude, Unit("m")),
