@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
+
+import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import (
@@ -22,6 +25,7 @@ from squeezefilm.analysis.curves import (
     wavelength_curves,
 )
 from squeezefilm.analysis.film.models import FilmComparison, compare_film_models
+from squeezefilm.analysis.sound import plate_sound
 from squeezefilm.analysis.textures import (
     CompensatedGrating,
     TextureSurvival,
@@ -31,10 +35,12 @@ from squeezefilm.analysis.textures import (
 )
 from squeezefilm.analysis.uncertainty import (
     SAMPLES,
+    FrictionBand,
     UncertainFriction,
+    friction_band,
     interval_or_reason,
 )
-from squeezefilm.analysis.verdict import Finding, verdict
+from squeezefilm.analysis.verdict import Finding, film_findings, verdict
 from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
@@ -46,6 +52,7 @@ from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
 from squeezefilm.plate.solid.working import solid_mode
+from squeezefilm.plate.sound import SoundField
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.progress import SayProgress
 from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
@@ -55,6 +62,15 @@ from squeezefilm.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.results import Result, stamp, to_json
+
+BAND_POINTS, BAND_SAMPLES = 9, 64
+"""Amplitudes at which the band of the friction is computed, and draws at each."""
+
+BAND_REACH = 1.5
+"""How far the band goes, in vibration amplitudes: beyond, draws are pressed through."""
+
+SEATED: tuple[si.Metre, ...] = (0.5,)
+"""Where the sound is asked for: at the head of a seated user. `squeezefilm plate` has more."""
 
 
 @dataclass(frozen=True)
@@ -70,30 +86,120 @@ class OtherModel:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Analysis(Result):
-    """Everything `squeezefilm analyze` knows of a display at one working point."""
+    """Everything `squeezefilm analyze` knows of a display at one working point.
+
+    Its fields are what one decides from. What stands beside it for comparison (other models, curves
+    of the paper, textures along a stroke) is a property, computed when it is first asked for.
+    """
 
     display: Display
     prediction: Prediction
     envelope_time_constant: si.Second
     envelope_bandwidth: si.Hertz
-    other_models: tuple[OtherModel, ...]
-    response: FrequencyResponse
-    pressure: tuple[PressureProfile, ...]
-    friction_curves: tuple[FrictionCurve, ...]
-    model_curves: tuple[ModelCurve, ...]
+    own_curve: FrictionCurve
     uncertainty: UncertainFriction | None
-    wavelength_curves: tuple[WavelengthCurve, ...]
-    film_models: FilmComparison | None
-    texture: FrictionTrace | None
     fidelity: FidelityTable | None
-    compensated: CompensatedGrating | None
-    survival: TextureSurvival | None
     verdict: tuple[Finding, ...]
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.frequency "
         "prediction.vibration_amplitude prediction.relative_friction uncertainty.interval "
         "envelope_time_constant"
     )
+
+    @functools.cached_property
+    def response(self) -> FrequencyResponse:
+        """The amplitude per volt around the working resonance, without a finger."""
+        return frequency_response(self.prediction)
+
+    @functools.cached_property
+    def own_curves(self) -> tuple[FrictionCurve, ...]:
+        """Friction against amplitude on each surface, by the model of the prediction."""
+        return tuple(
+            self.own_curve
+            if surface == self.prediction.surface
+            else friction_curve(self.prediction, surface, self.prediction.model)
+            for surface in self.display.surfaces
+        )
+
+    @functools.cached_property
+    def friction_curves(self) -> tuple[FrictionCurve, ...]:
+        """Friction against amplitude on each surface: by the paper's model (its Fig 5), then by
+        the prediction's own where that is another."""
+        if self.prediction.model == "paper2008":
+            return self.own_curves
+        papers = (
+            friction_curve(self.prediction, one, "paper2008") for one in self.display.surfaces
+        )
+        return (*papers, *self.own_curves)
+
+    @functools.cached_property
+    def band(self) -> FrictionBand | None:
+        """Where µ′/µ lies over the amplitude with all else uncertain; None where no interval is."""
+        if self.uncertainty is None:
+            return None
+        at = np.linspace(0.0, BAND_REACH * self.prediction.vibration_amplitude, BAND_POINTS)
+        return friction_band(self.display, self.prediction, at, samples=BAND_SAMPLES)
+
+    @functools.cached_property
+    def sound(self) -> SoundField | None:
+        """The airborne sound of the solved face as it is driven; None where no face was solved or
+        nothing drives it."""
+        p = self.prediction
+        if p.mode.solid is None or not p.voltage:
+            return None
+        response = p.mode.solid.response
+        nearest = int(np.argmin(np.abs(response.frequencies - p.frequency)))
+        return plate_sound(response, nearest, p.frequency, p.voltage, SEATED)
+
+    @functools.cached_property
+    def pressure(self) -> tuple[PressureProfile, ...]:
+        """The mean pressure along the contact, by the paper's asymptote and solved."""
+        return pressure_profiles(self.prediction)
+
+    @functools.cached_property
+    def model_curves(self) -> tuple[ModelCurve, ...]:
+        """Friction against amplitude by every model."""
+        return model_curves(self.prediction)
+
+    @functools.cached_property
+    def wavelength_curves(self) -> tuple[WavelengthCurve, ...]:
+        """Friction against amplitude at the paper's half wavelengths (its Fig 11)."""
+        return wavelength_curves(self.prediction)
+
+    @functools.cached_property
+    def film_models(self) -> FilmComparison | None:
+        """The film under the finger as each model reads it; None where nothing vibrates."""
+        return compare_film_models(self.display, self.prediction)
+
+    @functools.cached_property
+    def film_findings(self) -> tuple[Finding, ...]:
+        """What the readings of the film amount to, in sentences."""
+        films = self.film_models
+        return () if films is None else tuple(film_findings(self.prediction, films))
+
+    @functools.cached_property
+    def other_models(self) -> tuple[OtherModel, ...]:
+        """The same plate by other theories."""
+        return tuple(_other_models(self.display, self.prediction))
+
+    @functools.cached_property
+    def texture(self) -> FrictionTrace | None:
+        """A stroke over a square grating; None where the amplitude changes no friction."""
+        return _texture(self.prediction, self.envelope_time_constant)
+
+    @functools.cached_property
+    def _compensation(self) -> tuple[CompensatedGrating | None, TextureSurvival | None]:
+        return _compensation(self.display, self.prediction)
+
+    @property
+    def compensated(self) -> CompensatedGrating | None:
+        """A fine grating through the resonator; None where no voltage makes an amplitude."""
+        return self._compensation[0]
+
+    @property
+    def survival(self) -> TextureSurvival | None:
+        """Which grating survives at which speed; None where no voltage makes an amplitude."""
+        return self._compensation[1]
 
     def finest_period(self) -> dict[str, float]:
         """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""
@@ -146,7 +252,7 @@ class Analysis(Result):
                 "plateau_balance": to_json(self.film_models.balance),
             },
             "other_models": to_json(self.other_models),
-            "verdict": to_json(self.verdict),
+            "verdict": to_json((*self.verdict, *self.film_findings)),
             "provenance": stamp(self.display),
         }
 
@@ -192,51 +298,24 @@ def analyze(
 def _what_follows(
     display: Display, prediction: Prediction, samples: int, tell: SayProgress
 ) -> Analysis:
-    """All that an analysis says, from a prediction."""
+    """What one decides from, of a prediction."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
-    tell("frequency response")
-    response = frequency_response(prediction)
-    tell("pressure under the finger")
-    pressure = pressure_profiles(prediction)
     tell("friction against amplitude")
-    models: tuple[FrictionModel, ...] = ("paper2008",)
-    if prediction.model not in models:
-        models = (*models, prediction.model)
-    curves = tuple(
-        friction_curve(prediction, surface, model)
-        for model in models
-        for surface in display.surfaces
-    )
-    tell("friction by every model, and how sure it is")
-    by_model = model_curves(prediction)
+    own = friction_curve(prediction, prediction.surface, prediction.model)
+    tell("how sure the friction is")
     unsure, why_not = interval_or_reason(display, prediction, samples=samples)
-    tell("wavelength against amplitude")
-    wavelengths = wavelength_curves(prediction)
-    tell("the paper's film and solved films")
-    films = compare_film_models(display, prediction)
-    tell("textures")
-    trace, table = _textures(prediction, tau)
-    compensated, survival = _compensation(display, prediction)
     tell("verdict")
+    table = _fidelity(prediction, tau)
     return Analysis(
         display=display,
         prediction=prediction,
         envelope_time_constant=tau,
         envelope_bandwidth=float(envelope_bandwidth(mode.quality_factor, mode.resonance_frequency)),
-        other_models=tuple(_other_models(display, prediction)),
-        response=response,
-        pressure=pressure,
-        friction_curves=curves,
-        model_curves=by_model,
+        own_curve=own,
         uncertainty=unsure,
-        wavelength_curves=wavelengths,
-        film_models=films,
-        texture=trace,
         fidelity=table,
-        compensated=compensated,
-        survival=survival,
-        verdict=tuple(verdict(display, prediction, curves, table, films, unsure, why_not)),
+        verdict=tuple(verdict(display, prediction, own, table, unsure, why_not)),
     )
 
 
@@ -275,14 +354,19 @@ def _other_models(display: Display, prediction: Prediction) -> Iterator[OtherMod
             yield OtherModel(beam.model, beam.mode.frequency, beam.mode.half_wavelength, amplitude)
 
 
-def _textures(
-    prediction: Prediction, tau: si.Second
-) -> tuple[FrictionTrace | None, FidelityTable | None]:
+def _texture(prediction: Prediction, tau: si.Second) -> FrictionTrace | None:
     high = prediction.vibration_amplitude
-    if prediction.relative_friction == 1 or high == 0:
-        return None, None
-    friction = prediction.friction
-    trace = friction_trace(
-        Amplitude(SquareWave(2e-3), low=0.0, high=high), Stroke(speed=0.1), tau, friction
-    )
-    return trace, fidelity_table(tau, friction, low=0.0, high=high)
+    if not _changes_friction(prediction):
+        return None
+    grating = Amplitude(SquareWave(2e-3), low=0.0, high=high)
+    return friction_trace(grating, Stroke(speed=0.1), tau, prediction.friction)
+
+
+def _fidelity(prediction: Prediction, tau: si.Second) -> FidelityTable | None:
+    if not _changes_friction(prediction):
+        return None
+    return fidelity_table(tau, prediction.friction, low=0.0, high=prediction.vibration_amplitude)
+
+
+def _changes_friction(prediction: Prediction) -> bool:
+    return prediction.relative_friction != 1 and prediction.vibration_amplitude != 0

@@ -3,6 +3,7 @@ model and wavelength."""
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from dataclasses import dataclass
 
@@ -179,11 +180,18 @@ def model_curves(prediction: Prediction) -> tuple[ModelCurve, ...]:
         law = dataclasses.replace(p.law, model=model, position=position)
         # Denser at small amplitudes, where a smooth film lifts the finger off.
         amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)
-        friction = np.full(amplitude.size, np.nan)
-        for at in range(amplitude.size):
-            try:
-                friction[at] = law.at(float(amplitude[at]))
-            except SqueezefilmError:
-                break
-        found.append(ModelCurve(model, amplitude, friction))
+        found.append(ModelCurve(model, amplitude, _as_far_as_it_goes(law, amplitude)))
     return tuple(found)
+
+
+def _as_far_as_it_goes(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
+    """µ′/µ at rising amplitudes (m), NaN from the first that the law refuses."""
+    with contextlib.suppress(SqueezefilmError):
+        return law.curve(amplitude)
+    friction = np.full(amplitude.size, np.nan)
+    for at in range(amplitude.size):
+        try:
+            friction[at] = law.at(float(amplitude[at]))
+        except SqueezefilmError:
+            break
+    return friction

@@ -36,16 +36,16 @@ class Finding:
 def verdict(
     display: Display,
     p: Prediction,
-    curves: tuple[FrictionCurve, ...],
+    own: FrictionCurve,
     table: FidelityTable | None,
-    films: FilmComparison | None,
     unsure: UncertainFriction | None = None,
     why_not: str = "",
 ) -> Iterator[Finding]:
-    """What an analysis amounts to, in sentences; `why_not` says why no friction is `unsure`."""
+    """What an analysis amounts to, in sentences: `own` is the curve of the prediction's model on
+    its surface, `why_not` says why no friction is `unsure`."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
     yield friction_verdict(p, unsure, why_not)
-    yield from _of_needed_amplitude(p, curves)
+    yield from _of_needed_amplitude(p, own)
     if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
         yield Finding(
             "doubt",
@@ -56,8 +56,6 @@ def verdict(
         yield _of_gratings(table)
     if MODEL_KINDS[p.model].film == "asymptote":
         yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
-    if films is not None:
-        yield from _of_films(p, films)
     assumed = [path for path, item in display.provenance.items() if item.evidence == "assumed"]
     if assumed:
         yield Finding(
@@ -108,13 +106,12 @@ def _probability(value: si.Dimensionless) -> str:
     return "above 0.99" if value > 0.99 else "below 0.01" if value < 0.01 else f"{value:.2f}"
 
 
-def _of_needed_amplitude(p: Prediction, curves: tuple[FrictionCurve, ...]) -> Iterator[Finding]:
+def _of_needed_amplitude(p: Prediction, own: FrictionCurve) -> Iterator[Finding]:
     """What the paper's criterion takes where the display as described misses it."""
     papers = MODEL_KINDS[p.model].film == "asymptote"
     by = "By the paper's model" if papers else f"By the model '{p.model}'"
     if papers or p.relative_friction > PAPER_CRITERION:
-        here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
-        needed = here.amplitude_for_criterion
+        needed = own.amplitude_for_criterion
         ask = "no amplitude" if needed is None else f"{needed * 1e6:.3g} µm"
         yield Finding(
             "limit",
@@ -143,7 +140,9 @@ def _of_gratings(table: FidelityTable) -> Finding:
     )
 
 
-def _of_films(p: Prediction, films: FilmComparison) -> Iterator[Finding]:
+def film_findings(p: Prediction, films: FilmComparison) -> Iterator[Finding]:
+    """What the readings of the film say of one another; no verdict on the display, whose friction
+    one of them gives."""
     paper, sealed = films.result("paper2008"), films.result("film-sealed")
     open_, plateau = films.result("film-open"), films.result("film-plateau")
     if sealed.over_pressure > 0 and open_.over_pressure > 0:

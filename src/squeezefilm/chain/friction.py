@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, cast
 
 import numpy as np
@@ -150,7 +151,7 @@ class FrictionLaw:
         balance, whatever the model. See `friction_ripple`."""
         return friction_ripple(
             self._films,
-            self._asperities,
+            self.asperities,
             amplitude,
             self.half_wavelength,
             self.finger,
@@ -162,16 +163,16 @@ class FrictionLaw:
     def _films(self) -> FilmTable:
         return film_table(self.frequency, self.finger.plateau_width, self.gas, self.slip)
 
-    @property
-    def _asperities(self) -> ContactLaw:
+    @cached_property
+    def asperities(self) -> ContactLaw:
+        """What skin and surface carry between them."""
         return self.finger.asperity_law(self.surface.roughness)
 
-    @property
+    @cached_property
     def _ridges(self) -> si.MetreArray:
-        side = float(np.sqrt(self.finger.contact_area(self.normal_force)))
-        return ridge_points(self.finger, side)
+        return ridge_points(self.finger, self.finger.contact_area(self.normal_force) ** 0.5)
 
-    @property
+    @cached_property
     def friction_coefficient(self) -> si.Dimensionless:
         """µ without vibration, at this force. See `Finger.friction_coefficient`."""
         return self.finger.friction_coefficient(
@@ -190,7 +191,7 @@ class FrictionLaw:
         try:
             return pad_friction(
                 self._films,
-                self._asperities,
+                self.asperities,
                 amplitude,
                 self.half_wavelength,
                 self._ridges,
