@@ -137,7 +137,8 @@ class Analysis(Result):
         """Where µ′/µ lies over the amplitude with all else uncertain; None where no interval is."""
         if self.uncertainty is None:
             return None
-        at = np.linspace(0.0, BAND_REACH * self.prediction.vibration_amplitude, BAND_POINTS)
+        reach = BAND_REACH * self.prediction.vibration_amplitude
+        at = reach * np.linspace(0.0, 1.0, BAND_POINTS) ** 1.5
         return friction_band(self.display, self.prediction, at, samples=BAND_SAMPLES)
 
     @functools.cached_property

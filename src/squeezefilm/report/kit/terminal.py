@@ -8,26 +8,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm.report.kit.numbers import (
-    MISSED_HEADING,
-    dotted,
-    film_rows,
-    key_numbers,
-    micro,
-    missed_directions,
-    models,
-    printable,
-    theory_rows,
-    unsaid_warnings,
-)
+from squeezefilm.report.kit.numbers import dotted, micro, printable
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-    from squeezefilm.analysis.analyze import Analysis
-
-_KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
-_STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
 
 
 @contextmanager
@@ -127,36 +111,6 @@ def bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
     for word, text, style in items:
         grid.add_row(Text(printable(word), style=style), Text(printable(text)))
     console.print(grid)
-
-
-def show_missed(console: Console, model: str) -> None:
-    """Print what measurements say and a friction model does not."""
-    heading(console, MISSED_HEADING.format(model))
-    bullets(console, [("–", text, "yellow") for text in missed_directions(model)])
-
-
-def show_analysis(analysis: Analysis) -> None:
-    """Print an analysis: verdict last, where the eye rests, after numbers, models and warnings."""
-    display = analysis.display
-    console = show_rows(f"{display.title} [{display.name}]", key_numbers(analysis))
-    heading(console, "Models")
-    table(console, ("", ""), models(analysis), fixed=(0,))
-    show_missed(console, analysis.prediction.model)
-    if analysis.other_models:
-        heading(console, "The same plate by other theories")
-        others = [(model, at, amplitude) for model, at, _, amplitude in theory_rows(analysis)[1:]]
-        table(console, ("model", "resonance", "amplitude"), others)
-    if films := film_rows(analysis):
-        heading(console, "The film under the finger, drawn in five ways")
-        table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
-    warned = unsaid_warnings(analysis)
-    if warned:
-        heading(console, "Warnings")
-        bullets(console, [("!", text, "yellow") for text in warned])
-    heading(console, "Verdict")
-    verdict = [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in analysis.verdict]
-    bullets(console, verdict)
-    console.print()
 
 
 def preset_list() -> list[dict[str, Any]]:

@@ -11,7 +11,8 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
-from squeezefilm.report.kit.numbers import HZ, M, V, heat_rows, shown
+from squeezefilm.report.display.rows import Row, heat_rows, sound_rows
+from squeezefilm.report.kit.numbers import HZ, PER_VOLT, A, M, V, shown
 from squeezefilm.report.kit.terminal import heading, show_rows, table
 
 if TYPE_CHECKING:
@@ -24,9 +25,8 @@ if TYPE_CHECKING:
     from squeezefilm.plate.ring.stator import StatorFit
     from squeezefilm.plate.sound import SoundField
 
-PER_VOLT, A, OHM = si.Unit("m/V"), si.Unit("A"), si.Unit("ohm")
+OHM = si.Unit("ohm")
 HENRY, FARAD = si.Unit("H"), si.Unit("F")
-Row = tuple[str, str, str]
 
 # Of the working mode's amplitude per volt: below it a mode is called not driven.
 _DRIVEN = 1e-4
@@ -111,22 +111,6 @@ def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
         f"{shown(a.tooth_height, M)}, {a.driven_sectors} half-wave sectors on the channel."
     )
     return tuple(said)
-
-
-def sound_rows(sound: SoundField, direction: str) -> list[Row]:
-    """Sound pressure levels by distance; `direction` says where they are loudest."""
-    guidance = sound.guidance
-    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
-    return [
-        (
-            f"Sound at {distance:g} m",
-            f"{level:.0f} dB",
-            f"{direction}; {limit}" if number == 0 else "",
-        )
-        for number, (distance, level) in enumerate(
-            zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
-        )
-    ]
 
 
 def show_guidance(console: Console, sound: SoundField) -> None:

@@ -1,0 +1,255 @@
+"""The numbers one decides from, as rows of quantity, value and remark: for page and terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.report.kit.numbers import (
+    HZ,
+    PER_VOLT,
+    SPEED,
+    A,
+    M,
+    N,
+    S,
+    V,
+    W,
+    percent,
+    printable,
+    shown,
+    signed,
+    span,
+)
+
+if TYPE_CHECKING:
+    from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.chain.prediction import Prediction
+    from squeezefilm.plate.heat.warming import Warming
+    from squeezefilm.plate.sound import SoundField
+    from squeezefilm.plate.working_mode import WorkingMode
+
+Row = tuple[str, str, str]
+KELVIN = si.Unit("K")
+
+_EXPLORING: si.MetrePerSecond = 0.1
+
+
+class Rows(NamedTuple):
+    """Rows of one subject under its heading."""
+
+    heading: str
+    rows: list[Row]
+
+
+def decision_rows(analysis: Analysis) -> list[Rows]:
+    """The key numbers by subject, in the order of the chain."""
+    p = analysis.prediction
+    groups = [
+        Rows("Vibration", vibration_rows(p)),
+        Rows("Friction", friction_rows(analysis)),
+        Rows("Textures", texture_rows(analysis)),
+    ]
+    if p.voltage:
+        groups += [
+            Rows("Electrical load", electrical_rows(p)),
+            Rows("Heat", heat_rows(p.heat)[:2]),
+            Rows("Sound", _sound_rows(analysis)),
+        ]
+    return groups
+
+
+def vibration_rows(p: Prediction) -> list[Row]:
+    """Resonance and drive, and the amplitude with and without the finger."""
+    mode, free = p.mode, p.touch.free_amplitude
+    # The resonance is defined to many digits only: an off-resonance drive is worth a remark.
+    off = abs(p.frequency / mode.resonance_frequency - 1) > 1e-6
+    at = f"{shown(p.frequency, HZ)}, {'beside the' if off else 'the'} resonance"
+    per_volt = shown(mode.amplitude_per_volt, PER_VOLT)
+    drive, made = ("Drive", "none", f"amplitude given, at {at}"), "zero-to-peak, at antinodes"
+    if p.voltage is not None:
+        drive = ("Drive", shown(p.voltage, V), f"zero-to-peak, at {at}")
+        made = f"{per_volt} × {shown(p.voltage, V)}, at antinodes"
+        if off:
+            made = f"at antinodes; at the resonance {per_volt}"
+    kept = f"the finger leaves {100 * p.touch.kept:.3g} %"
+    if p.touch.mode is None:
+        kept = "the finger is taken to change nothing: no modal mass is known"
+    return [
+        ("Resonance frequency", shown(mode.resonance_frequency, HZ), _solved(mode)),
+        drive,
+        ("Amplitude, free", shown(free, M, 3), made),
+        ("Amplitude under the finger", shown(p.vibration_amplitude, M, 3), kept),
+    ]
+
+
+def _solved(mode: WorkingMode) -> str:
+    """The mode's label, with the solver's error where one solved it."""
+    if mode.frequency_error is None:
+        return mode.label
+    return f"{mode.label}, solved to ± {shown(mode.frequency_error, HZ, 2)}"
+
+
+def friction_rows(analysis: Analysis) -> list[Row]:
+    """The friction with its interval, what it is of, and what the paper's criterion takes."""
+    p, unsure = analysis.prediction, analysis.uncertainty
+    said = "1 without vibration"
+    if unsure is not None:
+        interval = f"{percent(unsure.level)} interval, median {unsure.median:.2f}"
+        said = f"{span(*unsure.interval)} ({interval})"
+    finger = f"{shown(p.normal_force, N)} at {shown(p.speed, SPEED)}"
+    name = printable(p.surface.name)
+    reached = _reached(analysis.own_curve.amplitude_for_criterion)
+    return [
+        ("Relative friction µ′/µ", f"{p.relative_friction:.2f}", said),
+        ("Surface", shown(p.surface.roughness, M), f"rough: {name}; finger of {finger}"),
+        ("Amplitude for µ′/µ = 0.7", reached, "as the paper asks, under the finger"),
+    ]
+
+
+def _reached(amplitude: float | None) -> str:
+    return "out of reach" if amplitude is None else shown(amplitude, M, 3)
+
+
+def texture_rows(analysis: Analysis) -> list[Row]:
+    """How fast the amplitude can follow, and what grating that lets through."""
+    tau, table = analysis.envelope_time_constant, analysis.fidelity
+    band = f"a bandwidth of {shown(analysis.envelope_bandwidth, HZ, 3)}"
+    rows = [("Envelope time constant", shown(tau, S, 3), band)]
+    if table is not None:
+        rows.append(_grating(analysis, int(np.argmin(np.abs(table.speeds - _EXPLORING)))))
+    return rows
+
+
+def _grating(analysis: Analysis, at: int) -> Row:
+    """The finest grating at one of the table's speeds."""
+    table = analysis.fidelity
+    assert table is not None, "nothing is rendered"
+    left = f"{percent(table.fundamental_at_limit)} of its wave"
+    return (
+        f"Finest grating at {shown(float(table.speeds[at]), SPEED)}",
+        shown(float(table.finest_period[at]), M, 3),
+        f"keeps {percent(table.kept)} of its swing, {left}",
+    )
+
+
+def electrical_rows(p: Prediction) -> list[Row]:
+    """What the free plate takes from its amplifier at the drive's frequency."""
+    solid = p.mode.solid
+    found = None if solid is None else solid.response
+    if found is None or not p.voltage or not _within(found.frequencies, p.frequency):
+        said = "no admittance was solved here; squeezefilm plate solves plates, discs and stators"
+        return [("Current", "not known", said)]
+    current, apparent, power = (
+        float(np.interp(p.frequency, found.frequencies, of(p.voltage)))
+        for of in (found.current, found.apparent_power, found.input_power)
+    )
+    return [
+        ("Current", shown(current, A, 3), "zero-to-peak, without a finger"),
+        ("Apparent power", f"{apparent:.3g} VA", f"{shown(power, W, 3)} of it are real power"),
+    ]
+
+
+def _within(range_of: si.HertzArray, frequency: si.Hertz) -> bool:
+    return bool(range_of[0] <= frequency <= range_of[-1])
+
+
+def heat_rows(heat: Warming | None) -> list[Row]:
+    """Temperature, drift and amplitude of the warm plate: quantity, value, remark."""
+    if heat is None:
+        return [("Temperature rise", "not known", "nor is the power that the plate loses")]
+    follows, stays = heat.tracked, heat.fixed
+    at = f"at a fixed {shown(heat.frequency, HZ)}"
+    fallen = (
+        "a tenth is never gone"
+        if heat.time_to_fall is None
+        else f"a tenth is gone after {shown(heat.time_to_fall, S, 2)}"
+    )
+    resistance = si.format_quantity(heat.thermal_resistance, si.Unit("K/W"), 3)
+    return [
+        (
+            "Temperature rise",
+            signed(follows.temperature_rise, KELVIN),
+            f"if the drive follows; {signed(stays.temperature_rise, KELVIN)} {at}",
+        ),
+        (
+            "Drift of the resonance",
+            signed(follows.resonance_drift, HZ),
+            f"{signed(stays.resonance_drift, HZ)} {at}; half-bandwidth "
+            f"{shown(heat.half_bandwidth, HZ, 3)}",
+        ),
+        (
+            "Amplitude warm",
+            shown(follows.amplitude, M, 3),
+            "if the drive follows the resonance, without a finger",
+        ),
+        (
+            "",
+            shown(stays.amplitude, M, 3),
+            f"{at}, of {shown(heat.cold_amplitude, M, 3)} cold; {fallen}",
+        ),
+        (
+            "Thermal resistance",
+            resistance,
+            f"time constant {shown(heat.thermal_time, S, 2)}; assumed: " + "; ".join(heat.assumed),
+        ),
+    ]
+
+
+def sound_rows(sound: SoundField, direction: str) -> list[Row]:
+    """Sound pressure levels by distance; `direction` says where they are loudest."""
+    guidance = sound.guidance
+    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
+    return [
+        (
+            f"Sound at {distance:g} m",
+            f"{level:.0f} dB",
+            f"{direction}; {limit}" if number == 0 else "",
+        )
+        for number, (distance, level) in enumerate(
+            zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
+        )
+    ]
+
+
+def _sound_rows(analysis: Analysis) -> list[Row]:
+    if analysis.sound is None:
+        said = "no face was solved here; squeezefilm plate solves plates, discs and stators"
+        return [("Sound", "not known", said)]
+    return sound_rows(analysis.sound, "loudest direction, driven without pause")
+
+
+def more_rows(analysis: Analysis) -> list[Row]:
+    """What the key numbers are made of, and what follows from them: for an appendix."""
+    p = analysis.prediction
+    floats = _reached(analysis.own_curve.zero_friction_amplitude)
+    rows = [
+        ("Quality factor", f"{p.mode.quality_factor:.4g}", ""),
+        ("Half wavelength", shown(p.mode.half_wavelength, M), ""),
+        ("Squeeze number", f"{p.squeeze_number:.4g}", ""),
+        ("Mean pressure", f"{p.mean_pressure:.4f}", "over ambient, contact and period"),
+        reduction_row(p),
+        ("Amplitude for no friction", floats, "the finger floats"),
+    ]
+    if analysis.fidelity is not None:
+        rows += [_grating(analysis, at) for at in range(len(analysis.fidelity.speeds))]
+    return rows + (heat_rows(p.heat)[2:] if p.voltage else [])
+
+
+def speed_row(p: Prediction) -> Row:
+    """The finger's speed that the friction is for: quantity, value, remark."""
+    return "Finger speed", shown(p.speed, SPEED), "of sliding"
+
+
+def reduction_row(p: Prediction) -> Row:
+    """What vibration takes away of the friction."""
+    reduction, coefficient = f"{p.friction_reduction:.3f}", f"{p.friction_coefficient:.3g}"
+    return "Friction reduction µ − µ′", reduction, f"of µ = {coefficient}"
+
+
+def unsaid_warnings(analysis: Analysis) -> list[str]:
+    """The warnings that the verdict does not already say word for word."""
+    said = {finding.text for finding in analysis.verdict}
+    return [text for text in analysis.prediction.warnings if text not in said]
