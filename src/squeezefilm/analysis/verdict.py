@@ -89,7 +89,7 @@ def friction_verdict(p: Prediction, unsure: UncertainFriction | None, why_not: s
     noticed = 1 - NOTICED_DIFFERENCE
     text = (
         f"µ′/µ is below {asked}, with probability "
-        f"{_probability(unsure.probability_below(PAPER_CRITERION))} ({unsure.level:.0%} interval "
+        f"{_probability(unsure.probability_below(PAPER_CRITERION))} ({si.percent(unsure.level)} interval "
         f"{low:.2f}–{high:.2f}, median {unsure.median:.2f}; {unsure.nominal:.2f} as described at "
         f"{amplitude}); below {noticed:.2f}, where people notice it, with probability "
         f"{_probability(unsure.probability_below(noticed))}."
@@ -156,8 +156,8 @@ def film_findings(p: Prediction, films: FilmComparison) -> Iterator[Finding]:
     yield Finding(
         "doubt",
         f"How ridges are drawn decides: sinusoidal ridges with open grooves carry "
-        f"{open_.load_share:.1%} of the finger, ridges pressed flat "
-        + ("all of it." if plateau.load_share >= 1 else f"{plateau.load_share:.0%} of it.")
+        f"{si.percent(open_.load_share, 1)} of the finger, ridges pressed flat "
+        + ("all of it." if plateau.load_share >= 1 else f"{si.percent(plateau.load_share)} of it.")
         + " Partial levitation, where film and asperities share the load of a "
         "flattened ridge, lies between.",
     )

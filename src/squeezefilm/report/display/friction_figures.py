@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.model_looks import look_of
-from squeezefilm.report.kit.numbers import HZ, SPEED, M, N, percent, shown, span
+from squeezefilm.report.kit.numbers import HZ, SPEED, M, N, shown, span
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,7 +82,7 @@ def own_friction(analysis: Analysis) -> Figure:
     figure = style.new_figure(title, small, 4.8)
     axes = figure.subplots()
     if band is not None:
-        name = f"{percent(band.level)} of what the friction may be at an amplitude"
+        name = f"{si.percent(band.level)} of what the friction may be at an amplitude"
         x = 1e6 * band.amplitude
         axes.fill_between(x, band.low, band.high, color=style.BAND, lw=0, label=name)
     look = look_of(p.model)
@@ -237,6 +238,6 @@ def _working_point(axes: Axes, analysis: Analysis) -> None:
         axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
         for end in (low, high):
             axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
-        words += f" ({span(low, high)}, {percent(unsure.level)} interval)"
+        words += f" ({span(low, high)}, {si.percent(unsure.level)} interval)"
     words += f" at {shown(p.vibration_amplitude, M, 3)}"
     style.mark(axes, at, p.relative_friction, 9, words)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.record import missed_by
-from squeezefilm.report.kit.numbers import HZ, M, micro, percent, shown
+from squeezefilm.report.kit.numbers import HZ, M, micro, shown
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -97,7 +98,7 @@ def influence_rows(unsure: UncertainFriction, knowledge: Knowledge, most: int) -
         [
             one.parameter.path,
             micro_words(one.parameter.spread, law=hasattr(one.parameter, "options")),
-            f"{100 * one.total:.0f} ± {percent(one.total_error)}",
+            f"{100 * one.total:.0f} ± {si.percent(one.total_error)}",
             "as described"
             if one.parameter.origin == "given"
             else "assumed weights"
@@ -117,8 +118,8 @@ def group_words(one: GroupInfluence) -> str:
     """What a group of inputs is, and what it carries of the width, as a heading."""
     what = {"measurable": "Could be measured", "unknown": "Nobody knows"}[one.knowledge]
     return (
-        f"{what}: {100 * one.total:.0f} ± {percent(one.error)} of the variance, "
-        f"{percent(max(one.alone, 0))} by itself"
+        f"{what}: {100 * one.total:.0f} ± {si.percent(one.error)} of the variance, "
+        f"{si.percent(max(one.alone, 0))} by itself"
     )
 
 
@@ -126,7 +127,7 @@ def weight_rows(unsure: UncertainFriction) -> list[list[str]]:
     """The laws and states that are drawn, each with its assumed weight and why."""
     choices = [one.parameter for one in unsure.influences if hasattr(one.parameter, "options")]
     return [
-        [choice.path, option.name, percent(option.weight), option.why]
+        [choice.path, option.name, si.percent(option.weight), option.why]
         for choice in sorted(choices, key=lambda one: one.path)
         for option in choice.options
     ]

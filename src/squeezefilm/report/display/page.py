@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.report.display.model_rows import (
     MISSED_HEADING,
     film_rows,
@@ -22,7 +23,7 @@ from squeezefilm.report.display.model_rows import (
 )
 from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
-from squeezefilm.report.kit.numbers import display_values, percent, printable
+from squeezefilm.report.kit.numbers import display_values, printable
 from squeezefilm.report.kit.page_style import (
     FigureOf,
     bullets,
@@ -206,7 +207,7 @@ def _how_sure(analysis: Analysis) -> str:
     unsure = analysis.uncertainty
     if unsure is None:
         return "<p>No interval: the verdict says why.</p>"
-    said = f"{unsure.sentence}, {percent(unsure.level)} interval. {unsure.standing}."
+    said = f"{unsure.sentence}, {si.percent(unsure.level)} interval. {unsure.standing}."
     parts = [f"<p>{escape(said)}</p>"]
     for group in unsure.groups:
         rows = influence_rows(unsure, group.knowledge, len(unsure.influences))

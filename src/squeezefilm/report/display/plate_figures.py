@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.report.display.layout_figures import drive_strip
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.numbers import HZ, M, V, percent, shown
+from squeezefilm.report.kit.numbers import HZ, M, V, shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -177,7 +178,7 @@ def _lost_beside(p: Prediction) -> str:
         share = p.touch.free_amplitude / (p.voltage * p.mode.amplitude_per_volt)
     if share >= 0.99:
         return ""
-    return f", but at {shown(p.frequency, HZ)} it gets {percent(share)} of the motion"
+    return f", but at {shown(p.frequency, HZ)} it gets {si.percent(share)} of the motion"
 
 
 def _mark_drive(axes: Axes, p: Prediction, voltage: float, peak: float) -> None:

@@ -17,7 +17,6 @@ from squeezefilm.report.kit.numbers import (
     S,
     V,
     W,
-    percent,
     printable,
     shown,
     signed,
@@ -97,7 +96,7 @@ def friction_rows(analysis: Analysis) -> list[Row]:
     p, unsure = analysis.prediction, analysis.uncertainty
     said = "1 without vibration"
     if unsure is not None:
-        interval = f"{percent(unsure.level)} interval, median {unsure.median:.2f}"
+        interval = f"{si.percent(unsure.level)} interval, median {unsure.median:.2f}"
         said = f"{span(*unsure.interval)} ({interval})"
     finger = f"{shown(p.normal_force, N)} at {shown(p.speed, SPEED)}"
     name = printable(p.surface.name)
@@ -127,11 +126,11 @@ def _grating(analysis: Analysis, at: int) -> Row:
     """The finest grating at one of the table's speeds."""
     table = analysis.fidelity
     assert table is not None, "nothing is rendered"
-    left = f"{percent(table.fundamental_at_limit)} of its wave"
+    left = f"{si.percent(table.fundamental_at_limit)} of its wave"
     return (
         f"Finest grating at {shown(float(table.speeds[at]), SPEED)}",
         shown(float(table.finest_period[at]), M, 3),
-        f"keeps {percent(table.kept)} of its swing, {left}",
+        f"keeps {si.percent(table.kept)} of its swing, {left}",
     )
 
 

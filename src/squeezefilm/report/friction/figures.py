@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.report.friction.told_apart import told_apart
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.model_looks import look_of
-from squeezefilm.report.kit.numbers import SPEED, M, N, percent, shown
+from squeezefilm.report.kit.numbers import SPEED, M, N, shown
 from squeezefilm.report.kit.page_style import FigureOf, drawn_figures, picture_files
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def _models(
         axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
         for end in (low, high):
             axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
-        words += f" ({low:.2f}–{high:.2f}, {percent(unsure.level)}, median {unsure.median:.2f})"
+        words += f" ({low:.2f}–{high:.2f}, {si.percent(unsure.level)}, median {unsure.median:.2f})"
     style.mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
     style.friction_axes(axes, float(x[-1]))
     style.legend_below(axes, columns=2)
@@ -168,7 +169,9 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
     )
     left, right = figure.subplots(1, 2, width_ratios=[1, 1.15])
     left.hist(unsure.samples, bins=24, range=(0, 1), color=style.BLUE, alpha=0.85)
-    left.axvspan(low, high, color=style.BAND, zorder=0, label=f"{percent(unsure.level)} interval")
+    left.axvspan(
+        low, high, color=style.BAND, zorder=0, label=f"{si.percent(unsure.level)} interval"
+    )
     name = f"as described: {unsure.nominal:.2f}"
     left.axvline(unsure.nominal, color=style.INK, lw=1.6, label=name)
     name = f"median: {unsure.median:.2f}"

@@ -9,7 +9,7 @@ from squeezefilm.report.display.model_rows import group_words, influence_rows, w
 from squeezefilm.report.display.rows import heat_rows, reduction_row, speed_row
 from squeezefilm.report.display.terminal import show_missed
 from squeezefilm.report.friction.told_apart import show_told_apart
-from squeezefilm.report.kit.numbers import HZ, M, N, V, percent, shown
+from squeezefilm.report.kit.numbers import HZ, M, N, V, shown
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def show_friction(result: FrictionAnalysis) -> None:
     if unsure is None:
         console.print(f"µ′/µ = {p.relative_friction:.2f} as described")
     else:
-        console.print(f"{unsure.sentence}: {percent(unsure.level)} interval. {unsure.standing}.")
+        console.print(f"{unsure.sentence}: {si.percent(unsure.level)} interval. {unsure.standing}.")
     console.print(f"{result.verdict.kind}: {result.verdict.text}")
     table(console, ("", "", ""), _rows(result), fixed=(0,))
     heading(console, "The same finger by other models")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 import typing
 import unicodedata
 from collections.abc import Iterator
@@ -17,6 +18,8 @@ if typing.TYPE_CHECKING:
     from squeezefilm.render.fidelity.report import FidelityReport
 
 M, HZ, S, N, V = si.Unit("m"), si.Unit("Hz"), si.Unit("s"), si.Unit("N"), si.Unit("V")
+_TYPED_MICRO = re.compile(r"(?<=\d )u(?=[msNVAFWH]\b)")
+_MINUS = re.compile(r"(?<![\w.\-−–/])-(?=\d)")
 A, W, SPEED, PER_VOLT = si.Unit("A"), si.Unit("W"), si.Unit("m/s"), si.Unit("m/V")
 
 
@@ -50,9 +53,9 @@ def signed(value: float, unit: si.Unit, digits: int = 3) -> str:
     return f"{'−' if value < 0 else '+'}{shown(abs(value), unit, digits)}"
 
 
-def percent(share: float, decimals: int = 0) -> str:
-    """A share as a person reads it, e.g. ``"61 %"``."""
-    return f"{100 * share:.{decimals}f} %"
+def changed(share: float, decimals: int = 1) -> str:
+    """A relative change as a person reads it, always with its sign, e.g. ``"−4.1 %"``."""
+    return f"{'−' if share < 0 else '+'}{si.percent(abs(share), decimals)}"
 
 
 def span(low: float, high: float) -> str:
@@ -67,10 +70,12 @@ def micro(text: str) -> str:
 
 
 def printable(text: str) -> str:
-    """A user's text in one line without control characters (a terminal would obey them)."""
-    return " ".join(
+    """A text in one line without control characters (a terminal would obey them), its units and
+    signs as everywhere: "2 um" is 2 µm, -3 is −3."""
+    line = " ".join(
         "".join(" " if unicodedata.category(c) in ("Cc", "Cf", "Cs") else c for c in text).split()
     )
+    return _MINUS.sub("−", _TYPED_MICRO.sub("µ", line))
 
 
 def display_values(display: Display) -> list[Value]:

@@ -325,7 +325,8 @@ def svg(figure: Figure, prefix: str, label: str) -> str:
     stream = io.StringIO()
     with rc():
         # `savefig` draws all of it twice, the first time for the layout alone, which drawing does.
-        FigureCanvasSVG(figure).print_svg(stream, metadata={"Date": None})
+        canvas: Any = FigureCanvasSVG(figure)
+        canvas.print_svg(stream, metadata={"Date": None})
     text = stream.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)

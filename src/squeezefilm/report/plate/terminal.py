@@ -12,7 +12,7 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
 from squeezefilm.report.display.rows import Row, heat_rows, sound_rows
-from squeezefilm.report.kit.numbers import HZ, PER_VOLT, A, M, V, shown
+from squeezefilm.report.kit.numbers import HZ, PER_VOLT, A, M, V, changed, shown
 from squeezefilm.report.kit.terminal import heading, show_rows, table
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
     if a.tooth_height > 0:
         low, high = fit.frequency_bounds
         said.append(
-            f"Teeth: an equivalent layer of {a.tooth_fill:.0%} metal ({a.tooth_model}). Between "
+            f"Teeth: an equivalent layer of {si.percent(a.tooth_fill)} metal ({a.tooth_model}). Between "
             f"teeth without hoop stiffness and teeth as stiff as their share of metal, this body "
             f"lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to 13 % of "
             "the way up."
@@ -191,7 +191,7 @@ def _theory_rows(result: PlateAnalysis) -> list[Row]:
     """The working mode's frequency by simpler theories."""
     theories = ("Timoshenko beam", result.beam_frequency), ("shear plate", result.shear_frequency)
     return [
-        (f"As a {name}", shown(found, HZ, 5), f"{found / result.working.frequency - 1:+.1%}")
+        (f"As a {name}", shown(found, HZ, 5), changed(found / result.working.frequency - 1))
         for name, found in theories
         if found is not None
     ]
@@ -204,8 +204,8 @@ def change_rows(changes: SensitivityTable) -> list[tuple[str, str, str, str, str
             row.name,
             row.change,
             shown(row.frequency, HZ, 5),
-            f"{row.frequency_shift:+.2%}",
-            "–" if row.amplitude_shift is None else f"{row.amplitude_shift:+.1%}",
+            changed(row.frequency_shift, 2),
+            "–" if row.amplitude_shift is None else changed(row.amplitude_shift),
         )
         for row in changes.rows
     ]
