@@ -107,9 +107,10 @@ def friction_curve(prediction: Prediction, surface: Surface, model: FrictionMode
     zero = _reached(law, 0.0)
     # Room for where the paper's finger floats; a solved one may never float.
     top = max(10e-6, 1.25 * p.vibration_amplitude, 1.1 * min(zero or 0.0, 15e-6))
-    # Denser at small amplitudes, where most of the friction goes.
-    points = 201 if law.kind.film == "asymptote" else 51
-    amplitude = top * np.linspace(0.0, 1.0, points) ** 1.5
+    amplitude = np.linspace(0.0, top, 201)
+    if law.kind.film != "asymptote":
+        # Dear points lie denser at small amplitudes, where most of the friction goes.
+        amplitude = top * np.linspace(0.0, 1.0, 51) ** 1.5
     return FrictionCurve(
         surface=surface.name,
         roughness=surface.roughness,

@@ -209,6 +209,7 @@ def _() -> ClaimValue:
     )
     return ClaimValue(
         tuple(value for one in both for value in one.relative_friction),
-        note=f"with {si.percent(LEVEL)} intervals, {said}; the intervals hold what the last digit of "
-        "the fitted number and the ratio of amplitude to decay length leave open, and no other doubt",
+        note=f"with {si.percent(LEVEL)} intervals, {said}; the intervals hold what the last digit "
+        "of the fitted number and the ratio of amplitude to decay length leave open, and no other "
+        "doubt",
     )

@@ -69,7 +69,7 @@ def vibration_rows(p: Prediction) -> list[Row]:
     per_volt = shown(mode.amplitude_per_volt, PER_VOLT)
     drive, made = ("Drive", "none", f"amplitude given, at {at}"), "zero-to-peak, at antinodes"
     if p.voltage is not None:
-        drive = ("Drive", shown(p.voltage, V), f"zero-to-peak, at {at}")
+        drive = ("Drive", shown(p.voltage, V), f"peak, at {at}")
         made = f"{per_volt} × {shown(p.voltage, V)}, at antinodes"
         if off:
             made = f"at antinodes; at the resonance {per_volt}"
@@ -103,7 +103,7 @@ def friction_rows(analysis: Analysis) -> list[Row]:
     reached = _reached(analysis.own_curve.amplitude_for_criterion)
     return [
         ("Relative friction µ′/µ", f"{p.relative_friction:.2f}", said),
-        ("Surface", shown(p.surface.roughness, M), f"rough: {name}; finger of {finger}"),
+        ("Surface roughness", shown(p.surface.roughness, M), f"{name}; finger {finger}"),
         ("Amplitude for µ′/µ = 0.7", reached, "as the paper asks, under the finger"),
     ]
 
@@ -130,7 +130,7 @@ def _grating(analysis: Analysis, at: int) -> Row:
     return (
         f"Finest grating at {shown(float(table.speeds[at]), SPEED)}",
         shown(float(table.finest_period[at]), M, 3),
-        f"keeps {si.percent(table.kept)} of its swing, {left}",
+        f"{si.percent(table.kept)} of its swing, {left} kept",
     )
 
 
@@ -171,12 +171,12 @@ def heat_rows(heat: Warming | None) -> list[Row]:
         (
             "Temperature rise",
             signed(follows.temperature_rise, KELVIN),
-            f"if the drive follows; {signed(stays.temperature_rise, KELVIN)} {at}",
+            f"if the drive follows; {signed(stays.temperature_rise, KELVIN)} if fixed",
         ),
         (
             "Drift of the resonance",
             signed(follows.resonance_drift, HZ),
-            f"{signed(stays.resonance_drift, HZ)} {at}; half-bandwidth "
+            f"{signed(stays.resonance_drift, HZ)} if fixed; half-bandwidth "
             f"{shown(heat.half_bandwidth, HZ, 3)}",
         ),
         (
@@ -217,7 +217,7 @@ def _sound_rows(analysis: Analysis) -> list[Row]:
     if analysis.sound is None:
         said = "no face was solved here; squeezefilm plate solves plates, discs and stators"
         return [("Sound", "not known", said)]
-    return sound_rows(analysis.sound, "loudest direction, driven without pause")
+    return sound_rows(analysis.sound, "loudest direction")
 
 
 def more_rows(analysis: Analysis) -> list[Row]:

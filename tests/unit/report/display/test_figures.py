@@ -21,31 +21,32 @@ from squeezefilm.report.kit import style
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = (
-    "layout", "mode", "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
-    "fidelity", "compensation", "survival",
+    "layout", "mode", "response", "band", "chain", "films", "pressure", "friction", "wavelength",
+    "texture", "fidelity", "compensation", "survival",
 )  # fmt: skip
 # The odd displays, each with the figures that its oddness can spoil.
 ODD = {
     "one-ceramic": ("layout", "mode", "response", "films"),
-    "hostile-names": ("layout", "friction", "wavelength"),
+    "hostile-names": ("layout", "band", "friction", "wavelength"),
     "no-voltage": (
         "mode",
         "response",
         "pressure",
         "friction",
+        "band",
         "chain",
         "films",
         "texture",
         "fidelity",
     ),
-    "floating": ("pressure", "friction", "wavelength", "texture"),
+    "floating": ("pressure", "band", "friction", "wavelength", "texture"),
     "off-resonance": ("response",),
     "not-driven": ("mode", "response", "friction"),
     "amplitude-given": ("response", "friction"),
     "many-nodes": ("layout", "mode"),
     "square": ("layout",),
     "smooth-finger": ("pressure",),
-    "five-surfaces": ("friction",),
+    "five-surfaces": ("friction", "band"),
     "small-ring": ("layout", "mode", "films"),
     "printed-model": ("pressure", "friction", "texture"),
 }

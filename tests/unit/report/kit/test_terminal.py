@@ -27,45 +27,6 @@ def printed(capsys: pytest.CaptureFixture[str]) -> str:
     return captured.out
 
 
-def test_analysis_at_80_columns(
-    plate_analysis: Analysis, capsys: pytest.CaptureFixture[str]
-) -> None:
-    terminal.show_analysis(plate_analysis)
-    text = printed(capsys)
-    for part in (
-        "33.58 kHz",
-        "Finger speed                 80 mm/s",
-        "(8,0), solved to ± ",
-        shown(plate_analysis.prediction.vibration_amplitude, Unit("m")),
-        f"{plate_analysis.prediction.relative_friction:.3f}",
-        "piezoelectric_solid_3d",
-        "timoshenko_beam_plane_strain",
-        "shear_plate",
-        "paper2008",
-        "film-open",
-    ):
-        assert part in text
-    words = " ".join(text.split())
-    for finding in plate_analysis.verdict:
-        assert f"{finding.kind} {finding.text[:40]}" in words
-    assert "contradict each other" in words
-    assert words.count("carries the finger at a mean gap") == 1
-
-
-def test_hostile_names_are_printed_and_not_obeyed(
-    hostile_analysis: Analysis, capsys: pytest.CaptureFixture[str]
-) -> None:
-    terminal.show_analysis(hostile_analysis)
-    text = printed(capsys)
-    assert "[bold]" in text
-    assert "\u202e" not in text
-
-
-def test_a_display_without_texture(analysis_of: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.show_analysis(analysis_of("no-voltage"))
-    assert "Finest grating" not in printed(capsys)
-
-
 def test_presets_are_listed_with_what_is_assumed(capsys: pytest.CaptureFixture[str]) -> None:
     listing = terminal.preset_list()
     by_name = {item["name"]: item for item in listing}
@@ -112,16 +73,6 @@ def test_values_of_what_cannot_be_loaded_are_refused() -> None:
 def test_paths_of_the_report_are_those_of_the_listing(plate_analysis: Analysis) -> None:
     written = {item["path"] for item in terminal.display_values("biet2008-plate")}
     assert written <= {value.path for value in display_values(plate_analysis.display)}
-
-
-def test_what_a_model_misses_is_said(capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.show_missed(terminal.plain_console(), "partial-levitation")
-    text = printed(capsys)
-    assert "What measurements say and 'partial-levitation' does not" in text
-    assert "the faster the finger slides" in " ".join(text.split())
-    assert "In the model" not in text
-    terminal.show_missed(terminal.plain_console(), "film-smooth")
-    assert "were not asked of the model 'film-smooth'" in printed(capsys)
 
 
 def test_progress_is_plain_lines_where_no_terminal_is(capsys: pytest.CaptureFixture[str]) -> None:
