@@ -223,8 +223,8 @@ def refusal_words(refused: Refusals) -> str:
     return (
         f"{refused.sentence}. An interval of the other draws would leave these out in silence, so "
         f"above {si.percent(MOST_REFUSED)} there is none. The first one says: {refused.example}. "
-        "Press less or vibrate less, give measured values with their narrower ranges, or ask for one law "
-        'by evidence = "measured"'
+        "Press less or vibrate less, give measured values with their narrower ranges, or ask for "
+        'one law by evidence = "measured"'
     )
 
 

@@ -173,8 +173,8 @@ def _teeth(display: Display, prediction: Prediction) -> ToothResult | None:
         continuous=found.continuous,
         toothed=found.toothed,
         ratio=found.ratio,
-        sentence=f"Teeth change the over-pressure under open ridges to {si.percent(found.ratio)} of "
-        f"that of a continuous surface: they {matters}, and the paper assumes that they do not "
+        sentence=f"Teeth change the over-pressure under open ridges to {si.percent(found.ratio)} "
+        f"of that of a continuous surface: they {matters}, and the paper assumes that they do not "
         "(the tooth's dimensions are assumed).",
     )
 

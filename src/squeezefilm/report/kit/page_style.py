@@ -63,7 +63,7 @@ th {{ font-weight: 600; }}
 .mark {{ font-weight: 700; }}
 code {{ font-family: ui-monospace, "DejaVu Sans Mono", monospace; font-size: .9em; }}
 footer {{ font-size: .9rem; padding-bottom: 2rem; }}
-@media (max-width: 48rem) {{ ul.verdict li {{ display: block; }} }}
+@media (max-width: 48rem) {{ ul.verdict li, ul.verdict b {{ display: block; }} }}
 @media print {{
   body {{ font-size: 10.5pt; }}
   section {{ border: 0; padding: 0; margin: 0 0 1.2rem; }}
