@@ -89,8 +89,8 @@ def friction_verdict(p: Prediction, unsure: UncertainFriction | None, why_not: s
     noticed = 1 - NOTICED_DIFFERENCE
     text = (
         f"µ′/µ is below {asked}, with probability "
-        f"{_probability(unsure.probability_below(PAPER_CRITERION))} ({si.percent(unsure.level)} interval "
-        f"{low:.2f}–{high:.2f}, median {unsure.median:.2f}; {unsure.nominal:.2f} as described at "
+        f"{_probability(unsure.probability_below(PAPER_CRITERION))} "
+        f"({si.percent(unsure.level)} interval {low:.2f}–{high:.2f}, median {unsure.median:.2f}; {unsure.nominal:.2f} as described at "
         f"{amplitude}); below {noticed:.2f}, where people notice it, with probability "
         f"{_probability(unsure.probability_below(noticed))}."
     )

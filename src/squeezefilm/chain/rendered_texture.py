@@ -136,9 +136,11 @@ class RenderAnalysis(Result):
     _table = columns
 
     def skin_vibration(self, harmonics: int = 5) -> SkinVibration:
-        """Spectra of the skin in the settled part of the first pass, with the texture's lines. Raises
-        `InputError` for another motion than a stroke, a texture without a single period along it, or
-        a pass with fewer than two periods after the start has settled."""
+        """Spectra of the skin in the settled part of the first pass, with the texture's lines.
+
+        Raises `InputError` for another motion than a stroke, a texture without a single period
+        along it, or a pass with fewer than two periods after the start has settled.
+        """
         period = self.played.spatial_period
         if period is None or not isinstance(self.motion, Stroke):
             raise InputError("a spectrum needs a grating of one period under a stroke along x")

@@ -221,8 +221,8 @@ def _refuse(rows: si.FloatArray, amplitude: si.FloatArray, pressure: si.FloatArr
     if status == kernel.PRESSED_THROUGH:
         raise OutOfRangeError(
             f"{asked} is pressed through its asperities: gas and asperities do not carry it at a "
-            f"gap closed by {si.percent(DEEPEST_EXCURSION, 1)} of its mean, or closed altogether. Press less, "
-            "vibrate less, or take asperities that carry more"
+            f"gap closed by {si.percent(DEEPEST_EXCURSION, 1)} of its mean, or closed altogether. "
+            "Press less, vibrate less, or take asperities that carry more"
         )
     if status == kernel.OUT_OF_TABLE:
         raise OutOfRangeError(

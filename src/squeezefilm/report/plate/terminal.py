@@ -101,8 +101,8 @@ def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
     if a.tooth_height > 0:
         low, high = fit.frequency_bounds
         said.append(
-            f"Teeth: an equivalent layer of {si.percent(a.tooth_fill)} metal ({a.tooth_model}). Between "
-            f"teeth without hoop stiffness and teeth as stiff as their share of metal, this body "
+            f"Teeth: an equivalent layer of {si.percent(a.tooth_fill)} metal ({a.tooth_model}). "
+            f"Between teeth without hoop stiffness and teeth as stiff as their share of metal, this body "
             f"lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to 13 % of "
             "the way up."
         )

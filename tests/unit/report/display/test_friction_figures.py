@@ -23,7 +23,8 @@ from squeezefilm.report.kit.style import BAND, INK, MUTED
 AMPLITUDE = "vibration amplitude, zero-to-peak (µm)"
 GRID = np.linspace(0, 10e-6, 11)
 POINT = SimpleNamespace(
-    normal_force=0.5, speed=0.08, vibration_amplitude=2e-6, relative_friction=0.8125, model="paper2008",
+    normal_force=0.5, speed=0.08, vibration_amplitude=2e-6, relative_friction=0.8125,
+    model="paper2008",
     surface=SimpleNamespace(name="polished"), frequency=40e3,
     mode=SimpleNamespace(half_wavelength=10e-3),
 )  # fmt: skip
@@ -65,7 +66,9 @@ FILMS = SimpleNamespace(
         SimpleNamespace(model="film-plateau", load_share=np.nan, relative_friction=np.nan),
     ),
     curves=tuple(
-        SimpleNamespace(model=model, amplitude=top * (GRID + 1e-7), load_share=share * (GRID + 1e-7) / 1e-5)
+        SimpleNamespace(
+            model=model, amplitude=top * (GRID + 1e-7), load_share=share * (GRID + 1e-7) / 1e-5
+        )
         for model, top, share in (
             ("paper2008", 0.4, 2.0), ("film-smooth", 0.5, 0.01), ("film-plateau", 0.3, 1.0),
         )

@@ -34,8 +34,8 @@ def test_changes_have_their_sign_and_shares_their_space() -> None:
         ("a gap of 2.29 um at 3 us", "a gap of 2.29 µm at 3 µs"),
         ("drifts by -248 Hz (-0.5)", "drifts by −248 Hz (−0.5)"),
         # What is no unit and no sign stays.
-        ("P1-91, 2026-11-23, 1e-05, 5 umbrellas, --all -x", "P1-91, 2026-11-23, 1e-05, 5 umbrellas, "
-         "--all -x"),
+        ("P1-91, 2026-11-23, 1e-05, --all", "P1-91, 2026-11-23, 1e-05, --all"),
+        ("5 umbrellas, -x", "5 umbrellas, -x"),
         ("10.1063/1.13-2 1/-3", "10.1063/1.13-2 1/-3"),
     ],
 )  # fmt: skip
