@@ -90,7 +90,8 @@ layers: $(VENV)/test.stamp  ## who may import whom
 gallery: $(VENV)/run.stamp  ## draw the preset textures for the documentation
 	@$(BIN)/python -m squeezefilm.report.textures.gallery
 
-docs: $(VENV)/test.stamp  ## build the documentation, strictly
+docs: $(VENV)/test.stamp  ## build the documentation, strictly, with examples run and drawn
+	@rm -rf docs/examples
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 bench: $(VENV)/test.stamp  ## measure speed against peers, as ratios

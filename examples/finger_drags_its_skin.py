@@ -1,4 +1,9 @@
-"""A square grating under a finger whose skin has a mass: its force, and how the skin vibrates."""
+"""# A finger drags its skin
+
+A square grating under a finger whose skin has a mass: its force, and how the skin vibrates.
+"""
+
+import matplotlib.pyplot as plt
 
 import squeezefilm as sf
 
@@ -21,6 +26,11 @@ def main() -> dict[str, float]:
     }
     for name, value in result.items():
         print(f"{name}: {value:.4g}")
+    figure, axes = plt.subplots(figsize=(7, 3), layout="constrained")
+    axes.plot(motion.time * 1e3, motion.bone_force)
+    axes.set(xlim=(0, 60), xlabel="time (ms)", ylabel="tangential force on the bone (N)")
+    figure.savefig("finger_drags_its_skin.png")
+    plt.close(figure)
     return result
 
 

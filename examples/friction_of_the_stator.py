@@ -1,4 +1,7 @@
-"""The paper's main numbers: how slippery the stator gets, and why not to believe it blindly."""
+"""# Friction of the stator
+
+The paper's main numbers: how slippery the stator gets, and why not to believe it blindly.
+"""
 
 import squeezefilm as sf
 
@@ -10,6 +13,7 @@ def main() -> dict[str, float]:
     print(f"levitation at      {zero * 1e6:.2f} um")
     for check in p.validity.failed:
         print(f"but: {check.sentence}")
+    sf.plot(p).savefig("friction_of_the_stator.png")
     return {"relative_friction": p.relative_friction, "zero_friction_amplitude": zero}
 
 

@@ -1,4 +1,7 @@
-"""The least drop of friction that a (simulated) person tells from none, in two intervals."""
+"""# A threshold of friction
+
+The least drop of friction that a (simulated) person tells from none, in two intervals.
+"""
 
 import json
 from statistics import NormalDist
@@ -40,6 +43,7 @@ def main() -> dict[str, float]:
     low, high = fit.posterior_interval["threshold"]
     d_prime = 2**0.5 * NormalDist().inv_cdf(float(fit.function(threshold)))
     print(f"d' at the threshold is {d_prime:.2f}")
+    sf.plot(fit).savefig("friction_threshold.png")
     return {"threshold": threshold, "low": low, "high": high, "d_prime": d_prime}
 
 

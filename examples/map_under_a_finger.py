@@ -1,4 +1,7 @@
-"""A map drawn in NumPy, saved as PNG and TOML, felt along a slanted stroke on a display."""
+"""# A map under a finger
+
+A map drawn in NumPy, saved as PNG and TOML, felt along a slanted stroke on a display.
+"""
 
 import tempfile
 from pathlib import Path
@@ -28,6 +31,7 @@ def main() -> dict[str, float]:
         Image.fromarray(np.uint8(255 * rings)).save(Path(folder) / "rings.png")
         (Path(folder) / "rings.toml").write_text(TOML)
         texture = sf.load_texture(Path(folder) / "rings.toml")
+        sf.plot(texture).savefig("map_under_a_finger.png")
         for compensation in ("none", "inverse"):
             result = sf.render_texture(
                 "winfield2007-tpad", texture, STROKE, compensation=compensation

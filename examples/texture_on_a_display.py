@@ -1,4 +1,7 @@
-"""A texture of friction, composed, written to a file, and rendered on the paper's plate."""
+"""# A texture of your own
+
+A texture of friction, composed, written to a file, and rendered on the paper's plate.
+"""
 
 import tempfile
 from pathlib import Path
@@ -28,6 +31,7 @@ def main() -> dict[str, float]:
     # The plate's wave is weaker off its antinodes; making up for it costs amplitude.
     evened = sf.render_texture("biet2008-plate", texture, "80 mm/s over 4 cm", wave="compensated")
     print(f"with the wave made up for, {evened.counters.saturated} ticks want more than there is")
+    sf.plot(played).savefig("texture_on_a_display.png")
     return {
         "least_friction": least,
         "inverse_error": p.inverse.max_error,

@@ -1,4 +1,4 @@
-"""Every example runs, is at most 60 lines, and gives the number it is there to show."""
+"""Every example runs, is at most 60 lines, draws, and gives the number it is there to show."""
 
 import importlib.util
 import math
@@ -87,7 +87,32 @@ def _friction_threshold(result: Any) -> None:
     assert result["d_prime"] == pytest.approx(math.sqrt(2) * 0.6745, abs=0.1)
 
 
+def _film_under_a_wave(result: Any) -> None:
+    # What leaks at the edges carries less than what cannot; a wave moves less of the film.
+    assert 0 < result["bent"] < result["flat"] < result["limit"]
+    assert result["flat"] > result["limit"] / 2
+
+
+def _how_sure_is_the_friction(result: Any) -> None:
+    low, high = result["interval"]
+    assert 0 <= low < result["median"] < high <= 1
+    assert low < result["nominal"] < high
+
+
+def _glass_and_metal(result: Any) -> None:
+    assert result["biet2008-plate"] == pytest.approx(33.574e3, rel=1e-3)
+    assert 20e3 < result["winfield2007-tpad"] < 30e3
+
+
+def _simulated_study(result: Any) -> None:
+    assert result["chance"] < result["correct"] < 1
+
+
 CHECKS = {
+    "film_under_a_wave": _film_under_a_wave,
+    "how_sure_is_the_friction": _how_sure_is_the_friction,
+    "glass_and_metal": _glass_and_metal,
+    "simulated_study": _simulated_study,
     "friction_threshold": _friction_threshold,
     "map_under_a_finger": _map_under_a_finger,
     "friction_of_the_stator": _friction_of_the_stator,
@@ -112,7 +137,14 @@ def test_an_example_has_one_import_of_ours(name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(CHECKS))
-def test_example(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_example(
+    name: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
     assert len((EXAMPLES / f"{name}.py").read_text().splitlines()) <= 60
     CHECKS[name](_load(name).main())
     assert capsys.readouterr().out
+    assert list(tmp_path.glob("*.png"))

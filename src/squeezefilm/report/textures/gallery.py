@@ -64,8 +64,10 @@ def gallery_files() -> dict[str, bytes]:
     parts = [
         "# Gallery of textures\n",
         "The textures that come with the package, for `squeezefilm render NAME --display …`, each",
-        "from above and along the dashed line. [Textures](reference/textures.md) says what they are made of,",
-        "[Describe](reference/describe.md) how to write your own. Page and pictures: `make gallery`.\n",
+        "from above and along the dashed line. [Textures](reference/textures.md) says what they "
+        "are made of,",
+        "[Describe](reference/describe.md) how to write your own. Page and pictures: "
+        "`make gallery`.\n",
     ]
     for name in presets.texture_names():
         texture = load_texture(name)
