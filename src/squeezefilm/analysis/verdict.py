@@ -90,8 +90,9 @@ def friction_verdict(p: Prediction, unsure: UncertainFriction | None, why_not: s
     text = (
         f"µ′/µ is below {asked}, with probability "
         f"{_probability(unsure.probability_below(PAPER_CRITERION))} "
-        f"({si.percent(unsure.level)} interval {low:.2f}–{high:.2f}, median {unsure.median:.2f}; {unsure.nominal:.2f} as described at "
-        f"{amplitude}); below {noticed:.2f}, where people notice it, with probability "
+        f"({si.percent(unsure.level)} interval {low:.2f}–{high:.2f}, median {unsure.median:.2f}; "
+        f"{unsure.nominal:.2f} as described at {amplitude}); "
+        f"below {noticed:.2f}, where people notice it, with probability "
         f"{_probability(unsure.probability_below(noticed))}."
     )
     if high < PAPER_CRITERION:

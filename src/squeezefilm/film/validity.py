@@ -210,8 +210,8 @@ def _slip(knudsen: float, where: str, mean_free_path: float) -> ValidityCheck:
 def _asymptote(sigma: float, fraction: float) -> ValidityCheck:
     sentence = (
         f"Squeeze number {sigma:.4g}: a smooth film has {si.percent(fraction)} of the "
-        f"over-pressure that σ → ∞ promises; 90 % takes σ ≥ {ASYMPTOTE_SQUEEZE_NUMBER:.0f}, and the paper's "
-        "criterion σ ≥ 10 gives 41 %."
+        f"over-pressure that σ → ∞ promises; 90 % takes σ ≥ {ASYMPTOTE_SQUEEZE_NUMBER:.0f}, and "
+        "the paper's criterion σ ≥ 10 gives 41 %."
     )
     return ValidityCheck("asymptote", sigma, ASYMPTOTE_SQUEEZE_NUMBER, None, sentence)
 

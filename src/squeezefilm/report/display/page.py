@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.report.display.model_rows import (
+from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
+from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.report.kit.model_rows import (
     MISSED_HEADING,
     film_rows,
     group_words,
@@ -21,8 +23,6 @@ from squeezefilm.report.display.model_rows import (
     theory_rows,
     weight_rows,
 )
-from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
-from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import display_values, printable
 from squeezefilm.report.kit.page_style import (
     FigureOf,

@@ -19,19 +19,15 @@ from squeezefilm.report.kit.numbers import (
     W,
     printable,
     shown,
-    signed,
     span,
 )
+from squeezefilm.report.kit.point_rows import Row, heat_rows, reduction_row, sound_rows
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.chain.prediction import Prediction
-    from squeezefilm.plate.heat.warming import Warming
-    from squeezefilm.plate.sound import SoundField
     from squeezefilm.plate.working_mode import WorkingMode
 
-Row = tuple[str, str, str]
-KELVIN = si.Unit("K")
 
 _EXPLORING: si.MetrePerSecond = 0.1
 
@@ -155,64 +151,6 @@ def _within(range_of: si.HertzArray, frequency: si.Hertz) -> bool:
     return bool(range_of[0] <= frequency <= range_of[-1])
 
 
-def heat_rows(heat: Warming | None) -> list[Row]:
-    """Temperature, drift and amplitude of the warm plate: quantity, value, remark."""
-    if heat is None:
-        return [("Temperature rise", "not known", "nor is the power that the plate loses")]
-    follows, stays = heat.tracked, heat.fixed
-    at = f"at a fixed {shown(heat.frequency, HZ)}"
-    fallen = (
-        "a tenth is never gone"
-        if heat.time_to_fall is None
-        else f"a tenth is gone after {shown(heat.time_to_fall, S, 2)}"
-    )
-    resistance = si.format_quantity(heat.thermal_resistance, si.Unit("K/W"), 3)
-    return [
-        (
-            "Temperature rise",
-            signed(follows.temperature_rise, KELVIN),
-            f"if the drive follows; {signed(stays.temperature_rise, KELVIN)} if fixed",
-        ),
-        (
-            "Drift of the resonance",
-            signed(follows.resonance_drift, HZ),
-            f"{signed(stays.resonance_drift, HZ)} if fixed; half-bandwidth "
-            f"{shown(heat.half_bandwidth, HZ, 3)}",
-        ),
-        (
-            "Amplitude warm",
-            shown(follows.amplitude, M, 3),
-            "if the drive follows the resonance, without a finger",
-        ),
-        (
-            "",
-            shown(stays.amplitude, M, 3),
-            f"{at}, of {shown(heat.cold_amplitude, M, 3)} cold; {fallen}",
-        ),
-        (
-            "Thermal resistance",
-            resistance,
-            f"time constant {shown(heat.thermal_time, S, 2)}; assumed: " + "; ".join(heat.assumed),
-        ),
-    ]
-
-
-def sound_rows(sound: SoundField, direction: str) -> list[Row]:
-    """Sound pressure levels by distance; `direction` says where they are loudest."""
-    guidance = sound.guidance
-    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
-    return [
-        (
-            f"Sound at {distance:g} m",
-            f"{level:.0f} dB",
-            f"{direction}; {limit}" if number == 0 else "",
-        )
-        for number, (distance, level) in enumerate(
-            zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
-        )
-    ]
-
-
 def _sound_rows(analysis: Analysis) -> list[Row]:
     if analysis.sound is None:
         said = "no face was solved here; squeezefilm plate solves plates, discs and stators"
@@ -235,17 +173,6 @@ def more_rows(analysis: Analysis) -> list[Row]:
     if analysis.fidelity is not None:
         rows += [_grating(analysis, at) for at in range(len(analysis.fidelity.speeds))]
     return rows + (heat_rows(p.heat)[2:] if p.voltage else [])
-
-
-def speed_row(p: Prediction) -> Row:
-    """The finger's speed that the friction is for: quantity, value, remark."""
-    return "Finger speed", shown(p.speed, SPEED), "of sliding"
-
-
-def reduction_row(p: Prediction) -> Row:
-    """What vibration takes away of the friction."""
-    reduction, coefficient = f"{p.friction_reduction:.3f}", f"{p.friction_coefficient:.3g}"
-    return "Friction reduction µ − µ′", reduction, f"of µ = {coefficient}"
 
 
 def unsaid_warnings(analysis: Analysis) -> list[str]:

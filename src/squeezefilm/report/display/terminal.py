@@ -4,15 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squeezefilm.report.display.model_rows import (
-    MISSED_HEADING,
-    film_rows,
-    missed_directions,
-    models,
-    theory_rows,
-)
 from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
-from squeezefilm.report.kit.terminal import bullets, heading, plain_console, table
+from squeezefilm.report.kit.model_rows import film_rows, models, theory_rows
+from squeezefilm.report.kit.terminal import bullets, heading, plain_console, show_missed, table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -77,9 +71,3 @@ def _show_models(console: Console, analysis: Analysis) -> None:
         table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
         console.print()
         _findings(console, analysis.film_findings)
-
-
-def show_missed(console: Console, model: str) -> None:
-    """Print what measurements say and a friction model does not."""
-    heading(console, MISSED_HEADING.format(model))
-    bullets(console, [("–", text, "yellow") for text in missed_directions(model)])

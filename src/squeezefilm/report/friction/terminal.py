@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
-from squeezefilm.report.display.model_rows import group_words, influence_rows, weight_rows
-from squeezefilm.report.display.rows import heat_rows, reduction_row, speed_row
-from squeezefilm.report.display.terminal import show_missed
 from squeezefilm.report.friction.told_apart import show_told_apart
+from squeezefilm.report.kit.model_rows import group_words, influence_rows, weight_rows
 from squeezefilm.report.kit.numbers import HZ, M, N, V, shown
-from squeezefilm.report.kit.terminal import heading, plain_console, table
+from squeezefilm.report.kit.point_rows import heat_rows, reduction_row, speed_row
+from squeezefilm.report.kit.terminal import heading, plain_console, show_missed, table
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.friction.command import FrictionAnalysis

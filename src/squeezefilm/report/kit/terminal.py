@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from squeezefilm.report.kit.model_rows import MISSED_HEADING, missed_directions
 from squeezefilm.report.kit.numbers import dotted, micro, printable
 
 if TYPE_CHECKING:
@@ -111,6 +112,12 @@ def bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
     for word, text, style in items:
         grid.add_row(Text(printable(word), style=style), Text(printable(text)))
     console.print(grid)
+
+
+def show_missed(console: Console, model: str) -> None:
+    """Print what measurements say and a friction model does not."""
+    heading(console, MISSED_HEADING.format(model))
+    bullets(console, [("–", text, "yellow") for text in missed_directions(model)])
 
 
 def preset_list() -> list[dict[str, Any]]:

@@ -11,8 +11,8 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
-from squeezefilm.report.display.rows import Row, heat_rows, sound_rows
 from squeezefilm.report.kit.numbers import HZ, PER_VOLT, A, M, V, changed, shown
+from squeezefilm.report.kit.point_rows import Row, heat_rows, sound_rows
 from squeezefilm.report.kit.terminal import heading, show_rows, table
 
 if TYPE_CHECKING:
@@ -102,9 +102,9 @@ def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
         low, high = fit.frequency_bounds
         said.append(
             f"Teeth: an equivalent layer of {si.percent(a.tooth_fill)} metal ({a.tooth_model}). "
-            f"Between teeth without hoop stiffness and teeth as stiff as their share of metal, this body "
-            f"lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to 13 % of "
-            "the way up."
+            f"Between teeth without hoop stiffness and teeth as stiff as their share of metal, "
+            f"this body lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to "
+            "13 % of the way up."
         )
     said.append(
         f"Assumed: {a.metal.name}, {a.ceramic.name} of {shown(a.ceramic_thickness, M)}, teeth of "

@@ -12,10 +12,10 @@ from tests.unit.report.made_results import WARM
 from squeezefilm.report.display.rows import (
     decision_rows,
     electrical_rows,
-    heat_rows,
     unsaid_warnings,
     vibration_rows,
 )
+from squeezefilm.report.kit.point_rows import heat_rows
 
 
 def response(**changes: Any) -> Any:

@@ -10,7 +10,6 @@ from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.report.display import terminal
 from squeezefilm.report.display.rows import decision_rows, unsaid_warnings
 from squeezefilm.report.kit.numbers import printable
-from squeezefilm.report.kit.terminal import plain_console
 
 LINES, COLUMNS = 50, 80
 
@@ -82,13 +81,3 @@ def test_a_display_without_texture(analysis_of: Any, capsys: pytest.CaptureFixtu
     text = printed(capsys)
     assert "Finest grating" not in text
     assert "Sound" not in text
-
-
-def test_what_a_model_misses_is_said(capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.show_missed(plain_console(), "partial-levitation")
-    text = printed(capsys)
-    assert "What measurements say and 'partial-levitation' does not" in text
-    assert "the faster the finger slides" in " ".join(text.split())
-    assert "In the model" not in text
-    terminal.show_missed(plain_console(), "film-smooth")
-    assert "were not asked of the model 'film-smooth'" in printed(capsys)

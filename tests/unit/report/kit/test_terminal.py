@@ -75,6 +75,16 @@ def test_paths_of_the_report_are_those_of_the_listing(plate_analysis: Analysis) 
     assert written <= {value.path for value in display_values(plate_analysis.display)}
 
 
+def test_what_a_model_misses_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.show_missed(terminal.plain_console(), "partial-levitation")
+    text = printed(capsys)
+    assert "What measurements say and 'partial-levitation' does not" in text
+    assert "the faster the finger slides" in " ".join(text.split())
+    assert "In the model" not in text
+    terminal.show_missed(terminal.plain_console(), "film-smooth")
+    assert "were not asked of the model 'film-smooth'" in printed(capsys)
+
+
 def test_progress_is_plain_lines_where_no_terminal_is(capsys: pytest.CaptureFixture[str]) -> None:
     with terminal.progress(enabled=True) as step:
         step("film\x1b[2J")
