@@ -153,7 +153,7 @@ def test_the_response_says_when_the_drive_is_beside_it_or_in_vain(
 ) -> None:
     draw = FIGURES[2].draw
     off = analysis_of("off-resonance").prediction
-    share = off.vibration_amplitude / (15 * off.mode.amplitude_per_volt)
+    share = off.touch.free_amplitude / (15 * off.mode.amplitude_per_volt)
     assert 0.4 < share < 0.7
     said = f"{100 * share:.0f}\u00a0% of the motion"
     assert said in draw(analysis_of("off-resonance")).get_suptitle()
