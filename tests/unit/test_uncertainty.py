@@ -358,7 +358,7 @@ def test_refused_draws_are_counted_with_their_reason(made_up: Callable[..., Any]
     assert refused.reasons == Counter({"pressed through its asperities": 3})
     assert sum(refused.heights.values()) == 3
     assert refused.sentence.startswith(
-        "3 of 200 draws (1.5%) are refused: pressed through its asperities (3); by the law of"
+        "3 of 200 draws (1.5 %) are refused: pressed through its asperities (3); by the law of"
     )
     assert np.all(np.isfinite(found.samples))
     assert found.samples.size == found.amplitudes.size == 31
@@ -370,7 +370,7 @@ def test_refused_draws_are_counted_with_their_reason(made_up: Callable[..., Any]
 def test_above_two_per_cent_there_is_no_interval(
     stator: Display, point: Prediction, made_up: Callable[..., Any]
 ) -> None:
-    with pytest.raises(OutOfRangeError, match=r"5 of 200 draws \(2.5%\) are refused.*Press less"):
+    with pytest.raises(OutOfRangeError, match=r"5 of 200 draws \(2.5 %\) are refused.*Press less"):
         made_up(_refusing(48), samples=8)
 
 
@@ -390,9 +390,9 @@ def test_why_there_is_no_interval_is_said(
 def test_where_the_described_value_stands_is_said(made_up: Callable[..., Any]) -> None:
     found = made_up(lambda draw: draw.skin_compliance, samples=8)
     inside = dataclasses.replace(found, nominal=0.5)
-    assert inside.standing == "50% of the draws lie below the value as described"
+    assert inside.standing == "50 % of the draws lie below the value as described"
     outside = dataclasses.replace(found, nominal=2.0)
-    assert outside.standing.startswith("100% of the draws lie below")
+    assert outside.standing.startswith("100 % of the draws lie below")
     assert "outside of the interval" in outside.standing
 
 

@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from squeezefilm import quantities as si
 from squeezefilm.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.analysis.curves import (
@@ -44,10 +46,18 @@ from squeezefilm.analysis.textures import (
 )
 from squeezefilm.analysis.uncertainty import (
     SAMPLES,
+    FrictionBand,
     UncertainFriction,
+    friction_band,
     interval_or_reason,
 )
-from squeezefilm.analysis.verdict import Finding, ears_finding, unless_undriven, verdict
+from squeezefilm.analysis.verdict import (
+    Finding,
+    ears_finding,
+    film_findings,
+    unless_undriven,
+    verdict,
+)
 from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.pad_place import FacePlace
@@ -72,6 +82,15 @@ from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.results import Result, stamp, to_json
 
+BAND_POINTS, BAND_SAMPLES = 9, 64
+"""Amplitudes at which the band of the friction is computed, and draws at each."""
+
+BAND_REACH = 1.5
+"""How far the band goes, in vibration amplitudes: beyond, draws are pressed through."""
+
+# What these steps take (s), measured on the presets; a budget without room for one leaves it out.
+_INTERVAL, _FILMS = 6.0, 4.0
+
 
 @dataclass(frozen=True)
 class OtherModel:
@@ -86,33 +105,64 @@ class OtherModel:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Analysis(Result):
-    """Everything `squeezefilm analyze` knows of a display at one working point."""
+    """Everything `squeezefilm analyze` knows of a display at one working point.
+
+    Its fields are what one decides from. What stands beside it for comparison (other models, curves
+    of the paper, textures along a stroke) is a property, computed when it is first asked for.
+    """
 
     display: Display
     prediction: Prediction
     active_area: JudgedArea | None
     envelope_time_constant: si.Second
     envelope_bandwidth: si.Hertz
-    other_models: tuple[OtherModel, ...]
-    response: FrequencyResponse
-    pressure: tuple[PressureProfile, ...]
-    friction_curves: tuple[FrictionCurve, ...]
-    model_curves: tuple[ModelCurve, ...]
+    own_curve: FrictionCurve
     uncertainty: UncertainFriction | None
-    wavelength_curves: tuple[WavelengthCurve, ...]
-    film_models: FilmComparison | None
-    texture: FrictionTrace | None
     fidelity: FidelityTable | None
-    compensated: CompensatedGrating | None
-    survival: TextureSurvival | None
     verdict: tuple[Finding, ...]
     wanted: Wanted | None = None
     effort: Effort = "quick"
+    with_films: bool = True
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.frequency "
         "prediction.vibration_amplitude prediction.relative_friction uncertainty.interval "
         "envelope_time_constant"
     )
+
+    @functools.cached_property
+    def response(self) -> FrequencyResponse:
+        """The amplitude per volt around the working resonance, without a finger."""
+        return frequency_response(self.prediction)
+
+    @functools.cached_property
+    def own_curves(self) -> tuple[FrictionCurve, ...]:
+        """Friction against amplitude on each surface, by the model of the prediction."""
+        return tuple(
+            self.own_curve
+            if surface == self.prediction.surface
+            else friction_curve(self.prediction, surface, self.prediction.model)
+            for surface in self.display.surfaces
+        )
+
+    @functools.cached_property
+    def friction_curves(self) -> tuple[FrictionCurve, ...]:
+        """Friction against amplitude on each surface: by the paper's model (its Fig 5), then by
+        the prediction's own where that is another."""
+        if self.prediction.model == "paper2008":
+            return self.own_curves
+        papers = (
+            friction_curve(self.prediction, one, "paper2008") for one in self.display.surfaces
+        )
+        return (*papers, *self.own_curves)
+
+    @functools.cached_property
+    def band(self) -> FrictionBand | None:
+        """Where µ′/µ lies over the amplitude with all else uncertain; None where no interval is."""
+        if self.uncertainty is None:
+            return None
+        reach = BAND_REACH * self.prediction.vibration_amplitude
+        at = reach * np.linspace(0.0, 1.0, BAND_POINTS) ** 1.5
+        return friction_band(self.display, self.prediction, at, samples=BAND_SAMPLES)
 
     @functools.cached_property
     def ears(self) -> EarExposure | None:
@@ -145,6 +195,57 @@ class Analysis(Result):
         """What the plate asks of its amplifier; None where no admittance was solved."""
         p = self.prediction
         return load_of_mode(self.display.actuator, p.mode, p.voltage, p.frequency)
+
+    @functools.cached_property
+    def pressure(self) -> tuple[PressureProfile, ...]:
+        """The mean pressure along the contact, by the paper's asymptote and solved."""
+        return pressure_profiles(self.prediction)
+
+    @functools.cached_property
+    def model_curves(self) -> tuple[ModelCurve, ...]:
+        """Friction against amplitude by every model."""
+        return model_curves(self.prediction)
+
+    @functools.cached_property
+    def wavelength_curves(self) -> tuple[WavelengthCurve, ...]:
+        """Friction against amplitude at the paper's half wavelengths (its Fig 11)."""
+        return wavelength_curves(self.prediction)
+
+    @functools.cached_property
+    def film_models(self) -> FilmComparison | None:
+        """The film under the finger as each model reads it; None where nothing vibrates, or a
+        budget left no time for it."""
+        return compare_film_models(self.display, self.prediction) if self.with_films else None
+
+    @functools.cached_property
+    def film_findings(self) -> tuple[Finding, ...]:
+        """What the readings of the film amount to, in sentences."""
+        films = self.film_models
+        return () if films is None else tuple(film_findings(self.prediction, films))
+
+    @functools.cached_property
+    def other_models(self) -> tuple[OtherModel, ...]:
+        """The same plate by other theories."""
+        return tuple(_other_models(self.display, self.prediction))
+
+    @functools.cached_property
+    def texture(self) -> FrictionTrace | None:
+        """A stroke over a square grating; None where the amplitude changes no friction."""
+        return _texture(self.prediction, self.envelope_time_constant)
+
+    @functools.cached_property
+    def _compensation(self) -> tuple[CompensatedGrating | None, TextureSurvival | None]:
+        return _compensation(self.display, self.prediction)
+
+    @property
+    def compensated(self) -> CompensatedGrating | None:
+        """A fine grating through the resonator; None where no voltage makes an amplitude."""
+        return self._compensation[0]
+
+    @property
+    def survival(self) -> TextureSurvival | None:
+        """Which grating survives at which speed; None where no voltage makes an amplitude."""
+        return self._compensation[1]
 
     def finest_period(self) -> dict[str, float]:
         """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""
@@ -204,7 +305,7 @@ class Analysis(Result):
             },
             "other_models": to_json(self.other_models),
             "drive_electronics": to_json(self.drive_electronics),
-            "verdict": to_json((*self.verdict, self.ears_finding)),
+            "verdict": to_json((*self.verdict, self.ears_finding, *self.film_findings)),
             "provenance": stamp(self.display),
         }
 
@@ -276,10 +377,6 @@ def _intervals(unsure: UncertainFriction | None) -> dict[str, Any]:
     return {name: found[name] for name in names}
 
 
-# What these steps take (s), measured on the presets; a budget without room for one leaves it out.
-_INTERVAL, _FILMS = 6.0, 4.0
-
-
 def _what_follows(
     display: Display,
     prediction: Prediction,
@@ -287,59 +384,31 @@ def _what_follows(
     tell: SayProgress,
     deadline: Deadline | None,
 ) -> Analysis:
-    """All that an analysis says, from a prediction; what a deadline leaves no room for is left
-    out."""
+    """What one decides from, of a prediction; what a deadline leaves no room for is left out."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
     tell("friction over the active area")
     area = judged_area(display, prediction, active_area(display, prediction), samples=samples)
-    tell("frequency response")
-    response = frequency_response(prediction)
-    tell("pressure under the finger")
-    pressure = pressure_profiles(prediction)
     tell("friction against amplitude")
-    models: tuple[FrictionModel, ...] = ("paper2008",)
-    if prediction.model not in models:
-        models = (*models, prediction.model)
-    curves = tuple(
-        friction_curve(prediction, surface, model)
-        for model in models
-        for surface in display.surfaces
-    )
-    tell("friction by every model, and how sure it is")
-    by_model = model_curves(prediction)
+    own = friction_curve(prediction, prediction.surface, prediction.model)
+    tell("how sure the friction is")
     if deadline is None or deadline.allows(_INTERVAL):
         unsure, why_not = interval_or_reason(display, prediction, samples=samples)
     else:
         unsure, why_not = None, "the budget left no time for its interval"
-    tell("wavelength against amplitude")
-    wavelengths = wavelength_curves(prediction)
-    tell("the paper's film and solved films")
-    wide = deadline is None or deadline.allows(_FILMS)
-    films = compare_film_models(display, prediction) if wide else None
-    tell("textures")
-    trace, table = _textures(prediction, tau)
-    compensated, survival = _compensation(display, prediction)
     tell("verdict")
+    table = _fidelity(prediction, tau)
     return Analysis(
         display=display,
         prediction=prediction,
         active_area=area,
         envelope_time_constant=tau,
         envelope_bandwidth=float(envelope_bandwidth(mode.quality_factor, mode.resonance_frequency)),
-        other_models=tuple(_other_models(display, prediction)),
-        response=response,
-        pressure=pressure,
-        friction_curves=curves,
-        model_curves=by_model,
+        own_curve=own,
         uncertainty=unsure,
-        wavelength_curves=wavelengths,
-        film_models=films,
-        texture=trace,
         fidelity=table,
-        compensated=compensated,
-        survival=survival,
-        verdict=tuple(verdict(display, prediction, area, curves, table, films, unsure, why_not)),
+        verdict=tuple(verdict(display, prediction, area, own, table, unsure, why_not)),
+        with_films=deadline is None or deadline.allows(_FILMS),
     )
 
 
@@ -379,14 +448,19 @@ def _other_models(display: Display, prediction: Prediction) -> Iterator[OtherMod
             yield OtherModel(beam.model, beam.mode.frequency, beam.mode.half_wavelength, amplitude)
 
 
-def _textures(
-    prediction: Prediction, tau: si.Second
-) -> tuple[FrictionTrace | None, FidelityTable | None]:
+def _texture(prediction: Prediction, tau: si.Second) -> FrictionTrace | None:
     high = prediction.vibration_amplitude
-    if prediction.relative_friction == 1 or high == 0:
-        return None, None
-    friction = prediction.friction
-    trace = friction_trace(
-        Amplitude(SquareWave(2e-3), low=0.0, high=high), Stroke(speed=0.1), tau, friction
-    )
-    return trace, fidelity_table(tau, friction, low=0.0, high=high)
+    if not _changes_friction(prediction):
+        return None
+    grating = Amplitude(SquareWave(2e-3), low=0.0, high=high)
+    return friction_trace(grating, Stroke(speed=0.1), tau, prediction.friction)
+
+
+def _fidelity(prediction: Prediction, tau: si.Second) -> FidelityTable | None:
+    if not _changes_friction(prediction):
+        return None
+    return fidelity_table(tau, prediction.friction, low=0.0, high=prediction.vibration_amplitude)
+
+
+def _changes_friction(prediction: Prediction) -> bool:
+    return prediction.relative_friction != 1 and prediction.vibration_amplitude != 0

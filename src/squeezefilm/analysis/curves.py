@@ -3,6 +3,7 @@ model and wavelength."""
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from dataclasses import dataclass
 
@@ -106,7 +107,10 @@ def friction_curve(prediction: Prediction, surface: Surface, model: FrictionMode
     zero = _reached(law, 0.0)
     # Room for where the paper's finger floats; a solved one may never float.
     top = max(10e-6, 1.25 * p.vibration_amplitude, 1.1 * min(zero or 0.0, 15e-6))
-    amplitude = np.linspace(0.0, top, 201 if law.kind.film == "asymptote" else 51)
+    amplitude = np.linspace(0.0, top, 201)
+    if law.kind.film != "asymptote":
+        # Dear points lie denser at small amplitudes, where most of the friction goes.
+        amplitude = top * np.linspace(0.0, 1.0, 51) ** 1.5
     return FrictionCurve(
         surface=surface.name,
         roughness=surface.roughness,
@@ -177,11 +181,18 @@ def model_curves(prediction: Prediction) -> tuple[ModelCurve, ...]:
         law = p.law.by(model)
         # Denser at small amplitudes, where a smooth film lifts the finger off.
         amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)
-        friction = np.full(amplitude.size, np.nan)
-        for at in range(amplitude.size):
-            try:
-                friction[at] = law.at(float(amplitude[at]))
-            except SqueezefilmError:
-                break
-        found.append(ModelCurve(model, amplitude, friction))
+        found.append(ModelCurve(model, amplitude, _as_far_as_it_goes(law, amplitude)))
     return tuple(found)
+
+
+def _as_far_as_it_goes(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
+    """µ′/µ at rising amplitudes (m), NaN from the first that the law refuses."""
+    with contextlib.suppress(SqueezefilmError):
+        return law.curve(amplitude)
+    friction = np.full(amplitude.size, np.nan)
+    for at in range(amplitude.size):
+        try:
+            friction[at] = law.at(float(amplitude[at]))
+        except SqueezefilmError:
+            break
+    return friction

@@ -88,8 +88,8 @@ class Refusals:
         why = ", ".join(f"{why} ({count})" for why, count in self.reasons.most_common())
         laws = ", ".join(f"{name} ({count})" for name, count in self.heights.most_common())
         return (
-            f"{self.count} of {self.evaluations} draws ({self.share:.1%}) are refused: {why}; by "
-            f"the law of heights {laws}"
+            f"{self.count} of {self.evaluations} draws ({si.percent(self.share, 1)}) are refused: "
+            f"{why}; by the law of heights {laws}"
         )
 
 

@@ -58,7 +58,7 @@ class Choice:
     @property
     def spread(self) -> tuple[str, ...]:
         """Its options with their weights, in words."""
-        return tuple(f"{one.name} {one.weight:.0%}" for one in self.options)
+        return tuple(f"{one.name} {si.percent(one.weight)}" for one in self.options)
 
 
 _HEIGHTS = Choice(

@@ -80,7 +80,7 @@ class UncertainFriction:
         """Where the value as described stands among the draws."""
         low, high = self.interval
         share = float(np.mean(self.samples < self.nominal))
-        where = f"{share:.0%} of the draws lie below the value as described"
+        where = f"{si.percent(share)} of the draws lie below the value as described"
         if low <= self.nominal <= high:
             return where
         return f"{where}, which lies outside of the interval: the description is no typical draw"
@@ -213,9 +213,9 @@ def refusal_words(refused: Refusals) -> str:
     """Why there is no interval, and what to do."""
     return (
         f"{refused.sentence}. An interval of the other draws would leave these out in silence, so "
-        f"above {MOST_REFUSED:.0%} there is none. The first one says: {refused.example}. Press "
-        "less or vibrate less, give measured values with their narrower ranges, or ask for one law "
-        'by evidence = "measured"'
+        f"above {si.percent(MOST_REFUSED)} there is none. The first one says: {refused.example}. "
+        "Press less or vibrate less, give measured values with their narrower ranges, or ask for "
+        'one law by evidence = "measured"'
     )
 
 

@@ -45,13 +45,13 @@ def verdict(
     display: Display,
     p: Prediction,
     area: JudgedArea | None,
-    curves: tuple[FrictionCurve, ...],
+    own: FrictionCurve,
     table: FidelityTable | None,
-    films: FilmComparison | None,
     unsure: UncertainFriction | None = None,
     why_not: str = "",
 ) -> Iterator[Finding]:
-    """What an analysis amounts to, in sentences; `why_not` says why no friction is `unsure`.
+    """What an analysis amounts to, in sentences: `own` is the curve of the prediction's model on
+    its surface, `why_not` says why no friction is `unsure`.
 
     What the prediction's `objections` say and what speaks against the working mode come first;
     while an objection stands, or where the mode is not driven, nothing is good.
@@ -60,7 +60,7 @@ def verdict(
     doubts = () if p.voltage is None else mode_doubts(display, p.mode)
     yield from (Finding("doubt", doubt.text) for doubt in doubts)
     undriven = any(doubt.kind == "undriven" for doubt in doubts)
-    for finding in _findings(display, p, curves, table, films, unsure, why_not, area):
+    for finding in _findings(display, p, own, table, unsure, why_not, area):
         yield unless_undriven(finding, "") if undriven else finding
 
 
@@ -75,9 +75,8 @@ def unless_undriven(finding: Finding, why: str | None) -> Finding:
 def _findings(
     display: Display,
     p: Prediction,
-    curves: tuple[FrictionCurve, ...],
+    own: FrictionCurve,
     table: FidelityTable | None,
-    films: FilmComparison | None,
     unsure: UncertainFriction | None,
     why_not: str,
     area: JudgedArea | None,
@@ -85,7 +84,7 @@ def _findings(
     """The sentences of a verdict but for those on the working mode."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
     yield friction_verdict(p, unsure, why_not, area)
-    yield from _of_needed_amplitude(p, curves)
+    yield from _of_needed_amplitude(p, own)
     if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
         yield Finding(
             "doubt",
@@ -96,8 +95,6 @@ def _findings(
         yield _of_gratings(p, table)
     if MODEL_KINDS[p.model].film == "asymptote":
         yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
-    if films is not None:
-        yield from _of_films(p, films)
     if (doubt := source_doubt(display.provenance)) is not None:
         yield Finding("doubt", doubt)
     yield Finding(
@@ -173,9 +170,10 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
     noticed = 1 - NOTICED_DIFFERENCE
     text = (
         f"{p.place_said[0].upper()}{p.place_said[1:]}, µ′/µ is below {asked}, with probability "
-        f"{_probability(unsure.probability_below(PAPER_CRITERION))} ({unsure.level:.0%} interval "
-        f"{low:.2f}–{high:.2f}, median {unsure.median:.2f}; {unsure.nominal:.2f} as described at "
-        f"{amplitude}); below {noticed:.2f}, where people notice it, with probability "
+        f"{_probability(unsure.probability_below(PAPER_CRITERION))} "
+        f"({si.percent(unsure.level)} interval {low:.2f}–{high:.2f}, median {unsure.median:.2f}; "
+        f"{unsure.nominal:.2f} as described at {amplitude}); "
+        f"below {noticed:.2f}, where people notice it, with probability "
         f"{_probability(unsure.probability_below(noticed))}."
     )
     if high < PAPER_CRITERION:
@@ -195,13 +193,12 @@ def _probability(value: si.Dimensionless) -> str:
     return "above 0.99" if value > 0.99 else "below 0.01" if value < 0.01 else f"{value:.2f}"
 
 
-def _of_needed_amplitude(p: Prediction, curves: tuple[FrictionCurve, ...]) -> Iterator[Finding]:
+def _of_needed_amplitude(p: Prediction, own: FrictionCurve) -> Iterator[Finding]:
     """What the paper's criterion takes where the display as described misses it."""
     papers = MODEL_KINDS[p.model].film == "asymptote"
     by = "By the paper's model" if papers else f"By the model '{p.model}'"
     if papers or p.relative_friction > PAPER_CRITERION:
-        here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
-        needed = here.amplitude_for_criterion
+        needed = own.amplitude_for_criterion
         ask = "no amplitude" if needed is None else f"{needed * 1e6:.3g} µm"
         yield Finding(
             "limit",
@@ -230,7 +227,9 @@ def _of_gratings(p: Prediction, table: FidelityTable) -> Finding:
     )
 
 
-def _of_films(p: Prediction, films: FilmComparison) -> Iterator[Finding]:
+def film_findings(p: Prediction, films: FilmComparison) -> Iterator[Finding]:
+    """What the readings of the film say of one another; no verdict on the display, whose friction
+    one of them gives."""
     paper, sealed = films.result("paper2008"), films.result("film-sealed")
     open_, plateau = films.result("film-open"), films.result("film-plateau")
     if sealed.over_pressure > 0 and open_.over_pressure > 0:
@@ -244,8 +243,8 @@ def _of_films(p: Prediction, films: FilmComparison) -> Iterator[Finding]:
     yield Finding(
         "doubt",
         f"How ridges are drawn decides: sinusoidal ridges with open grooves carry "
-        f"{open_.load_share:.1%} of the finger, ridges pressed flat "
-        + ("all of it." if plateau.load_share >= 1 else f"{plateau.load_share:.0%} of it.")
+        f"{si.percent(open_.load_share, 1)} of the finger, ridges pressed flat "
+        + ("all of it." if plateau.load_share >= 1 else f"{si.percent(plateau.load_share)} of it.")
         + " Partial levitation, where film and asperities share the load of a "
         "flattened ridge, lies between.",
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Annotated, cast
 
 import numpy as np
@@ -162,7 +163,7 @@ class FrictionLaw:
         balance, whatever the model. See `friction_ripple`."""
         return friction_ripple(
             self._films,
-            self._asperities,
+            self.asperities,
             amplitude,
             self.half_wavelength,
             self.finger,
@@ -174,8 +175,9 @@ class FrictionLaw:
     def _films(self) -> FilmTable:
         return film_table(self.frequency, self.finger.plateau_width, self.gas, self.slip)
 
-    @property
-    def _asperities(self) -> ContactLaw:
+    @cached_property
+    def asperities(self) -> ContactLaw:
+        """What skin and surface carry between them."""
         return self.finger.asperity_law(self.surface.roughness)
 
     @property
@@ -190,6 +192,7 @@ class FrictionLaw:
             return mean_square_wave(self.half_wavelength, self.contact_side, self.position)
         return float(np.mean(self.place.ridges(self.finger, self.contact_side)[1] ** 2))
 
+    @cached_property
     def _ridges(self) -> tuple[si.MetreArray, PadPosture]:
         """The points of the ridges and how the pad lies on the vibration."""
         if self.place is None:
@@ -206,7 +209,7 @@ class FrictionLaw:
         found = self._pad(amplitude, self.speed, limit="own", points=at, posture=posture)
         return found.relative_friction
 
-    @property
+    @cached_property
     def friction_coefficient(self) -> si.Dimensionless:
         """µ without vibration, at this force. See `Finger.friction_coefficient`."""
         return self.finger.friction_coefficient(
@@ -223,11 +226,11 @@ class FrictionLaw:
         posture: PadPosture | None = None,
         skin: Skin | None = None,
     ) -> PadFriction:
-        ridges, level = self._ridges() if points is None else (points, posture)
+        ridges, level = self._ridges if points is None else (points, posture)
         try:
             return pad_friction(
                 self._films,
-                self._asperities,
+                self.asperities,
                 amplitude,
                 self.half_wavelength,
                 ridges,
@@ -251,7 +254,7 @@ class FrictionLaw:
 
     def ridge_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
         """The amplitudes that ridges meet over an antinode's, and the shares that meet them."""
-        points, level = self._ridges()
+        points, level = self._ridges
         wave = level.over_the_antinode(points, self.half_wavelength)
         kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
         return np.asarray(kinds, dtype=float), counts / points.size
@@ -283,7 +286,7 @@ class FrictionLaw:
         if not self.kind.shear:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
         # A pad of thousands of ridges takes them in parts, within some 100 MB.
-        parts = min(math.ceil(a.size * speeds.size * self._ridges()[0].size / 1e7), a.size)
+        parts = min(math.ceil(a.size * speeds.size * self._ridges[0].size / 1e7), a.size)
         asked, kind = np.array_split(a, parts), limit or self.kind.limit
         return np.hstack([self._pad(one, speeds, limit=kind).relative_friction for one in asked])
 

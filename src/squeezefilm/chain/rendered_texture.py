@@ -26,9 +26,8 @@ from squeezefilm.chain.played_texture import (
 )
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.standing_wave import WAVES, UnderPad, Wave, resonance_with_finger
-from squeezefilm.chain.stroke_force import first_pass_vibration
 from squeezefilm.contact.sliding.march import Sliding, slide
-from squeezefilm.contact.sliding.skin_vibration import SkinVibration
+from squeezefilm.contact.sliding.skin_vibration import SkinVibration, first_pass_vibration
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
 from squeezefilm.formats.trajectories import Motion, NamedMotion
@@ -138,12 +137,18 @@ class RenderAnalysis(Result):
     _table = columns
 
     def skin_vibration(self, harmonics: int = 5) -> SkinVibration:
-        """Spectra of the skin as `StrokeForce.vibration`. Raises `InputError` for another motion
-        than a stroke, or a texture without a single period along it."""
+        """Spectra of the skin in the settled part of the first pass, with the texture's lines.
+
+        Raises `InputError` for another motion than a stroke, a texture without a single period
+        along it, or a pass with fewer than two periods after the start has settled.
+        """
         period = self.played.spatial_period
         if period is None or not isinstance(self.motion, Stroke):
             raise InputError("a spectrum needs a grating of one period under a stroke along x")
-        return first_pass_vibration(self.force, self.motion, period, harmonics)
+        stroke = self.motion
+        return first_pass_vibration(
+            self.force, stroke.speed, stroke.pass_duration, period, harmonics
+        )
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints and fidelity.json holds; keys carry units."""

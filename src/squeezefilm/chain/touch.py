@@ -235,8 +235,7 @@ class _Felt(NamedTuple):
 
 def _felt(pad: _Pad, amplitude: si.Metre, mean_gap: si.Metre) -> _Felt:
     law = pad.law
-    finger = law.finger
-    asperities = finger.asperity_law(law.surface.roughness)
+    finger, asperities = law.finger, law.asperities
     # The plateaus' mean gap beside the antinode's swing, which most of them do not meet: no deeper
     # than the contact's law goes.
     deepest = 0.9 * mean_gap

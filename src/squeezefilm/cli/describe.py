@@ -1,6 +1,7 @@
 """Verbs about a display: what there is, what it says, and what follows from it, room by room."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -116,6 +117,10 @@ class AnalyzeOptions:
     ] = None
     strict: Strict = False
     budget: Budget = None
+    whole: Annotated[
+        bool,
+        typer.Option("--all", help="Print warnings in full, and what other models say."),
+    ] = False
 
 
 @app.command()
@@ -123,7 +128,7 @@ class AnalyzeOptions:
 def analyze(asked: AnalyzeOptions) -> None:
     """From the display's description to resonance, amplitude, friction and textures."""
     from squeezefilm.analysis.analyze import analyze as run
-    from squeezefilm.report.kit import terminal
+    from squeezefilm.report.display.terminal import show_analysis
 
     display = to_be_solved(
         asked.target,
@@ -133,13 +138,14 @@ def analyze(asked: AnalyzeOptions) -> None:
         quiet=asked.as_json,
     )
     with working(asked.as_json) as step:
-        result = run(display, **given(asked, leave="target out as_json"), progress=step)
+        result = run(display, **given(asked, leave="target out as_json whole"), progress=step)
         written = None
         if asked.out is not None:
             from squeezefilm.report.display.page import write_analysis
 
             written = write_analysis(result, asked.out, progress=step)
-    answer(asked.as_json, result, terminal.show_analysis, report=written)
+    show = partial(show_analysis, whole=asked.whole)
+    answer(asked.as_json, result, show, report=written)
     if written is None and not asked.as_json:
         typer.echo("add --out DIR to write result.json and a report with figures")
 

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated, Literal, NamedTuple
@@ -53,7 +54,7 @@ class Spectrum(NamedTuple):
     `slope` is h′_rms/(q0 h_rms), `energy` the elastic energy of full contact over E* q0 h_rms²;
     `decay` u0/h_rms and `strength` β/(q0 h_rms) are those of the exponential limit at small
     pressure. `logarithm` and `steepness` are ln(p/(E* q0 h_rms)) and its derivative at the gaps
-    LEAST_GAP, LEAST_GAP + 0.025, … in h_rms.
+    LEAST_GAP, LEAST_GAP + 0.025, … in h_rms, and `curve` is the one that runs through them.
     """
 
     slope: si.Dimensionless
@@ -62,6 +63,7 @@ class Spectrum(NamedTuple):
     strength: si.Dimensionless
     logarithm: si.FloatArray
     steepness: si.FloatArray
+    curve: Callable[[si.FloatArray], si.FloatArray]
 
 
 @lru_cache(maxsize=1)
@@ -118,14 +120,16 @@ def _spectrum(hurst_exponent: float, magnification: float) -> Spectrum:
     decay = _GAMMA * float(np.sum(weight))
     order = np.argsort(gap)
     inverse = CubicHermiteSpline(gap[order], logarithm[order], -1 / falls[order])
-    at = np.arange(LEAST_GAP, _LARGEST_GAP + _STEP / 2, _STEP)
+    at = LEAST_GAP + _STEP * np.arange(round((_LARGEST_GAP - LEAST_GAP) / _STEP) + 1)
+    tabulated, steepness = inverse(at), inverse(at, 1)
     return Spectrum(
         slope=math.sqrt(2 * steep[-1]),
         energy=float(np.pi / 2 * np.sum(q**2 * density * dq)),
         decay=decay,
         strength=math.exp(logarithm[0] + gap[0] / decay),
-        logarithm=inverse(at),
-        steepness=inverse(at, 1),
+        logarithm=tabulated,
+        steepness=steepness,
+        curve=CubicHermiteSpline(at, tabulated, steepness),
     )
 
 
@@ -211,8 +215,6 @@ class RoughContact:
         Zero beyond 12 h_rms, where less than 1e-11 of the pressure scale is left. Raises
         `OutOfRangeError` below 0.05 h_rms, where nearly everything is in contact.
         """
-        from scipy.interpolate import CubicHermiteSpline
-
         t = np.asarray(gap, dtype=float) / self.roughness
         if np.any(t < LEAST_GAP * (1 - 1e-9)):
             least, rough = (
@@ -223,10 +225,7 @@ class RoughContact:
                 f"a gap of {least} is less than {LEAST_GAP} of the roughness of {rough}: the faces "
                 "are nearly in full contact there; press less or take a rougher skin"
             )
-        known = self.spectrum
-        at = LEAST_GAP + _STEP * np.arange(known.logarithm.size)
-        logarithm = CubicHermiteSpline(at, known.logarithm, known.steepness)
-        carried = self.pressure_scale * np.exp(logarithm(np.minimum(t, _LARGEST_GAP)))
+        carried = self.pressure_scale * np.exp(self.spectrum.curve(np.minimum(t, _LARGEST_GAP)))
         return np.asarray(np.where(t <= _LARGEST_GAP, carried, 0.0))[()]
 
     @property

@@ -201,7 +201,7 @@ def _slip(knudsen: float, where: str, mean_free_path: float) -> ValidityCheck:
     verdict = (
         "slip can be left out"
         if knudsen <= SLIP_LIMIT
-        else f"slip widens the flow by {6 * knudsen:.0%}, which the model leaves out"
+        else f"slip widens the flow by {si.percent(6 * knudsen)}, which the model leaves out"
     )
     sentence = f"Knudsen number {knudsen:.3g} {where}: {verdict} (it counts below {thinnest})."
     return ValidityCheck("slip", knudsen, None, SLIP_LIMIT, sentence)
@@ -209,9 +209,9 @@ def _slip(knudsen: float, where: str, mean_free_path: float) -> ValidityCheck:
 
 def _asymptote(sigma: float, fraction: float) -> ValidityCheck:
     sentence = (
-        f"Squeeze number {sigma:.4g}: a smooth film has {fraction:.0%} of the over-pressure "
-        f"that σ → ∞ promises; 90 % takes σ ≥ {ASYMPTOTE_SQUEEZE_NUMBER:.0f}, and the paper's "
-        "criterion σ ≥ 10 gives 41 %."
+        f"Squeeze number {sigma:.4g}: a smooth film has {si.percent(fraction)} of the "
+        f"over-pressure that σ → ∞ promises; 90 % takes σ ≥ {ASYMPTOTE_SQUEEZE_NUMBER:.0f}, and "
+        "the paper's criterion σ ≥ 10 gives 41 %."
     )
     return ValidityCheck("asymptote", sigma, ASYMPTOTE_SQUEEZE_NUMBER, None, sentence)
 

@@ -305,6 +305,11 @@ def format_quantity(value: float, unit: Unit, digits: int = 4) -> str:
     return f"{text} {prefix}{unit.symbol}"
 
 
+def percent(share: float, decimals: int = 0) -> str:
+    """A share as a person reads it, e.g. ``"61 %"``."""
+    return f"{100 * share:.{decimals}f} %"
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """A hint such as ``" Did you mean 'thickness'?"``, or an empty text if nothing is near."""
     import difflib

@@ -22,7 +22,6 @@ from squeezefilm.bench.play import PlayResult
 from squeezefilm.bench.played_session import PlayedSession
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.rendered_texture import RenderAnalysis
-from squeezefilm.chain.stroke_force import StrokeForce
 from squeezefilm.errors import InputError
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.report import film_map
@@ -88,7 +87,6 @@ SUBJECTS: Mapping[type, _Subject] = {
     TextureFile: _Subject({"texture": gallery.picture}),
     Composable: _Subject({"texture": lambda one: gallery.picture(TextureFile.of(one))}),
     RenderAnalysis: _Subject(_by_key(textures.FIGURES), write_render),
-    StrokeForce: _Subject({"force": textures.tangential_force}),
     PlayedSession: _Subject(_PLAYED),
     PlayResult: _Subject({key: _of_session(draw) for key, draw in _PLAYED.items()}, write_play),
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),

@@ -32,7 +32,7 @@ def test_weights_are_probabilities_each_with_its_reason() -> None:
         assert all(option.why for option in one.options)
     assert choices[MOISTURE].knowledge == "measurable"
     assert {choices[path].knowledge for path in (HEIGHT_LAW, SHEAR, SLIP)} == {"unknown"}
-    assert choices[SHEAR].spread == ("following 50%", "constant 30%", "rigid 20%")
+    assert choices[SHEAR].spread == ("following 50 %", "constant 30 %", "rigid 20 %")
 
 
 def test_a_share_of_the_probability_falls_to_its_option() -> None:

@@ -78,14 +78,14 @@ def test_curves_reach_a_quarter_beyond_a_large_amplitude(monkeypatch: pytest.Mon
 def test_a_curve_ends_where_its_model_does(
     monkeypatch: pytest.MonkeyPatch, off_centre: Prediction
 ) -> None:
-    whole = FrictionLaw.at
+    whole = FrictionLaw.curve
 
-    def at(law: FrictionLaw, amplitude: float) -> float:
-        if 1e-6 < amplitude < 2e-6:
+    def asked(law: FrictionLaw, amplitude: np.ndarray) -> np.ndarray:
+        if np.any((amplitude > 1e-6) & (amplitude < 2e-6)):
             raise OutOfRangeError("too far")
         return whole(law, amplitude)
 
-    monkeypatch.setattr(FrictionLaw, "at", at)
+    monkeypatch.setattr(FrictionLaw, "curve", asked)
     monkeypatch.setattr(models, "COMPARED", (("paper2008", 101),))
     (curve,) = model_curves(off_centre)
     assert np.array_equal(np.isfinite(curve.relative_friction), curve.amplitude <= 1e-6)

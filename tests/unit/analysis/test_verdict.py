@@ -19,7 +19,7 @@ from squeezefilm.analysis.film.models import (
     ToothResult,
 )
 from squeezefilm.analysis.uncertainty import UncertainFriction
-from squeezefilm.analysis.verdict import Finding, friction_verdict, verdict
+from squeezefilm.analysis.verdict import Finding, film_findings, friction_verdict, verdict
 from squeezefilm.chain.active_area import ActiveArea
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.config.provenance import UNSTATED, Provenance
@@ -45,14 +45,9 @@ def curve(needed: float | None, surface: str = "adhesive", model: str = SHARED) 
 
 
 def said(p: Prediction, needed: float | None = 2.5e-6, **changes: Any) -> tuple[Finding, ...]:
-    """The verdict of a point changed, with other surfaces and models beside it."""
+    """The verdict of a point changed."""
     p = dataclasses.replace(p, **changes)
-    curves = (
-        curve(9e-6, surface="bare", model=p.model),
-        curve(8e-6, model="another"),
-        curve(needed, model=p.model),
-    )
-    return findings(STATOR, p, None, curves, None, None)
+    return findings(STATOR, p, None, curve(needed, model=p.model), None)
 
 
 def unsure(low: float, high: float, samples: list[float], refused: int = 0) -> Any:
@@ -69,13 +64,13 @@ def test_a_verdict_is_the_probability_of_the_criterion(point: Prediction) -> Non
     assert inside == Finding(
         "limit",
         "At the best antinode, x 0 mm, y 5 mm, as if of an even wave, µ′/µ is below 0.70, as the "
-        "paper asks, with probability 0.50 (90% interval 0.20–0.81, median 0.40; 0.51 as "
+        "paper asks, with probability 0.50 (90 % interval 0.20–0.81, median 0.40; 0.51 as "
         "described at 2 µm); below 0.80, where people notice it, with probability 0.75. The "
         "criterion lies inside the interval: whether it is met is open.",
     )
     good = friction_verdict(p, unsure(0.2, 0.69, [0.2, 0.5, 0.6, 0.69]), "")
     assert good.kind == "good"
-    assert "with probability above 0.99 (90% interval 0.20–0.69" in good.text
+    assert "with probability above 0.99 (90 % interval 0.20–0.69" in good.text
     assert good.text.endswith("notice it, with probability above 0.99.")
     # Never good where the criterion is at the very end of the interval, nor where it is missed.
     assert friction_verdict(p, unsure(0.2, 0.7, [0.2, 0.7]), "").kind == "limit"
@@ -168,8 +163,8 @@ def table(kept: list[list[float]]) -> FidelityTable:
 
 
 def test_gratings_that_survive_the_fastest_finger_are_named(point: Prediction) -> None:
-    curves = (curve(1e-6),)
-    some = findings(STATOR, point, None, curves, table([[1.0, 0.9], [1.0, 0.5], [1.0, 1.0]]), None)
+    own = curve(1e-6)
+    some = findings(STATOR, point, None, own, table([[1.0, 0.9], [1.0, 0.5], [1.0, 1.0]]))
     assert (
         Finding(
             "good",
@@ -178,7 +173,7 @@ def test_gratings_that_survive_the_fastest_finger_are_named(point: Prediction) -
         )
         in some
     )
-    none = findings(STATOR, point, None, curves, table([[1.0, 0.8], [1.0, 0.5], [1.0, 0.2]]), None)
+    none = findings(STATOR, point, None, own, table([[1.0, 0.8], [1.0, 0.5], [1.0, 0.2]]))
     assert Finding(
         "limit",
         "Square gratings of no listed mm keep 90 % of their swing, peak to peak, up to 150 mm/s; "
@@ -200,7 +195,7 @@ def test_assumed_values_are_counted(point: Prediction) -> None:
         "c": Provenance("nowhere", "assumed"),
     }
     display = dataclasses.replace(STATOR, provenance=sources)
-    found = findings(display, point, None, (curve(1e-6),), None, None)
+    found = findings(display, point, None, curve(1e-6), None)
     assert Finding(
         "doubt",
         "2 of 3 values of this display are assumed, not measured or published: squeezefilm show "
@@ -239,7 +234,7 @@ def films(sealed: float, opened: float, plateau: float, **others: Any) -> FilmCo
 
 def test_films_are_compared_by_their_over_pressure(point: Prediction) -> None:
     p = dataclasses.replace(point, squeeze_number=20.42)
-    found = findings(STATOR, p, None, (curve(1e-6),), None, films(0.012, 0.0005, 0.04))
+    found = tuple(film_findings(p, films(0.012, 0.0005, 0.04)))
     assert Finding(
         "doubt",
         "The paper's asymptote promises 2.5 times the over-pressure of the solved film with sealed "
@@ -248,8 +243,8 @@ def test_films_are_compared_by_their_over_pressure(point: Prediction) -> None:
     ) in found  # fmt: skip
     assert Finding(
         "doubt",
-        "How ridges are drawn decides: sinusoidal ridges with open grooves carry 1.0% of the "
-        "finger, ridges pressed flat 80% of it. Partial levitation, where film and asperities "
+        "How ridges are drawn decides: sinusoidal ridges with open grooves carry 1.0 % of the "
+        "finger, ridges pressed flat 80 % of it. Partial levitation, where film and asperities "
         "share the load of a flattened ridge, lies between.",
     ) in found  # fmt: skip
 
@@ -258,19 +253,19 @@ def test_films_are_compared_by_their_over_pressure(point: Prediction) -> None:
 def test_a_film_without_over_pressure_is_in_no_ratio(
     point: Prediction, sealed: float, opened: float
 ) -> None:
-    found = findings(STATOR, point, None, (curve(1e-6),), None, films(sealed, opened, 0.05))
+    found = tuple(film_findings(point, films(sealed, opened, 0.05)))
     assert not any("promises" in one.text for one in found)
     assert any("ridges pressed flat all of it. Partial" in one.text for one in found)
 
 
 def test_plateaus_and_teeth_add_their_own_sentences(point: Prediction) -> None:
-    before = len(findings(STATOR, point, None, (curve(1e-6),), None, films(0.01, 0.01, 0.1)))
+    before = len(tuple(film_findings(point, films(0.01, 0.01, 0.1))))
     both = films(
         0.01, 0.01, 0.1,
         balance=PlateauBalance(1e-6, 1e-9, 1e-6, 7e3, "It floats."),
         teeth=ToothResult(2e-3, 1e-3, 0.1, 0.1, 1.0, "Teeth do not matter."),
     )  # fmt: skip
-    found = findings(STATOR, point, None, (curve(1e-6),), None, both)
+    found = tuple(film_findings(point, both))
     assert len(found) == before + 2
     assert Finding("limit", "It floats.") in found
     assert Finding("limit", "Teeth do not matter.") in found

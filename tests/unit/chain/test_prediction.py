@@ -204,7 +204,7 @@ def test_a_beam_of_a_plate_with_few_ceramics_warns_or_is_refused(plate: Display)
             patches=plate.actuator.patches[:3],  # type: ignore[union-attr]
         ),
     )
-    assert any("cover 40% of it" in text for text in predict(few, theory="timoshenko").warnings)
+    assert any("cover 40 % of it" in text for text in predict(few, theory="timoshenko").warnings)
     with pytest.raises(OutOfRangeError, match="squeezefilm plate"):
         predict(few, theory="timoshenko", strict=True)
     beam = predict(plate, theory="timoshenko")

@@ -108,7 +108,7 @@ def analysis(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `analyze` calls."""
     return SimpleNamespace(
         asked=stands_in("analysis.analyze:analyze", ANSWER),
-        shown=stands_in("report.kit.terminal:show_analysis"),
+        shown=stands_in("report.display.terminal:show_analysis"),
         written=stands_in("report.display.page:write_analysis", tmp_path / "report.html"),
     )
 
@@ -124,6 +124,7 @@ def test_an_analysis_is_the_displays_own_unless_asked(analysis: SimpleNamespace)
         "speed": None, "budget": None,
     }  # fmt: skip
     assert analysis.shown.given == (ANSWER,)
+    assert analysis.shown.named == {"whole": False}
     assert done.stdout == "add --out DIR to write result.json and a report with figures\n"
     expected, *steps = done.stderr.splitlines()
     assert expected.startswith("expected about ")
@@ -135,7 +136,7 @@ def test_every_option_of_an_analysis_arrives(analysis: SimpleNamespace, tmp_path
     options = (
         "--voltage", "15 V", "--frequency", "34 kHz", "--amplitude", "2 um", "--force", "0.3 N",
         "--surface", "copper", "--samples", "8", "--wanted", "0.5", "--sensitivities", "solved",
-         "--theory", "timoshenko", "--model", "film-open",
+        "--theory", "timoshenko", "--model", "film-open", "--all",
         "--speed", "50 mm/s", "--strict", "--out", tmp_path, "--budget", "2 min",
     )  # fmt: skip
     done = run("analyze", DISPLAY, *options)
@@ -146,6 +147,7 @@ def test_every_option_of_an_analysis_arrives(analysis: SimpleNamespace, tmp_path
         "model": "film-open", "speed": pytest.approx(0.05), "strict": True, "budget": 120.0,
     }  # fmt: skip
     assert analysis.written.given == (ANSWER, tmp_path)
+    assert analysis.shown.named == {"whole": True}
     assert done.stdout == f"report: {tmp_path / 'report.html'}\n"
     done = run("analyze", DISPLAY, "--json")
     assert json.loads(done.stdout) == {"found": 1}

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.chain.stroke_force import StrokeForce, stroke_force
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.sliding.dry_friction import (
     DryFriction,
@@ -16,9 +15,11 @@ from squeezefilm.contact.sliding.dry_friction import (
     Occlusion,
     SpeedFriction,
 )
-from squeezefilm.contact.sliding.march import interval_speeds, slide
+from squeezefilm.contact.sliding.march import Sliding, interval_speeds, slide
 from squeezefilm.contact.sliding.skin_vibration import (
+    first_pass_vibration,
     line_amplitudes,
+    settled_after,
     skin_vibration,
     texture_frequency,
 )
@@ -129,32 +130,32 @@ def test_lines_are_found_between_bins_and_beside_a_drift() -> None:
     assert found == pytest.approx([2.0, 0.0, 0.5, 0.0], abs=1e-9)
 
 
+STROKE = Stroke(0.08, 0.03, passes=2)
+
+
 @pytest.fixture(scope="module")
-def force() -> StrokeForce:
+def motion() -> Sliding:
     """A 1 mm square grating, 40 % of friction deep, under a finger at 80 mm/s, there and back."""
-    stroke = Stroke(0.08, 0.03, passes=2)
     trace = friction_trace(
-        Amplitude(SquareWave(1e-3), 0.0, 2e-6), stroke, 5e-4, lambda a, v: 1 - a / 5e-6
+        Amplitude(SquareWave(1e-3), 0.0, 2e-6), STROKE, 5e-4, lambda a, v: 1 - a / 5e-6
     )
-    return stroke_force(trace, 0.6, 0.5)
+    friction = 0.6 * trace.relative_friction_rendered
+    return slide(trace.position, 1 / trace.sample_rate, friction, 0.5)
 
 
-def test_a_trace_and_a_finger_give_a_force(force: StrokeForce) -> None:
-    motion, trace = force.motion, force.trace
-    assert motion.time == pytest.approx(trace.time)
-    limit = 0.6 * 0.5 * trace.relative_friction_rendered
-    assert motion.friction_limit == pytest.approx(limit)
-    there = (motion.time > force.settled) & (motion.time < 0.99 * trace.stroke.pass_duration)
+def test_a_settled_finger_drags_at_the_limit_of_its_friction(motion: Sliding) -> None:
+    limit = motion.friction_limit
+    there = (motion.time > settled_after(motion)) & (motion.time < 0.99 * STROKE.pass_duration)
     assert motion.friction_force[there] == pytest.approx(limit[there])
-    back = motion.time > 1.1 * trace.stroke.pass_duration
+    back = motion.time > 1.1 * STROKE.pass_duration
     assert motion.friction_force[back] == pytest.approx(-limit[back])
 
 
-def test_the_spectrum_has_the_power_and_the_lines_of_the_vibration(force: StrokeForce) -> None:
-    vibration = force.vibration(harmonics=7)
+def test_the_spectrum_has_the_power_and_the_lines_of_the_vibration(motion: Sliding) -> None:
+    vibration = first_pass_vibration(motion, STROKE.speed, STROKE.pass_duration, 1e-3, 7)
     assert vibration.fundamental == texture_frequency(0.08, 1e-3) == pytest.approx(80.0)
-    inside = (force.motion.time >= vibration.start) & (force.motion.time <= vibration.end)
-    stretch = force.motion.stretch[inside]
+    inside = (motion.time >= vibration.start) & (motion.time <= vibration.end)
+    stretch = motion.stretch[inside]
     power = np.trapezoid(vibration.displacement_psd, vibration.frequency)
     assert power == pytest.approx(np.var(stretch), rel=0.05)
     lines = 0.5 * np.sum(vibration.displacement_amplitude**2)
@@ -163,11 +164,3 @@ def test_the_spectrum_has_the_power_and_the_lines_of_the_vibration(force: Stroke
     assert vibration.displacement_amplitude[1::2].max() < 0.01 * vibration.displacement_amplitude[0]
     accelerated = vibration.displacement_amplitude * (2 * np.pi * vibration.harmonic_frequency) ** 2
     assert vibration.acceleration_amplitude[::2] == pytest.approx(accelerated[::2], rel=0.01)
-
-
-def test_a_texture_without_a_period_has_no_lines(force: StrokeForce) -> None:
-    trace = friction_trace(
-        lambda x, y, v, t: np.full(np.shape(x), 1e-6), Stroke(0.08), 1e-3, lambda a, v: 1 - a / 5e-6
-    )
-    with pytest.raises(InputError, match="no spatial period"):
-        stroke_force(trace, 0.6, 0.5).vibration()

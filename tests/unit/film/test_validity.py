@@ -59,7 +59,7 @@ def test_the_papers_stator_is_far_from_the_asymptote() -> None:
     assert {check.name for check in result.failed} == {"slip", "asymptote", "crest"}
     assert result.check("crest").value == pytest.approx(0.03, rel=0.15)
     assert result.squeeze_number == pytest.approx(20.418, abs=1e-3)
-    assert "66%" in result.check("asymptote").sentence
+    assert "66 %" in result.check("asymptote").sentence
     assert "leaks into the grooves" in result.check("crest").sentence
     with pytest.raises(InputError, match="there are inertia"):
         result.check("colour")

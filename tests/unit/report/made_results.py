@@ -24,9 +24,9 @@ WARM = Warming(
 """What a plate's losses do to it."""
 
 WARM_LINES = [
-    "Temperature rise +73.5 K where the frequency follows; +55.1 K at a fixed 33.58 kHz",
-    "Drift of the resonance -247 Hz -185 Hz at a fixed 33.58 kHz; half-bandwidth 280 Hz",
-    "Amplitude warm 2.45 µm where the frequency follows, without a finger",
+    "Temperature rise +73.5 K if the drive follows; +55.1 K if fixed",
+    "Drift of the resonance −247 Hz −185 Hz if fixed; half-bandwidth 280 Hz",
+    "Amplitude warm 2.45 µm if the drive follows the resonance, without a finger",
     "2.04 µm at a fixed 33.58 kHz, of 2.45 µm cold; a tenth is gone after 310 s",
     "Thermal resistance 9.42 K/W time constant 380 s; assumed: still air; linear",
 ]

@@ -181,7 +181,7 @@ def _() -> ClaimValue:
     ratios = "; ".join(
         f"{one.stiffness}: κ/µ {one.stiffness_over_friction[0]:.2g} "
         f"({one.stiffness_over_friction[1]:.2g} to {one.stiffness_over_friction[2]:.2g}), "
-        f"{one.refused:.0%} of {one.draws} draws cannot reach it"
+        f"{si.percent(one.refused)} of {one.draws} draws cannot reach it"
         for one in both
     )
     return ClaimValue(tuple(one.fitted_friction for one in both), note=ratios)
@@ -209,6 +209,7 @@ def _() -> ClaimValue:
     )
     return ClaimValue(
         tuple(value for one in both for value in one.relative_friction),
-        note=f"with {LEVEL:.0%} intervals, {said}; the intervals hold what the last digit of the "
-        "fitted number and the ratio of amplitude to decay length leave open, and no other doubt",
+        note=f"with {si.percent(LEVEL)} intervals, {said}; the intervals hold what the last digit "
+        "of the fitted number and the ratio of amplitude to decay length leave open, and no other "
+        "doubt",
     )

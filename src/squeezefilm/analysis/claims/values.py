@@ -250,7 +250,7 @@ def _kilohertz(value: float) -> str:
 @value_of("modal-frequency")
 def _() -> ClaimValue:
     ours, _ = paper_points()
-    against = f"{MODAL_FREQUENCY / ours.frequency - 1:+.1%}".replace("-", "−")
+    against = f"{100 * (MODAL_FREQUENCY / ours.frequency - 1):+.1f} %".replace("-", "−")
     beams = [
         f"{theory.replace('_', '–')} {section.replace('_', ' ')} "
         f"{_kilohertz(beam_response(paper_plate(), theory, section).mode.frequency)}"

@@ -15,6 +15,7 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.hurry import Hurry
 from squeezefilm.analysis.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.analysis.plate.solved import ModeRow, Remarks, SolvedBody, sweep_around
+from squeezefilm.analysis.sound import plate_sound
 from squeezefilm.arguments import called_with
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
@@ -33,7 +34,7 @@ from squeezefilm.plate.solid.modes import (
 )
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.sound import SoundField, rectangular_surface, sound_field
+from squeezefilm.plate.sound import SoundField
 from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.progress import Pace, SayProgress, said_with_time_left
 
@@ -159,7 +160,7 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
     except InputError:
         circuit = None
     tell("airborne sound")
-    sound = _sound(display, response, frequency)
+    sound = plate_sound(response, response.resonance, frequency, display.drive.voltage)
     beam = beam_response(plate)
     return PlateAnalysis(
         display=display,
@@ -221,14 +222,6 @@ def _centreline_per_volt(
     nodes = zero_crossings(x, centre_profile(alone.shapes[alone.index(label)], alone, x, label))
     inside = (x > nodes[0]) & (x < nodes[-1]) if nodes.size > 1 else np.ones(x.size, bool)
     return float(np.max(np.abs(line)[inside]))
-
-
-def _sound(display: Display, response: HarmonicResponse, frequency: si.Hertz) -> SoundField:
-    """The sound of the plate's face alone, in a baffle, at the display's voltage."""
-    plate = response.plate
-    x, y = np.linspace(0, plate.length, 84), np.linspace(0, plate.width, 50)
-    w = display.drive.voltage * response.displacement(x, y)[response.resonance]
-    return sound_field(rectangular_surface(x, y, 2j * np.pi * frequency * w, frequency))
 
 
 def scan_axis(label: tuple[int, int]) -> int:

@@ -168,10 +168,10 @@ def _require_law(law: ContactLaw, nearest: si.FloatArray, pressure: si.FloatArra
     """Refuse balances that press a rough interface nearly flat, where its law ends, at the
     `nearest` gap of a period (m); warn of plateaus pressed so hard that the law of asperities does
     not hold even at rest."""
-    most = si.format_quantity(law.largest_pressure, si.Unit("Pa"))
     if isinstance(law, RoughContact):
         flat = nearest < law.least_gap
         if np.any(flat):
+            most = si.format_quantity(law.largest_pressure, si.Unit("Pa"))
             shown = si.format_quantity(float(np.min(pressure[flat])), si.Unit("Pa"))
             raise OutOfRangeError(
                 f"a plateau under {shown} brings nearly everything into contact once a period: the "
@@ -180,6 +180,7 @@ def _require_law(law: ContactLaw, nearest: si.FloatArray, pressure: si.FloatArra
                 "skin"
             )
     elif np.any(pressure > law.largest_pressure):
+        most = si.format_quantity(law.largest_pressure, si.Unit("Pa"))
         shown = si.format_quantity(float(np.max(pressure)), si.Unit("Pa"))
         warnings.warn(
             f"a plateau under {shown} presses most of its asperities flat even at rest, where they "
@@ -220,8 +221,8 @@ def _refuse(rows: si.FloatArray, amplitude: si.FloatArray, pressure: si.FloatArr
     if status == kernel.PRESSED_THROUGH:
         raise OutOfRangeError(
             f"{asked} is pressed through its asperities: gas and asperities do not carry it at a "
-            f"gap closed by {DEEPEST_EXCURSION:.1%} of its mean, or closed altogether. Press less, "
-            "vibrate less, or take asperities that carry more"
+            f"gap closed by {si.percent(DEEPEST_EXCURSION, 1)} of its mean, or closed altogether. "
+            "Press less, vibrate less, or take asperities that carry more"
         )
     if status == kernel.OUT_OF_TABLE:
         raise OutOfRangeError(

@@ -19,6 +19,8 @@ SquareNewtonPerHertzArray = Annotated[si.FloatArray, si.Unit("N2*s")]
 # Segments overlap by half: 8 of them still show a line a hundredth of the window's width apart.
 _SEGMENTS = 8
 _FEWEST = 16
+# Of the skin's slower time constant: what is left of a start by then is 1 %.
+_SETTLING = 5.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +64,36 @@ def texture_frequency(speed: si.MetrePerSecondLike, spatial_period: si.MetreLike
     Arguments (m/s, m) broadcast. Raises `InputError` unless both are above 0.
     """
     return speed / spatial_period
+
+
+def settled_after(motion: Sliding) -> si.Second:
+    """When a pad that began relaxed has been stretched until it slides, and five of its slower time
+    constants have passed (s)."""
+    free = np.flatnonzero(~motion.sticking)
+    first = float(motion.time[free[0]]) if free.size else 0.0
+    return first + _SETTLING * motion.fingerpad.settling_time_constant
+
+
+@si.checked_numbers
+def first_pass_vibration(
+    motion: Sliding,
+    speed: si.MetrePerSecond,
+    pass_duration: si.Second,
+    spatial_period: si.Metre,
+    harmonics: Annotated[int, si.AtLeast(1)] = 5,
+) -> SkinVibration:
+    """Spectra of the skin in the settled part of a stroke's first pass (s), with the lines of a
+    texture's period (m) under a finger at a speed (m/s).
+
+    Raises `InputError` for a pass with fewer than two periods after the start has settled.
+    """
+    return skin_vibration(
+        motion,
+        float(texture_frequency(speed, spatial_period)),
+        harmonics,
+        start=min(settled_after(motion), pass_duration),
+        end=min(pass_duration, float(motion.time[-1])),
+    )
 
 
 @si.checked_numbers

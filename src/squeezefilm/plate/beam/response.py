@@ -171,7 +171,7 @@ def beam_doubt(plate: RectangularPlate) -> str | None:
         return None
     return (
         f"the beam takes the ceramics to cover the whole plate, and they cover "
-        f"{plate.coverage:.0%} of it: its frequency and amplitude are rough here; "
+        f"{si.percent(plate.coverage)} of it: its frequency and amplitude are rough here; "
         "squeezefilm plate solves the plate as it is"
     )
 

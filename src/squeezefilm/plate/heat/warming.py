@@ -338,8 +338,9 @@ def _doubts(found: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
             f"the plate loses {found.cold_power:.3g} W and warms: its resonance drifts by "
             f"{drift:+.0f} Hz ({rise:.0f} K) where the drive follows it, against a half-bandwidth "
             f"of {found.half_bandwidth:.0f} Hz; a drive that stays at its frequency is left with "
-            f"{kept:.0%} of the amplitude, {found.fixed.temperature_rise:.0f} K warm. Track the "
-            "resonance, or drive in bursts; resistance and coefficient are computed or assumed"
+            f"{si.percent(kept)} of the amplitude, {found.fixed.temperature_rise:.0f} K warm. "
+            "Track the resonance, or drive in bursts; resistance and coefficient are computed or "
+            "assumed"
         )
     if found.other_fixed:
         others = ", ".join(f"{1e6 * one.amplitude:.3g} um" for one in found.other_fixed)

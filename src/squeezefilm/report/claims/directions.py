@@ -10,7 +10,7 @@ from squeezefilm.analysis.claims.command import ClaimResult
 from squeezefilm.analysis.claims.frozen import MODELS
 from squeezefilm.analysis.claims.record import MEANINGS, missed_by
 from squeezefilm.report.claims.prototype import Table
-from squeezefilm.report.kit.numbers import cited, missed_directions
+from squeezefilm.report.kit.model_rows import cited, missed_directions
 
 DIRECTIONS = ("where", "direction", "model", "bound", "found", "verdict")
 _SIGNS = {"equals": "", "above": "> ", "at_least": "≥ ", "at_most": "≤ "}

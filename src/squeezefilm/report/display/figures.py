@@ -13,7 +13,7 @@ from squeezefilm.report.display import (
 from squeezefilm.report.friction import figures as friction_report
 from squeezefilm.report.kit.page_style import FigureOf
 
-FIGURES: tuple[FigureOf, ...] = (
+DECISION: tuple[FigureOf, ...] = (
     FigureOf(
         "layout",
         "Side view and layout",
@@ -39,8 +39,34 @@ FIGURES: tuple[FigureOf, ...] = (
         "response",
         "Frequency response",
         plate_figures.frequency_response,
-        "Vibration amplitude per volt around the working resonance. Outside the half-power band "
-        "less than 71 % of it is left.",
+        "Vibration amplitude per volt around the working resonance, without a finger. Outside the "
+        "half-power band less than 71 % of it is left.",
+    ),
+    FigureOf(
+        "band",
+        "Friction against amplitude, and how sure it is",
+        friction_figures.own_friction,
+        "Friction divided by that without vibration, by the model of the verdict. The band and the "
+        "bar hold what is uncertain in the description, in the finger and in the laws; in the bar "
+        "the amplitude is uncertain too.",
+    ),
+)
+"""What one decides from."""
+
+MODELS: tuple[FigureOf, ...] = (
+    FigureOf(
+        "chain",
+        "Friction by every model",
+        friction_report.chain,
+        "The same finger by the paper's model, by solved films and by partial levitation, where "
+        "film and asperities share the load.",
+    ),
+    FigureOf(
+        "films",
+        "The paper's film and solved films",
+        friction_figures.film_models,
+        "The film's mean over-pressure divided by the finger's pressure: above 1 the film would "
+        "carry the finger alone. The same finger, drawn in five ways.",
     ),
     FigureOf(
         "pressure",
@@ -51,33 +77,22 @@ FIGURES: tuple[FigureOf, ...] = (
     ),
     FigureOf(
         "friction",
-        "Friction against amplitude",
+        "Friction on each surface, by the paper's model and by the verdict's",
         friction_figures.friction,
-        "Friction divided by that without vibration, on each surface; squares mark where the "
-        "model's film carries the whole finger. The paper's Fig 5.",
-    ),
-    FigureOf(
-        "chain",
-        "Friction by every model, and how sure it is",
-        friction_report.chain,
-        "The same finger by the paper's model, by solved films and by partial levitation, where "
-        "film and asperities share the load. The bar is the interval of what is uncertain in the "
-        "description and in the finger.",
-    ),
-    FigureOf(
-        "films",
-        "The paper's film and solved films",
-        friction_figures.film_models,
-        "The film's mean over-pressure divided by the finger's pressure: above 1 the film would "
-        "carry the finger alone. The same finger, drawn in five ways.",
+        "A colour for each model, dashes for each surface; squares mark where the model's film "
+        "carries the whole finger. The paper's Fig 5.",
     ),
     FigureOf(
         "wavelength",
-        "Wave length against amplitude",
+        "Wave length against amplitude, by the paper's model",
         friction_figures.wavelength,
         "The amplitude that each of the paper's four half wavelengths needs for a relative "
         "friction of 0.7. The paper's Fig 11.",
     ),
+)
+"""What other models and the paper say."""
+
+TEXTURES: tuple[FigureOf, ...] = (
     FigureOf(
         "texture",
         "A texture under the moving finger",
@@ -109,3 +124,6 @@ FIGURES: tuple[FigureOf, ...] = (
         "to peak; the legend says how much of its fundamental that leaves.",
     ),
 )
+"""What a texture becomes along a stroke."""
+
+FIGURES = (*DECISION, *MODELS, *TEXTURES)

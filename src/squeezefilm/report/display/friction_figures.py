@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.numbers import HZ, M, N, shown
+from squeezefilm.report.kit.model_looks import look_of
+from squeezefilm.report.kit.numbers import HZ, SPEED, M, N, shown, span
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,19 +19,6 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
 
 _RIDGES_IN_ZOOM = 2.6
-_FIVE = (*style.LINES, (style.INK, (0, (3, 1, 1, 1, 1, 1))))
-
-
-_NAMES = {
-    "partial-levitation": "partial levitation",
-    "partial-levitation-shear": "partial levitation with shear",
-    "partial-levitation-one-gap": "partial levitation, one mean gap",
-    "paper2008": "paper's asymptote",
-    "film-sealed": "solved film, grooves sealed",
-    "film-open": "solved film, grooves open at the ends",
-    "film-plateau": "solved film, ridges pressed flat",
-    "film-smooth": "solved film, no ridges",
-}
 
 
 @style.drawn
@@ -60,10 +49,11 @@ def pressure(analysis: Analysis) -> Figure:
         above.fill_between(x, gap, 1.12 * float(np.max(gap)), color=style.SKIN, lw=0)
         above.plot(x, gap, color=style.INK, lw=1.2)
         above.set(ylim=(0, 1.12 * float(np.max(gap))))
-        for item, color in zip(profiles, (style.BLUE, style.GREEN), strict=False):
+        for item in profiles:
+            look = look_of(item.model)
             mean = float(np.trapezoid(item.mean_pressure, x) / (x[-1] - x[0]))
-            name = f"{_NAMES[item.model]}, mean {mean:.4f}"
-            below.plot(x, item.mean_pressure, color=color, lw=1.4, label=name)
+            name = f"{look.name}, mean {mean:.4f}"
+            below.plot(x, item.mean_pressure, color=look.color, lw=1.4, label=name)
         below.axhline(carried, **style.WANTED, label=f"would carry the finger: {carried:.4f}")
         below.set(xlim=(low, high), xlabel="position under the finger (mm)")
     grid[0][0].set(ylabel="mean gap (µm)")
@@ -75,10 +65,49 @@ def pressure(analysis: Analysis) -> Figure:
 
 
 @style.drawn
+def own_friction(analysis: Analysis) -> Figure:
+    """Relative friction against amplitude by the prediction's own model, with the band in which it
+    lies."""
+    p, band, here = analysis.prediction, analysis.band, analysis.own_curve
+    unsure, needed = analysis.uncertainty, here.amplitude_for_criterion
+    said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
+    takes = "more than 50 µm" if needed is None else shown(needed, M, 3)
+    title = (
+        f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(here.surface, 20)} {said}; 0.7 "
+        f"takes {takes}"
+    )
+    small = (
+        f"{p.model}; {shown(p.normal_force, N)}, {shown(p.speed, SPEED)}; each with the finger on"
+    )
+    figure = style.new_figure(title, small, 4.8)
+    axes = figure.subplots()
+    if band is not None:
+        name = f"{si.percent(band.level)} of what the friction may be at an amplitude"
+        x = 1e6 * band.amplitude
+        axes.fill_between(x, band.low, band.high, color=style.BAND, lw=0, label=name)
+    look = look_of(p.model)
+    for number, curve in enumerate(analysis.own_curves):
+        own = curve.surface == here.surface
+        line = {"lw": 2.4} if own else {"lw": 1.2, "ls": style.LINES[1 + number % 3][1]}
+        rough = shown(curve.roughness, M, 3)
+        name = f"as described, on {style.plain(curve.surface, 20)} (roughness {rough})"
+        axes.plot(
+            1e6 * curve.amplitude, curve.relative_friction, color=look.color, label=name, **line
+        )
+    _criterion(axes)
+    _working_point(axes, analysis)
+    # A still plate has its whole curve to show.
+    reach = max(1.5 * p.vibration_amplitude, min(needed or 0.0, float(here.amplitude[-1])))
+    style.friction_axes(axes, 1e6 * (reach or float(here.amplitude[-1])), top=1.06)
+    style.legend_below(axes, columns=2)
+    return figure
+
+
+@style.drawn
 def friction(analysis: Analysis) -> Figure:
     """Relative friction against amplitude on each surface: the paper's Fig 5, and solved."""
-    p, curves = analysis.prediction, analysis.friction_curves
-    here = next(c for c in curves if c.surface == p.surface.name and c.model == p.model)
+    p, display, curves = analysis.prediction, analysis.display, analysis.friction_curves
+    here = analysis.own_curve
     at = shown(p.vibration_amplitude, M, 3)
     needed = here.amplitude_for_criterion
     title = (
@@ -92,12 +121,14 @@ def friction(analysis: Analysis) -> Figure:
     )
     axes = figure.subplots()
     for number, curve in enumerate(curves):
-        color, dashes = style.LINES[number % len(style.LINES)]
+        look = look_of(curve.model)
+        # The colour is the model's, the dashes the surface's.
+        color, dashes = look.color, style.LINES[number % len(display.surfaces) % 4][1]
         reached = curve.amplitude_for_criterion
         zero = curve.zero_friction_amplitude
         words = "0.7 out of reach" if reached is None else f"0.7 at {shown(reached, M, 3)}"
         words += "" if zero is None else f", zero at {shown(zero, M, 3)}"
-        name = f"{_NAMES.get(curve.model, curve.model)}, {style.plain(curve.surface, 20)}"
+        name = f"{look.name}, {style.plain(curve.surface, 20)}"
         name += f" ({shown(curve.roughness, M, 3)}): {words}"
         axes.plot(
             1e6 * curve.amplitude, curve.relative_friction, color=color, ls=dashes, label=name
@@ -130,16 +161,19 @@ def film_models(analysis: Analysis) -> Figure:
     )
     axes = figure.subplots()
     for number, curve in enumerate(films.curves):
-        color, dashes = _FIVE[number % len(_FIVE)]
-        amplitude, name = 1e6 * curve.amplitude, _NAMES[curve.model]
-        axes.semilogy(amplitude, curve.load_share, color=color, ls=dashes, label=name)
+        color, dashes, name = look_of(curve.model)
+        amplitude = 1e6 * curve.amplitude
+        axes.loglog(amplitude, curve.load_share, color=color, ls=dashes, label=name)
         here = 1e6 * p.vibration_amplitude, films.results[number].load_share
         axes.plot(*here, "o", color=color, ms=6, zorder=3)
     axes.axhline(1, **style.REFERENCE, label="carries the whole finger")
-    right = 1e6 * max(float(curve.amplitude[-1]) for curve in films.curves)
-    axes.set(xlim=(0, right), ylim=(1e-4, 30), xlabel="vibration amplitude, zero-to-peak (µm)")
+    left, right = (1e6 * float(films.curves[0].amplitude[end]) for end in (0, -1))
+    axes.set(xlim=(left, right), ylim=(1e-4, 30), xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="film's pressure over the finger's")
-    style.plain_log(axes.yaxis)
+    axes.set_xticks(
+        [tick for tick in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50) if left <= tick <= right]
+    )
+    style.plain_log(axes.xaxis, axes.yaxis)
     style.legend_below(axes)
     return figure
 
@@ -171,10 +205,15 @@ def wavelength(analysis: Analysis) -> Figure:
     _criterion(axes)
     if 1e6 * p.vibration_amplitude <= right:
         # On the paper's curves stands what the paper's model says of this display.
-        films = analysis.film_models
-        friction = None if films is None else films.result("paper2008").relative_friction
-        more = f" at λ/2 = {shown(p.mode.half_wavelength, M, 3)}"
-        _working_point(axes, analysis, more, friction)
+        films, by = analysis.film_models, p.model
+        friction = p.relative_friction
+        if films is not None:
+            friction, by = films.result("paper2008").relative_friction, "paper2008"
+        here = (
+            f"{shown(p.vibration_amplitude, M, 3)} and λ/2 = {shown(p.mode.half_wavelength, M, 3)}"
+        )
+        words = f"this display by {by}: {friction:.2f} at {here}"
+        style.mark(axes, 1e6 * p.vibration_amplitude, friction, 9, words)
     style.friction_axes(axes, right, top=1.06)
     style.legend_below(axes)
     return figure
@@ -190,11 +229,15 @@ def _drop(axes: Axes, amplitude: float, color: str) -> None:
     axes.plot([1e6 * amplitude], [PAPER_CRITERION], "o", color=color, ms=5, zorder=3)
 
 
-def _working_point(
-    axes: Axes, analysis: Analysis, more: str = "", friction: float | None = None
-) -> None:
-    """Mark this display, at its own friction or at that of the model the curves are of."""
-    p = analysis.prediction
-    height = p.relative_friction if friction is None else friction
-    words = f"this display: {height:.2f} at {shown(p.vibration_amplitude, M, 3)}{more}"
-    style.mark(axes, 1e6 * p.vibration_amplitude, height, 9, words)
+def _working_point(axes: Axes, analysis: Analysis) -> None:
+    """Mark this display at its own friction, with its interval where there is one."""
+    p, unsure = analysis.prediction, analysis.uncertainty
+    at, words = 1e6 * p.vibration_amplitude, f"this display: {p.relative_friction:.2f}"
+    if unsure is not None:
+        low, high = unsure.interval
+        axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
+        for end in (low, high):
+            axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
+        words += f" ({span(low, high)}, {si.percent(unsure.level)} interval)"
+    words += f" at {shown(p.vibration_amplitude, M, 3)}"
+    style.mark(axes, at, p.relative_friction, 9, words)

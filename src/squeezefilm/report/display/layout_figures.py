@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.report.kit import style
@@ -105,7 +106,7 @@ def _disc(disc: DiscPlate, analysis: Analysis) -> Figure:
     share = (outer**2 - inner**2) / (radius**2 - hole**2)
     figure = style.new_figure(
         f"A ceramic below covers {100 * share:.0f} % of the disc; a finger pad {contact:.3g} mm "
-        f"wide touches {contact / (2 * radius):.0%} of its diameter",
+        f"wide touches {si.percent(contact / (2 * radius))} of its diameter",
         "thicknesses and diameters as described",
         5.6,
     )

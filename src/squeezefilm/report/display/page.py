@@ -3,32 +3,35 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squeezefilm import quantities as si
+from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
+from squeezefilm.report.kit.decisions import interval_rows, sensitivity_rows
+from squeezefilm.report.kit.electronics import electronics_rows
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
-from squeezefilm.report.kit.numbers import (
+from squeezefilm.report.kit.model_rows import (
     MISSED_HEADING,
-    display_values,
     film_rows,
     group_words,
     influence_rows,
-    key_numbers,
     missed_directions,
     models,
-    printable,
     theory_rows,
-    unsaid_warnings,
     weight_rows,
 )
+from squeezefilm.report.kit.numbers import display_values, printable
 from squeezefilm.report.kit.page_style import (
+    FigureOf,
     bullets,
     html_table,
     page,
+    part,
     section,
     stamped,
     text_table,
@@ -37,11 +40,14 @@ from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.verdict import Finding
     from squeezefilm.render.fidelity.trace import FrictionTrace
 
 # More samples of a trace than a reader can use would make megabytes of text.
 _MOST_SAMPLES = 4000
 _KINDS = {"good": "✓ Good", "limit": "△ Limit", "doubt": "? Doubt"}
+# Of what could be measured: as many rows as one decides from.
+_NEXT = 5
 
 
 def write_analysis(
@@ -69,6 +75,7 @@ def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
             "response": analysis.response,
             "pressure": analysis.pressure,
             "friction": analysis.friction_curves,
+            "band": analysis.band,
             "chain": analysis.model_curves,
             "films": None if analysis.film_models is None else analysis.film_models.curves,
             "wavelength": analysis.wavelength_curves,
@@ -99,17 +106,40 @@ def report_page(
     progress: Callable[[str], None] | None = None,
 ) -> str:
     """The report as the text of one self-contained HTML page."""
+    from squeezefilm.report.display.figures import DECISION, FIGURES, MODELS, TEXTURES
+
     summary = summary or analysis.summary()
     display = analysis.display
     title, name = escape(printable(display.title)), escape(printable(display.name))
+    number = 0
+
+    def drawn(figures: tuple[FigureOf, ...]) -> Iterator[str]:
+        nonlocal number
+        for item in figures:
+            number += 1
+            if progress is not None:
+                progress(f"figure {number} of {len(FIGURES)}: {item.heading.lower()}")
+            yield _figure(analysis, item, number)
+
     parts = [
-        section("Verdict", _verdict(analysis)),
-        section("Key numbers", _key_numbers(analysis)),
-        section("How sure the friction is", _how_sure(analysis)),
-        *_figures(analysis, progress),
-        section("How far the film's model is from where it holds", _validity(analysis)),
+        part("decide", "To decide from", _INTRODUCTION),
+        section("Verdict", _findings((*analysis.verdict, analysis.ears_finding))),
         section("Warnings", _warnings(analysis)),
+        section("Key numbers", _key_numbers(analysis)),
+        *drawn(DECISION),
+        section("Drive electronics", _electronics(analysis)),
+        section("What to measure next", _measure_next(analysis)),
+        part("models", "Appendix: other models, and the paper's claims", _aside(analysis)),
+        *drawn(MODELS),
+        section("What the readings of the film say", _films(analysis)),
+        section("How far the film's model is from where it holds", _validity(analysis)),
         section("Models", _models(analysis)),
+        part("textures", "Appendix: textures through the resonator", _TEXTURES),
+        *drawn(TEXTURES),
+        part("origin", "Appendix: where the numbers come from", ""),
+        section("More numbers", text_table("At the working point", _HEAD, more_rows(analysis))),
+        section("How sure the friction is", _how_sure(analysis)),
+        section("What each value does", _sensitivities(analysis)),
         section("Where the values come from", _provenance(analysis)),
     ]
     stamp = summary["provenance"]
@@ -125,33 +155,84 @@ def report_page(
     )
 
 
-def _verdict(analysis: Analysis) -> str:
+_HEAD = ("Quantity", "Value", "Remark")
+_INTRODUCTION = (
+    "This part is by one model each for plate, film and friction. "
+    '<a href="#part-models">Other models</a>, <a href="#part-textures">textures</a> and '
+    '<a href="#part-origin">where the values come from</a> follow in the appendix.'
+)
+_TEXTURES = "The resonator's envelope in an open loop; friction follows the amplitude at once."
+
+
+def _aside(analysis: Analysis) -> str:
+    """What to remember while reading what other models say."""
+    p = analysis.prediction
+    return (
+        f"The verdict's friction of {p.relative_friction:.2f} is by "
+        f"<code>{escape(p.model)}</code>. What follows is by the models that each figure names, "
+        "for comparison: none of it is in the verdict."
+    )
+
+
+def _findings(findings: tuple[Finding, ...]) -> str:
     items = "\n".join(
         f'<li class="{finding.kind}"><b>{_KINDS[finding.kind]}</b>'
         f"<span>{escape(printable(finding.text))}</span></li>"
-        for finding in analysis.verdict
+        for finding in findings
     )
     return f'<ul class="verdict">\n{items}\n</ul>'
 
 
 def _key_numbers(analysis: Analysis) -> str:
-    rows = [
-        (escape(label), f'<span class="mark">{escape(text)}</span>', escape(remark))
-        for label, text, remark in key_numbers(analysis)
-    ]
-    return html_table("At the working point", ("Quantity", "Value", "Remark"), rows)
+    rows, kinds = [], []
+    for heading, of_subject in decision_rows(analysis):
+        rows.append((escape(heading), "", ""))
+        rows += [
+            (escape(label), f'<span class="mark">{escape(text)}</span>', escape(remark))
+            for label, text, remark in of_subject
+        ]
+        kinds += ["subject", *[""] * len(of_subject)]
+    return html_table("At the working point", _HEAD, rows, kinds=kinds)
+
+
+def _electronics(analysis: Analysis) -> str:
+    """What the plate asks of its amplifier, and which can give it."""
+    rows = electronics_rows(analysis.drive_electronics) + interval_rows(analysis.uncertainty)[1:]
+    return text_table("Driven at the working point, without a finger", _HEAD, rows)
+
+
+def _sensitivities(analysis: Analysis) -> str:
+    """What each uncertain or toleranced value does to frequency, amplitude and friction."""
+    found = analysis.sensitivities
+    if found is None:
+        return "<p>Nothing vibrates here.</p>"
+    caption = f"From the 5 % to the 95 % end of each range; plates by {found.plate_model}"
+    head = ("Value", "From, to", "Frequency", "Amplitude", "µ′/µ", "Range")
+    return text_table(caption, head, sensitivity_rows(found))
+
+
+_INFLUENCES = ("Drawn", "From", "Share of the variance", "Whose")
+
+
+def _measure_next(analysis: Analysis) -> str:
+    """What could be measured, the most rewarding first."""
+    unsure = analysis.uncertainty
+    if unsure is None:
+        return "<p>Not known without an interval of the friction: the verdict says why.</p>"
+    group = next(one for one in unsure.groups if one.knowledge == "measurable")
+    rows = influence_rows(unsure, "measurable", _NEXT)
+    return text_table(group_words(group), _INFLUENCES, rows)
 
 
 def _how_sure(analysis: Analysis) -> str:
     unsure = analysis.uncertainty
     if unsure is None:
         return "<p>No interval: the verdict says why.</p>"
-    said = f"{unsure.sentence}, {unsure.level:.0%} interval. {unsure.standing}."
+    said = f"{unsure.sentence}, {si.percent(unsure.level)} interval. {unsure.standing}."
     parts = [f"<p>{escape(said)}</p>"]
-    head = ("Drawn", "From", "Share of the variance", "Whose")
     for group in unsure.groups:
         rows = influence_rows(unsure, group.knowledge, len(unsure.influences))
-        parts.append(text_table(group_words(group), head, rows))
+        parts.append(text_table(group_words(group), _INFLUENCES, rows))
     caption = "Laws and states that are drawn, by weights that are assumed"
     parts.append(text_table(caption, ("What", "Which", "Weight", "Why"), weight_rows(unsure)))
     if unsure.refused.count:
@@ -159,24 +240,23 @@ def _how_sure(analysis: Analysis) -> str:
     return "\n<br>\n".join(parts)
 
 
-def _figures(analysis: Analysis, progress: Callable[[str], None] | None) -> list[str]:
-    from squeezefilm.report.display.figures import FIGURES
+def _figure(analysis: Analysis, item: FigureOf, number: int) -> str:
+    """A figure in its section, under its number."""
     from squeezefilm.report.kit.style import svg
 
-    sections = []
-    for number, item in enumerate(FIGURES, 1):
-        if progress is not None:
-            progress(f"figure {number} of {len(FIGURES)}: {item.heading.lower()}")
-        figure = item.draw(analysis)
-        message = " ".join(figure.get_suptitle().split())
-        drawing = svg(figure, item.key, f"{item.heading}. {message}. {item.reading}")
-        body = (
-            f'<figure id="figure-{item.key}">\n<div class="scroll" tabindex="0" role="region" '
-            f'aria-label="{escape(item.heading)}">{drawing}</div>\n'
-            f"<figcaption>{escape(item.reading)}</figcaption>\n</figure>"
-        )
-        sections.append(section(f"{number}. {escape(item.heading)}", body, "figure"))
-    return sections
+    figure = item.draw(analysis)
+    message = " ".join(figure.get_suptitle().split())
+    drawing = svg(figure, item.key, f"{item.heading}. {message}. {item.reading}")
+    body = (
+        f'<figure id="figure-{item.key}">\n<div class="scroll" tabindex="0" role="region" '
+        f'aria-label="{escape(item.heading)}">{drawing}</div>\n'
+        f"<figcaption>{escape(item.reading)}</figcaption>\n</figure>"
+    )
+    return section(f"{number}. {escape(item.heading)}", body, "figure")
+
+
+def _films(analysis: Analysis) -> str:
+    return _findings(analysis.film_findings) if analysis.film_findings else "<p>Nothing moves.</p>"
 
 
 def _validity(analysis: Analysis) -> str:
@@ -228,7 +308,7 @@ def _models(analysis: Analysis) -> str:
         return used
     rows = [(f"<code>{escape(row[0])}</code>", *row[1:]) for row in theory_rows(analysis)]
     others = html_table(
-        "The same plate by other theories, each driven at its own resonance",
+        "The same plate by other theories, each driven at its own resonance, without a finger",
         ("Model", "Resonance", "Half wavelength", "Amplitude"),
         rows,
     )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.report.display.layout_figures import drive_strip
 from squeezefilm.report.kit import style
@@ -149,7 +150,7 @@ def frequency_response(analysis: Analysis) -> Figure:
     if driven:
         wide = "" if band is None else f" is {shown(1e3 * (band[1] - band[0]), HZ, 3)} wide"
         title = f"The resonance at {at}{wide}: the drive must stay on it{_lost_beside(p)}"
-    figure = style.new_figure(title, response.model, 4.3)
+    figure = style.new_figure(title, f"{response.model}; without a finger", 4.3)
     axes = figure.subplots()
     if band is not None:
         name = f"half-power band, {band[0]:.2f} to {band[1]:.2f} kHz (above 71 % of the peak)"
@@ -160,7 +161,7 @@ def frequency_response(analysis: Analysis) -> Figure:
     if p.voltage is not None and f[0] <= 1e-3 * p.frequency <= f[-1]:
         _mark_drive(axes, p, p.voltage, peak)
     axes.set(xlim=(float(f[0]), float(f[-1])), ylim=(0, 1.08 * peak if peak > 0 else 1))
-    axes.set(xlabel="frequency (kHz)", ylabel="amplitude per volt (nm/V)")
+    axes.set(xlabel="frequency (kHz)", ylabel="amplitude per volt, free (nm/V)")
     if p.voltage:
         style.micrometres_beside(axes, p.voltage, f"amplitude at {shown(p.voltage, V)} (µm)")
     style.legend_below(axes)
@@ -168,20 +169,25 @@ def frequency_response(analysis: Analysis) -> Figure:
 
 
 def _lost_beside(p: Prediction) -> str:
-    """What a drive beside the resonance gets of the motion, in words; nothing where it is all."""
+    """What a drive beside the resonance gets of the motion, in words; nothing where it is all.
+
+    Without a finger, which damps the motion wherever the drive is.
+    """
     share = 1.0
     if p.voltage:
-        share = p.vibration_amplitude / (p.voltage * p.mode.amplitude_per_volt)
+        share = p.touch.free_amplitude / (p.voltage * p.mode.amplitude_per_volt)
     if share >= 0.99:
         return ""
-    return f", but at {shown(p.frequency, HZ)} it gets {100 * share:.0f} % of the motion"
+    return f", but at {shown(p.frequency, HZ)} it gets {si.percent(share)} of the motion"
 
 
 def _mark_drive(axes: Axes, p: Prediction, voltage: float, peak: float) -> None:
     """The working point; without a voltage (V) the amplitude per volt is the peak's (nm/V)."""
-    height = 1e9 * p.vibration_amplitude / voltage if voltage else peak
-    amplitude = shown(p.vibration_amplitude, M, 3)
-    name = f"drive: {shown(voltage, V)} at {shown(p.frequency, HZ)}, {amplitude}"
+    free = p.touch.free_amplitude
+    height = 1e9 * free / voltage if voltage else peak
+    name = f"drive: {shown(voltage, V)} at {shown(p.frequency, HZ)}, {shown(free, M, 3)} free"
+    if p.vibration_amplitude != free:
+        name += f", {shown(p.vibration_amplitude, M, 3)} under the finger"
     look = {**style.ESTIMATE, "color": style.ORANGE, "ms": 8, "mew": 1.2}
     axes.plot(1e-3 * p.frequency, height, **look, zorder=4, label=name)
 

@@ -11,7 +11,8 @@ from squeezefilm import quantities as si
 from squeezefilm.report.friction.told_apart import told_apart
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
-from squeezefilm.report.kit.numbers import M, N, shown
+from squeezefilm.report.kit.model_looks import look_of
+from squeezefilm.report.kit.numbers import SPEED, M, N, shown
 from squeezefilm.report.kit.page_style import FigureOf, drawn_figures, picture_files
 
 if TYPE_CHECKING:
@@ -27,11 +28,7 @@ if TYPE_CHECKING:
     from squeezefilm.chain.prediction import Prediction
 
 _SHEARED = "partial-levitation-shear"
-_STYLES = {
-    "paper2008": (*style.LINES[1], "paper's asymptote"),
-    "film-smooth": (*style.LINES[2], "smooth film, no ridges"),
-    "film-sealed": (*style.LINES[3], "film under the paper's ridges, solved"),
-}
+_HELD = ("paper2008", "film-smooth", "film-sealed")
 _NAMES_OF_PARAMETERS = {
     "finger.asperities.roughness": "roughness of skin and surface",
     "finger.asperities.modulus": "modulus of the outermost skin",
@@ -78,8 +75,8 @@ def _models(
     )
     axes = figure.subplots()
     for curve in curves:
-        if curve.model in _STYLES:
-            color, dashes, name = _STYLES[curve.model]
+        if curve.model in _HELD:
+            color, dashes, name = look_of(curve.model)
             x = 1e6 * curve.amplitude
             axes.plot(x, curve.relative_friction, color=color, ls=dashes, label=name)
     own = next(c for c in curves if c.model == "partial-levitation")
@@ -87,19 +84,21 @@ def _models(
     stiff = np.interp(own.amplitude, tied.amplitude, tied.relative_friction)
     x, name = 1e6 * own.amplitude, "between a stiff pad (one mean gap) and a soft one"
     axes.fill_between(x, stiff, own.relative_friction, color=style.BAND, lw=0, label=name)
-    name = "partial levitation, each ridge at its own balance"
-    axes.plot(x, own.relative_friction, color=style.BLUE, lw=2.4, label=name)
+    look = look_of("partial-levitation")
+    name = f"{look.name}, each ridge at its own balance"
+    axes.plot(x, own.relative_friction, color=look.color, lw=2.4, label=name)
     for curve in curves:
         if curve.model == _SHEARED:
-            name = f"the same with shear, at {shown(p.speed, si.Unit('m/s'))}"
-            axes.plot(1e6 * curve.amplitude, curve.relative_friction, color=style.INK, label=name)
+            look = look_of(_SHEARED)
+            name = f"{look.name}, at {shown(p.speed, SPEED)}"
+            axes.plot(1e6 * curve.amplitude, curve.relative_friction, color=look.color, label=name)
     at, words = 1e6 * p.vibration_amplitude, f"{p.relative_friction:.2f}"
     if unsure is not None:
         low, high = unsure.interval
         axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
         for end in (low, high):
             axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
-        words += f" ({low:.2f}–{high:.2f}, {unsure.level:.0%}, median {unsure.median:.2f})"
+        words += f" ({low:.2f}–{high:.2f}, {si.percent(unsure.level)}, median {unsure.median:.2f})"
     style.mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
     style.friction_axes(axes, float(x[-1]))
     style.legend_below(axes, columns=2)
@@ -170,7 +169,9 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
     )
     left, right = figure.subplots(1, 2, width_ratios=[1, 1.15])
     left.hist(unsure.samples, bins=24, range=(0, 1), color=style.BLUE, alpha=0.85)
-    left.axvspan(low, high, color=style.BAND, zorder=0, label=f"{unsure.level:.0%} interval")
+    left.axvspan(
+        low, high, color=style.BAND, zorder=0, label=f"{si.percent(unsure.level)} interval"
+    )
     name = f"as described: {unsure.nominal:.2f}"
     left.axvline(unsure.nominal, color=style.INK, lw=1.6, label=name)
     name = f"median: {unsure.median:.2f}"

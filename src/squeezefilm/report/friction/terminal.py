@@ -8,19 +8,9 @@ from squeezefilm import quantities as si
 from squeezefilm.report.friction.told_apart import show_told_apart
 from squeezefilm.report.kit.area_rows import place_rows
 from squeezefilm.report.kit.decisions import interval_rows, wanted_rows
-from squeezefilm.report.kit.numbers import (
-    HZ,
-    M,
-    N,
-    V,
-    group_words,
-    heat_rows,
-    influence_rows,
-    reduction_row,
-    shown,
-    speed_row,
-    weight_rows,
-)
+from squeezefilm.report.kit.model_rows import group_words, influence_rows, weight_rows
+from squeezefilm.report.kit.numbers import HZ, M, N, V, shown
+from squeezefilm.report.kit.point_rows import heat_rows, reduction_row, speed_row
 from squeezefilm.report.kit.terminal import heading, plain_console, show_missed, table
 
 if TYPE_CHECKING:
@@ -38,7 +28,7 @@ def show_friction(result: FrictionAnalysis) -> None:
     if unsure is None:
         console.print(f"µ′/µ = {p.relative_friction:.2f} as described")
     else:
-        console.print(f"{unsure.sentence}: {unsure.level:.0%} interval. {unsure.standing}.")
+        console.print(f"{unsure.sentence}: {si.percent(unsure.level)} interval. {unsure.standing}.")
     console.print(f"{result.verdict.kind}: {result.verdict.text}")
     table(console, ("", "", ""), _rows(result), fixed=(0,))
     heading(console, "The same finger by other models")

@@ -52,9 +52,9 @@ def show_told_apart(found: ToldApart) -> None:
             f"{_percent(overall.least)} of the cases for the two told worst."
         )
     console.print(
-        "“Right” is how often whoever measures would choose the right one of the two; 50% is "
+        "“Right” is how often whoever measures would choose the right one of the two; 50 % is "
         f"guessing. The rest of the finger is drawn ({found.draws} fingers); a measured µ′/µ is "
-        f"taken to scatter by {found.noise:.0%}, which is assumed."
+        f"taken to scatter by {si.percent(found.noise)}, which is assumed."
     )
 
 
@@ -68,7 +68,7 @@ def told_apart(result: Any) -> Figure:
     figure = style.new_figure(
         f"One measurement tells {_OF[best.of]} best: {' or '.join(best.pair)}, at "
         f"{_words(best.condition)}, right in {_percent(best.right)} of the cases",
-        f"{found.draws} fingers drawn, µ′/µ measured within {found.noise:.0%} (assumed); "
+        f"{found.draws} fingers drawn, µ′/µ measured within {si.percent(found.noise)} (assumed); "
         "blank where draws are refused",
         6.0,
     )
@@ -100,7 +100,7 @@ def _pair(one: BestExperiment) -> str:
 
 def _percent(share: float) -> str:
     """A probability of a model, which is never certain."""
-    return f"{share:.0%}" if share <= 0.99 else "above 99%"
+    return si.percent(share) if share <= 0.99 else "above 99 %"
 
 
 def _words(at: Condition) -> str:

@@ -36,6 +36,8 @@ h2 {{ font-size: 1.25rem; margin: 0 0 .6rem; }}
 .name, figcaption, footer, caption {{ color: var(--muted); }}
 section {{ background: var(--paper); border: 1px solid var(--grid); border-radius: .5rem;
   padding: 1.1rem 1.25rem; margin: 1rem 0; }}
+.part {{ margin: 2.2rem 0 0; }} .part h2 {{ font-size: 1.45rem; }} .part p {{ margin: 0; }}
+a {{ color: var(--blue); }}
 figure {{ margin: 0; }}
 figcaption {{ font-size: .92rem; margin-top: .5rem; max-width: 52rem; }}
 .scroll {{ overflow-x: auto; }}
@@ -52,6 +54,7 @@ ul.verdict li span {{ min-width: 0; }}
 .doubt {{ border-left-style: double !important; border-color: var(--orange) !important; }}
 .doubt b {{ color: var(--orange); }}
 table {{ border-collapse: collapse; width: 100%; font-size: .95rem; }}
+.subject th {{ color: var(--muted); font-weight: 400; padding-top: .9rem; }}
 caption {{ text-align: left; padding-bottom: .4rem; }}
 th, td {{ text-align: left; vertical-align: top; padding: .32rem .8rem .32rem 0;
   border-bottom: 1px solid var(--grid); overflow-wrap: break-word; }}
@@ -60,11 +63,12 @@ th {{ font-weight: 600; }}
 .mark {{ font-weight: 700; }}
 code {{ font-family: ui-monospace, "DejaVu Sans Mono", monospace; font-size: .9em; }}
 footer {{ font-size: .9rem; padding-bottom: 2rem; }}
-@media (max-width: 48rem) {{ ul.verdict li {{ display: block; }} }}
+@media (max-width: 48rem) {{ ul.verdict li, ul.verdict b {{ display: block; }} }}
 @media print {{
   body {{ font-size: 10.5pt; }}
   section {{ border: 0; padding: 0; margin: 0 0 1.2rem; }}
   section.figure, ul.verdict li, tr {{ break-inside: avoid; }}
+  .part:not(:first-child) {{ break-before: page; }}
   svg {{ min-width: 0; }}
 }}
 """
@@ -126,6 +130,12 @@ def bullets(texts: Iterable[str], none: str = "None.") -> str:
 def links(names: Iterable[str]) -> str:
     """The files of these names beside the page."""
     return ", ".join(f'<a href="{escape(name)}">{escape(name)}</a>' for name in names)
+
+
+def part(key: str, heading: str, text: str) -> str:
+    """The beginning of a part of a page, under which its sections follow; HTML already."""
+    said = f"\n<p>{text}</p>" if text else ""
+    return f'<div class="part" id="part-{key}">\n<h2>{heading}</h2>{said}\n</div>\n'
 
 
 def section(heading: str, body: str, kind: str = "") -> str:

@@ -320,9 +320,13 @@ def svg(figure: Figure, prefix: str, label: str) -> str:
     """
     from xml.sax.saxutils import quoteattr
 
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     stream = io.StringIO()
     with rc():
-        figure.savefig(stream, format="svg", metadata={"Date": None})
+        # `savefig` draws all of it twice, the first time for the layout alone, which drawing does.
+        canvas: Any = FigureCanvasSVG(figure)
+        canvas.print_svg(stream, metadata={"Date": None})
     text = stream.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)

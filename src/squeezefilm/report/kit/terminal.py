@@ -7,31 +7,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from squeezefilm.report.kit.decisions import (
-    felt_rows,
-    interval_rows,
-    sensitivity_rows,
-    wanted_rows,
-)
-from squeezefilm.report.kit.electronics import electronics_rows
-from squeezefilm.report.kit.numbers import (
-    MISSED_HEADING,
-    film_rows,
-    key_numbers,
-    missed_directions,
-    models,
-    printable,
-    theory_rows,
-    unsaid_warnings,
-)
+from squeezefilm.report.kit.model_rows import MISSED_HEADING, missed_directions
+from squeezefilm.report.kit.numbers import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-    from squeezefilm.analysis.analyze import Analysis
-
-_KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
-_STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
 
 
 @contextmanager
@@ -137,53 +117,3 @@ def show_missed(console: Console, model: str) -> None:
     """Print what measurements say and a friction model does not."""
     heading(console, MISSED_HEADING.format(model))
     bullets(console, [("–", text, "yellow") for text in missed_directions(model)])
-
-
-def show_analysis(analysis: Analysis) -> None:
-    """Print an analysis: verdict last, where the eye rests, after numbers, models and warnings."""
-    display = analysis.display
-    console = show_rows(f"{display.title} [{display.name}]", key_numbers(analysis))
-    _show_decisions(console, analysis)
-    if analysis.prediction.voltage is not None:
-        heading(console, "Drive electronics")
-        table(console, ("", "", ""), electronics_rows(analysis.drive_electronics), fixed=(0,))
-    heading(console, "Models")
-    table(console, ("", ""), models(analysis), fixed=(0,))
-    show_missed(console, analysis.prediction.model)
-    if analysis.other_models:
-        heading(console, "The same plate by other theories")
-        others = [(model, at, amplitude) for model, at, _, amplitude in theory_rows(analysis)[1:]]
-        table(console, ("model", "resonance", "amplitude"), others)
-    if films := film_rows(analysis):
-        heading(console, "The film under the finger, drawn in five ways")
-        table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
-    warned = unsaid_warnings(analysis)
-    if warned:
-        heading(console, "Warnings")
-        bullets(console, [("!", text, "yellow") for text in warned])
-    heading(console, "Verdict")
-    verdict = [
-        (_KINDS[item.kind], item.text, _STYLES[item.kind])
-        for item in (*analysis.verdict, analysis.ears_finding)
-    ]
-    bullets(console, verdict)
-    console.print()
-
-
-def _show_decisions(console: Console, analysis: Analysis) -> None:
-    """Print the intervals of what one decides from, and what each value does."""
-    rows = interval_rows(analysis.uncertainty) + wanted_rows(analysis.wanted)
-    rows += felt_rows(analysis.felt)
-    if rows:
-        heading(console, "How sure it is")
-        table(console, ("", "", ""), rows, fixed=(0,))
-    found = analysis.sensitivities
-    if found is not None:
-        heading(console, "What each value does, from the 5 % to the 95 % end of its range")
-        head = ("value", "from, to", "frequency", "amplitude", "µ′/µ", "range")
-        table(console, head, sensitivity_rows(found), fixed=(0,))
-        console.print(
-            f"µ′/µ is {found.relative_friction:.2f} as described. Plates with one thing different "
-            f"by {found.plate_model}; the drive follows the resonance. --json has all "
-            f"{len(found.rows)} values."
-        )

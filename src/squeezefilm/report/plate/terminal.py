@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
-from squeezefilm.report.kit.numbers import HZ, M, V, heat_rows, shown
+from squeezefilm.report.kit.numbers import HZ, PER_VOLT, A, M, V, changed, shown
+from squeezefilm.report.kit.point_rows import Row, heat_rows, sound_rows
 from squeezefilm.report.kit.terminal import heading, show_rows, table
 
 if TYPE_CHECKING:
@@ -20,9 +21,8 @@ if TYPE_CHECKING:
     from squeezefilm.plate.ring.stator import StatorFit
     from squeezefilm.plate.sound import SoundField
 
-PER_VOLT, A, OHM = si.Unit("m/V"), si.Unit("A"), si.Unit("ohm")
+OHM = si.Unit("ohm")
 HENRY, FARAD = si.Unit("H"), si.Unit("F")
-Row = tuple[str, str, str]
 
 # Of the working mode's amplitude per volt: below it a mode is called not driven.
 _DRIVEN = 1e-4
@@ -97,32 +97,16 @@ def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
     if a.tooth_height > 0:
         low, high = fit.frequency_bounds
         said.append(
-            f"Teeth: an equivalent layer of {a.tooth_fill:.0%} metal ({a.tooth_model}). Between "
-            f"teeth without hoop stiffness and teeth as stiff as their share of metal, this body "
-            f"lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to 13 % of "
-            "the way up."
+            f"Teeth: an equivalent layer of {si.percent(a.tooth_fill)} metal ({a.tooth_model}). "
+            f"Between teeth without hoop stiffness and teeth as stiff as their share of metal, "
+            f"this body lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to "
+            "13 % of the way up."
         )
     said.append(
         f"Assumed: {a.metal.name}, {a.ceramic.name} of {shown(a.ceramic_thickness, M)}, teeth of "
         f"{shown(a.tooth_height, M)}, {a.driven_sectors} half-wave sectors on the channel."
     )
     return tuple(said)
-
-
-def sound_rows(sound: SoundField, direction: str) -> list[Row]:
-    """Sound pressure levels by distance; `direction` says where they are loudest."""
-    guidance = sound.guidance
-    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
-    return [
-        (
-            f"Sound at {distance:g} m",
-            f"{level:.0f} dB",
-            f"{direction}; {limit}" if number == 0 else "",
-        )
-        for number, (distance, level) in enumerate(
-            zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
-        )
-    ]
 
 
 def show_guidance(console: Console, sound: SoundField) -> None:
@@ -201,7 +185,7 @@ def _theory_rows(result: PlateAnalysis) -> list[Row]:
     """The working mode's frequency by simpler theories."""
     theories = ("Timoshenko beam", result.beam_frequency), ("shear plate", result.shear_frequency)
     return [
-        (f"As a {name}", shown(found, HZ, 5), f"{found / result.working.frequency - 1:+.1%}")
+        (f"As a {name}", shown(found, HZ, 5), changed(found / result.working.frequency - 1))
         for name, found in theories
         if found is not None
     ]

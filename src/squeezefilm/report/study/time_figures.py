@@ -120,8 +120,8 @@ def psychometric_function(fit: PsychometricFit) -> Figure:
     function, log = fit.function, fit.function.axis == "log"
     low, high = fit.posterior_interval["threshold"]
     figure = style.new_figure(
-        f"The threshold is {function.threshold:.3g}, with {fit.level:.0%} between {low:.3g} and "
-        f"{high:.3g}",
+        f"The threshold is {function.threshold:.3g}, with {100 * fit.level:g} % between "
+        f"{low:.3g} and {high:.3g}",
         f"{function.shape} function, guess rate {function.guess_rate:.2g}, lapse rate "
         f"{function.lapse_rate:.2g}; {int(fit.trials.sum())} trials; credible interval",
         4.4,

@@ -128,9 +128,8 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 
     monkeypatch.setattr(command, "solve_modes", solve)
     monkeypatch.setattr(command, "harmonic_response", respond)
-    stand_in("rectangular_surface", "a surface")
     stand_in(
-        "sound_field",
+        "plate_sound",
         SimpleNamespace(distances=(0.3,), sound_pressure_level_dB=(70.0,), guidance=None),
     )
     stand_in(
@@ -160,12 +159,7 @@ def test_an_analysis_is_around_the_mode_asked_for(display: Display, parts: dict[
     assert one.centreline_per_volt == pytest.approx(40e-9, rel=1e-3)
     assert (one.beam_frequency, one.beam_amplitude_per_volt) == (33e3, 9e-8)
     assert parts["shear_mode"][0] == (plate, (4, 0), 30e3)
-    x, y, velocity, frequency = parts["rectangular_surface"][0]
-    assert (x[[0, -1]], y[[0, -1]]) == (pytest.approx([0, LENGTH]), pytest.approx([0, WIDTH]))
-    w = -40e-9j * np.outer(along(x), 0.5 + y / WIDTH)
-    assert velocity == pytest.approx(2j * math.pi * 30e3 * 15 * w)
-    assert frequency == 30e3
-    assert parts["sound_field"][0] == ("a surface",)
+    assert parts["plate_sound"][0] == (one.response, one.response.resonance, 30e3, 15.0)
     assert told == [
         "mode (4,0)", "all modes in the band", "response at 21 frequencies", "airborne sound",
     ]  # fmt: skip

@@ -21,31 +21,32 @@ from squeezefilm.report.kit import style
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = (
-    "layout", "mode", "area", "response", "pressure", "friction", "chain", "films", "wavelength",
-    "texture", "fidelity", "compensation", "survival",
+    "layout", "mode", "area", "response", "band", "chain", "films", "pressure", "friction",
+    "wavelength", "texture", "fidelity", "compensation", "survival",
 )  # fmt: skip
 # The odd displays, each with the figures that its oddness can spoil.
 ODD = {
     "one-ceramic": ("layout", "mode", "response", "films"),
-    "hostile-names": ("layout", "friction", "wavelength"),
+    "hostile-names": ("layout", "band", "friction", "wavelength"),
     "no-voltage": (
         "mode",
         "response",
         "pressure",
         "friction",
+        "band",
         "chain",
         "films",
         "texture",
         "fidelity",
     ),
-    "floating": ("pressure", "friction", "wavelength", "texture"),
+    "floating": ("pressure", "band", "friction", "wavelength", "texture"),
     "off-resonance": ("response",),
     "not-driven": ("mode", "response", "friction"),
     "amplitude-given": ("response", "friction"),
     "many-nodes": ("layout", "mode"),
     "square": ("layout",),
     "smooth-finger": ("pressure",),
-    "five-surfaces": ("friction",),
+    "five-surfaces": ("friction", "band"),
     "small-ring": ("layout", "mode", "films"),
     "printed-model": ("pressure", "friction", "texture"),
 }
@@ -152,7 +153,7 @@ def test_the_response_says_when_the_drive_is_beside_it_or_in_vain(
 ) -> None:
     draw = FIGURES[2].draw
     off = analysis_of("off-resonance").prediction
-    share = off.vibration_amplitude / (15 * off.mode.amplitude_per_volt)
+    share = off.touch.free_amplitude / (15 * off.mode.amplitude_per_volt)
     assert 0.4 < share < 0.7
     said = f"{100 * share:.0f}\u00a0% of the motion"
     assert said in draw(analysis_of("off-resonance")).get_suptitle()

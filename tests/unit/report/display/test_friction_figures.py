@@ -13,15 +13,18 @@ from squeezefilm.analysis.curves import FrictionCurve, PressureProfile, Waveleng
 from squeezefilm.report.display.friction_figures import (
     film_models,
     friction,
+    own_friction,
     pressure,
     wavelength,
 )
-from squeezefilm.report.kit.style import BLUE, GREEN, INK, LINES, MUTED
+from squeezefilm.report.kit.model_looks import look_of
+from squeezefilm.report.kit.style import BAND, INK, MUTED
 
 AMPLITUDE = "vibration amplitude, zero-to-peak (µm)"
 GRID = np.linspace(0, 10e-6, 11)
 POINT = SimpleNamespace(
-    normal_force=0.5, vibration_amplitude=2e-6, relative_friction=0.8125, model="paper2008",
+    normal_force=0.5, speed=0.08, vibration_amplitude=2e-6, relative_friction=0.8125,
+    model="paper2008",
     surface=SimpleNamespace(name="polished"), frequency=40e3,
     mode=SimpleNamespace(half_wavelength=10e-3),
 )  # fmt: skip
@@ -29,6 +32,7 @@ POINT = SimpleNamespace(
 DISPLAY = SimpleNamespace(
     finger=SimpleNamespace(contact_length=10e-3, ridge_amplitude=50e-6, ridge_period=0.5e-3),
     gas=SimpleNamespace(ambient_pressure=1e5),
+    surfaces=("polished", "rough"),
 )
 PLACE = np.linspace(-5e-3, 5e-3, 101)
 GAP = 50e-6 + 50e-6 * np.abs(np.cos(PLACE / 5e-3))
@@ -62,7 +66,9 @@ FILMS = SimpleNamespace(
         SimpleNamespace(model="film-plateau", load_share=np.nan, relative_friction=np.nan),
     ),
     curves=tuple(
-        SimpleNamespace(model=model, amplitude=top * GRID, load_share=share * (GRID + 1e-7) / 1e-5)
+        SimpleNamespace(
+            model=model, amplitude=top * (GRID + 1e-7), load_share=share * (GRID + 1e-7) / 1e-5
+        )
         for model, top, share in (
             ("paper2008", 0.4, 2.0), ("film-smooth", 0.5, 0.01), ("film-plateau", 0.3, 1.0),
         )
@@ -75,6 +81,7 @@ def made(**changes: Any) -> Any:
     parts: dict[str, Any] = {
         "prediction": POINT, "display": DISPLAY, "pressure": (ASYMPTOTE, SOLVED),
         "friction_curves": CURVES, "wavelength_curves": WAVES, "film_models": FILMS,
+        "own_curve": CURVES[0], "own_curves": CURVES[:2], "uncertainty": None, "band": None,
     }  # fmt: skip
     return SimpleNamespace(**{**parts, **changes})
 
@@ -106,7 +113,9 @@ def test_gap_and_pressure_are_drawn_whole_and_enlarged() -> None:
         assert paper.get_xdata() == pytest.approx(1e3 * PLACE)
         assert paper.get_ydata() == pytest.approx(ASYMPTOTE.mean_pressure)
         assert solved.get_ydata() == pytest.approx(SOLVED.mean_pressure)
-        assert [to_hex(one.get_color()) for one in (paper, solved)] == [BLUE, GREEN]
+        assert [to_hex(one.get_color()) for one in (paper, solved)] == [
+            look_of(one.model).color for one in (ASYMPTOTE, SOLVED)
+        ]
         assert carries.get_ydata() == pytest.approx([1.05, 1.05])
         assert axes.get_xlim() == pytest.approx((-reach, reach))
         assert axes.get_xlabel() == "position under the finger (mm)"
@@ -159,10 +168,12 @@ def test_friction_is_drawn_for_every_surface_with_what_it_needs() -> None:
         "this display: 0.81 at 2 µm",
     ]
     *drawn, asked, here = lines.values()
-    for line, one, (color, _) in zip(drawn, CURVES, LINES, strict=False):
+    for line, one in zip(drawn, CURVES, strict=True):
         assert line.get_xdata() == pytest.approx(np.arange(11))
         assert line.get_ydata() == pytest.approx(one.relative_friction)
-        assert to_hex(line.get_color()) == color
+        assert to_hex(line.get_color()) == look_of(one.model).color
+    # Dashes tell the surfaces of one model.
+    assert len({str(one._dash_pattern) for one in drawn[:2]}) == 2
     assert asked.get_ydata() == [0.7, 0.7]
     assert to_hex(asked.get_color()) == MUTED
     assert here.get_xydata().tolist() == [[pytest.approx(2), 0.8125]]
@@ -193,13 +204,46 @@ def test_what_is_reached_is_marked_and_what_lies_beyond_is_not() -> None:
 
 
 def test_the_title_is_of_the_prediction_s_own_curve() -> None:
-    own = made(prediction=point(model="partial-levitation", relative_friction=0.98))
+    model = "partial-levitation"
+    own = made(prediction=point(model=model, relative_friction=0.98), own_curve=CURVES[2])
     assert words(friction(own).get_suptitle()) == (
         "At 2 µm the friction on polished is 0.98 of what it is without vibration; 0.7 takes more "
         "than 50 µm"
     )
-    rough = made(prediction=point(surface=SimpleNamespace(name="rough")))
+    rough = made(own_curve=CURVES[1])
     assert words(friction(rough).get_suptitle()).endswith("0.7 takes 6 µm")
+
+
+def test_the_own_model_is_drawn_within_its_band() -> None:
+    band = SimpleNamespace(
+        amplitude=GRID[:4], low=np.array([1, 0.5, 0.2, 0.1]), high=np.array([1, 0.9, 0.8, 0.7]),
+        level=0.9,
+    )  # fmt: skip
+    unsure = SimpleNamespace(
+        interval=(0.2, 0.8), level=0.9, sentence="µ′/µ = 0.81 as described (0.20–0.80)"
+    )
+    figure = own_friction(made(band=band, uncertainty=unsure))
+    axes = figure.axes[0]
+    drawn = labelled(axes)
+    assert list(drawn) == [
+        "90 % of what the friction may be at an amplitude",
+        "as described, on polished (roughness 1.5 µm)", "as described, on rough (roughness 1.5 µm)",
+        "0.7: what the paper asks for", "this display: 0.81 (0.20–0.80, 90 % interval) at 2 µm",
+    ]  # fmt: skip
+    area, own, other, *_ = drawn.values()
+    assert to_hex(area.get_facecolor()[0]) == BAND
+    assert area.get_paths()[0].vertices[:, 0].max() == pytest.approx(3)
+    assert {to_hex(one.get_color()) for one in (own, other)} == {look_of("paper2008").color}
+    assert own.get_linewidth() > other.get_linewidth()
+    bar = next(one for one in axes.get_lines() if list(one.get_ydata()) == [0.2, 0.8])
+    assert bar.get_xdata() == pytest.approx([2, 2])
+    assert axes.get_xlim() == pytest.approx((0, 3))
+    assert words(figure.get_suptitle()) == (
+        "At 2 µm on polished µ′/µ = 0.81 as described (0.20–0.80); 0.7 takes 2.4 µm"
+    )
+    alone = own_friction(made())
+    assert words(alone.get_suptitle()) == "At 2 µm on polished µ′/µ = 0.81; 0.7 takes 2.4 µm"
+    assert len(labelled(alone.axes[0])) == 4
 
 
 def test_films_are_compared_by_the_share_they_carry() -> None:
@@ -220,7 +264,9 @@ def test_films_are_compared_by_the_share_they_carry() -> None:
     for line, mark in zip(lines.values(), marks, strict=False):
         assert line.get_color() == mark.get_color()
     assert axes.get_yscale() == "log"
-    assert axes.get_xlim() == pytest.approx((0, 5))
+    assert axes.get_xscale() == "log"
+    ends = 1e6 * FILMS.curves[0].amplitude[[0, -1]]
+    assert axes.get_xlim() == pytest.approx(ends)
     assert axes.get_ylim() == pytest.approx((1e-4, 30))
     assert (axes.get_xlabel(), axes.get_ylabel()) == (
         AMPLITUDE,
@@ -246,7 +292,7 @@ def test_waves_are_drawn_with_the_amplitude_each_needs() -> None:
     lines = labelled(axes)
     assert list(lines) == [
         "λ/2 = 15 mm: 0.7 at 1.5 µm", "λ/2 = 7.5 mm: 0.7 at 2.4 µm", "λ/2 = 5 mm: 0.7 at 12 µm",
-        "0.7: what the paper asks for", "this display: 0.25 at 2 µm at λ/2 = 10 mm",
+        "0.7: what the paper asks for", "this display by paper2008: 0.25 at 2 µm and λ/2 = 10 mm",
     ]  # fmt: skip
     for line, one in zip(lines.values(), WAVES, strict=False):
         assert line.get_xdata() == pytest.approx(0.4 * np.arange(11))
@@ -268,4 +314,4 @@ def test_a_display_beyond_the_curves_is_left_out() -> None:
     beyond = wavelength(made(prediction=point(vibration_amplitude=4.1e-6))).axes[0]
     assert not any(name.startswith("this display") for name in labelled(beyond))
     still = wavelength(made(film_models=None)).axes[0]
-    assert "this display: 0.81 at 2 µm at λ/2 = 10 mm" in labelled(still)
+    assert "this display by paper2008: 0.81 at 2 µm and λ/2 = 10 mm" in labelled(still)

@@ -15,13 +15,11 @@ from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit
 from squeezefilm.report.display import page
+from squeezefilm.report.display.figures import DECISION, FIGURES, MODELS, TEXTURES
 from squeezefilm.report.display.page import report_page, write_analysis
-from squeezefilm.report.kit.numbers import shown
+from squeezefilm.report.kit.numbers import printable, shown
 
-FIGURE_KEYS = (
-    "layout", "mode", "area", "response", "pressure", "friction", "chain", "films", "wavelength",
-    "texture", "fidelity", "compensation", "survival",
-)  # fmt: skip
+FIGURE_KEYS = tuple(item.key for item in FIGURES)
 VOID = {"meta", "br", "link", "img", "hr", "input"}
 
 
@@ -80,6 +78,25 @@ def test_page_is_well_formed_with_all_figures(written: tuple[Path, Analysis]) ->
         assert len(attrs["aria-label"] or "") > 60
 
 
+def test_what_one_decides_from_comes_first(written: tuple[Path, Analysis]) -> None:
+    text = written[0].read_text(encoding="utf-8")
+    parts = [text.index(f'id="part-{key}"') for key in ("decide", "models", "textures", "origin")]
+    assert parts == sorted(parts)
+    first, models, textures, origin = parts
+    for figures, begins, ends in (
+        (DECISION, first, models), (MODELS, models, textures), (TEXTURES, textures, origin),
+    ):  # fmt: skip
+        for item in figures:
+            assert begins < text.index(f'id="figure-{item.key}"') < ends
+    order = ("Verdict", "Warnings", "Key numbers", "1. Side view", "What to measure next")
+    places = [text.index(f"<h2>{heading}") for heading in order]
+    assert places == sorted(places)
+    assert places[-1] < models
+    # Everything but the verdict's model stands in the appendix.
+    words = re.sub(r"<[^>]*>", " ", text[first:models])
+    assert not any(name in words for name in ("film-open", "paper2008", "timoshenko"))
+
+
 def test_page_refers_to_nothing_outside(written: tuple[Path, Analysis]) -> None:
     text = written[0].read_text(encoding="utf-8")
     assert "http://" not in text
@@ -111,17 +128,18 @@ def test_page_says_the_numbers_the_doubts_and_the_origin(written: tuple[Path, An
     p = analysis.prediction
     for part in (
         "33.57 kHz",
-        shown(p.vibration_amplitude, Unit("m")),
+        shown(p.vibration_amplitude, Unit("m"), 3),
+        shown(p.touch.free_amplitude, Unit("m"), 3),
         f"{p.squeeze_number:.4g}",
-        f"{p.relative_friction:.3f}",
+        f"{p.relative_friction:.2f}",
         "piezoelectric_solid_3d (used)",
         "timoshenko_beam_plane_strain",
         "Temperature rise",
         "at a fixed 33.57 kHz",
     ):
         assert part in words
-    for finding in analysis.verdict:
-        assert " ".join(finding.text.split()) in words
+    for finding in (*analysis.verdict, *analysis.film_findings):
+        assert printable(finding.text) in words
     for kind in ("✓ Good", "△ Limit", "? Doubt"):
         assert kind in words
     assert "⚠ assumed" in words
@@ -143,7 +161,7 @@ def test_json_is_strict_and_carries_curves_and_description(
     curves = data["curves"]
     assert set(curves) == {
         "response", "pressure", "friction", "chain", "films", "wavelength", "texture",
-    "fidelity", "active_area",
+        "fidelity", "active_area", "band",
     }  # fmt: skip
     assert len(curves["response"]["frequency_Hz"]) == 200
     trace = curves["texture"]

@@ -112,8 +112,8 @@ def test_every_model_is_drawn_in_its_own_way() -> None:
     lines = labelled(axes)
     expected = {
         "paper's asymptote": (ORANGE, 0.9),
-        "smooth film, no ridges": (GREEN, 0.8),
-        "film under the paper's ridges, solved": (PURPLE, 0.7),
+        "solved film, no ridges": (GREEN, 0.8),
+        "solved film, grooves sealed": (PURPLE, 0.7),
         "partial levitation, each ridge at its own balance": (BLUE, 0.4),
     }
     assert len({str(lines[name].get_linestyle()) for name in expected}) == 2
@@ -133,7 +133,7 @@ def test_with_shear_the_curve_is_drawn_that_the_working_point_is_on() -> None:
     point = SimpleNamespace(**{**vars(POINT), "model": "partial-levitation-shear", "speed": 0.08})
     curves = (*CURVES, curve("partial-levitation-shear", FINE, 0.5))
     figure = models(without(curves=curves, prediction=point))
-    line = labelled(figure.axes[0])["the same with shear, at 80 mm/s"]
+    line = labelled(figure.axes[0])["partial levitation with shear, at 80 mm/s"]
     assert line.get_ydata() == pytest.approx(1 - 0.5 * np.linspace(0, 1, 9))
     assert words(ripple(without(prediction=point)).get_supxlabel()).startswith(
         "Model: partial-levitation-shear, each ridge"
@@ -152,7 +152,7 @@ def test_the_band_lies_between_a_stiff_pad_and_a_soft_one() -> None:
 
 def test_the_working_point_stands_on_its_interval() -> None:
     axes = models(RESULT).axes[0]
-    label = "this display, partial-levitation: 0.62 (0.41–0.83, 90%, median 0.60)"
+    label = "this display, partial-levitation: 0.62 (0.41–0.83, 90 %, median 0.60)"
     point = labelled(axes)[label]
     assert point.get_xydata().tolist() == [[pytest.approx(1.5), 0.62]]
     others = [one for one in axes.get_lines() if one.get_label().startswith("_")]
@@ -254,7 +254,7 @@ def test_samples_are_counted_beside_their_interval() -> None:
     marks = labelled(left)
     assert marks["as described: 0.62"].get_xdata() == [0.62, 0.62]
     assert marks["median: 0.60"].get_xdata() == [0.6, 0.6]
-    box = marks["90% interval"].get_extents().transformed(left.transData.inverted())
+    box = marks["90 % interval"].get_extents().transformed(left.transData.inverted())
     assert (box.x0, box.x1) == pytest.approx((0.41, 0.83))
     assert left.get_xlim() == (0, 1)
     assert (left.get_xlabel(), left.get_ylabel()) == (FRICTION, "draws")

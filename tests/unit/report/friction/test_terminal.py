@@ -114,10 +114,10 @@ def said(columns: int = 220, **changes: Any) -> list[str]:
 
 
 def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
-    ranks = [f"finger.p{n} 150 µm to 350 µm 0% ± 0% as described" for n in range(2, 6)]
+    ranks = [f"finger.p{n} 150 µm to 350 µm 0 ± 0 % as described" for n in range(2, 6)]
     assert said() == [
         "A plate [plate]",
-        "µ′/µ = 0.43 as described (0.28–0.55, median 0.44): 90% interval. 100% of the draws lie "
+        "µ′/µ = 0.43 as described (0.28–0.55, median 0.44): 90 % interval. 100 % of the draws lie "
         "below the value as described.",
         "limit: Whether it is met is open.",
         "Vibration amplitude 1.5 µm with the finger, at 15 V",
@@ -147,19 +147,19 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "intermittent contact at 80 mm/s, no gas 0.912",
         "What measurements say and 'a-model' does not",
         "– Published directions were not asked of the model 'a-model'.",
-        "Could be measured: 70% ± 10% of the variance, 60% by itself",
+        "Could be measured: 70 ± 10 % of the variance, 60 % by itself",
         "drawn from share",
-        "finger.p0 150 µm to 350 µm 40% ± 5% assumed range",
-        "finger.p1 150 µm to 350 µm 10% ± 1% as described",
+        "finger.p0 150 µm to 350 µm 40 ± 5 % assumed range",
+        "finger.p1 150 µm to 350 µm 10 ± 1 % as described",
         *ranks,
-        "Nobody knows: 40% ± 20% of the variance, 0% by itself",
+        "Nobody knows: 40 ± 20 % of the variance, 0 % by itself",
         "drawn from share",
-        "finger.tangential_stiffness rigid 25%, following 75% 40% ± 10% assumed weights",
+        "finger.tangential_stiffness rigid 25 %, following 75 % 40 ± 10 % assumed weights",
         "Laws and states that are drawn, by weights that are assumed",
         "weight why",
-        "finger.tangential_stiffness rigid 25% slips",
-        "finger.tangential_stiffness following 75% comes and goes",
-        "640 draws; seed 5; 2 of 640 draws (0.3%) are refused: pressed flat (2); by the law of "
+        "finger.tangential_stiffness rigid 25 % slips",
+        "finger.tangential_stiffness following 75 % comes and goes",
+        "640 draws; seed 5; 2 of 640 draws (0.3 %) are refused: pressed flat (2); by the law of "
         "heights persson (2)",
         "! mind this",
         "! and that",

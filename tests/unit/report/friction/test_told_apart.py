@@ -45,21 +45,21 @@ def test_the_best_experiments_are_said_pair_by_pair() -> None:
     assert lines == [
         "Which measurement would tell the laws apart",
         "pair one condition µ′/µ right",
-        "heights: persson or gaussian 0.3 N, 10 mm/s, 1 µm 0.50 or 0.50 50%",
-        "shear: following or rigid 0.3 N, 100 mm/s, 2 µm 0.20 or 0.70 84%",
+        "heights: persson or gaussian 0.3 N, 10 mm/s, 1 µm 0.50 or 0.50 50 %",
+        "shear: following or rigid 0.3 N, 100 mm/s, 2 µm 0.20 or 0.70 84 %",
         "Which ratio of two measurements with the same finger would",
         "pair two conditions ratio right",
         "heights: persson or gaussian 0.3 N, 10 mm/s, 1 µm "
-        "over 0.3 N, 100 mm/s, 2 µm 1.20 or 1.00 69%",
+        "over 0.3 N, 100 mm/s, 2 µm 1.20 or 1.00 69 %",
         "shear: following or rigid 0.3 N, 10 mm/s, 1 µm "
-        "over 0.3 N, 100 mm/s, 2 µm 0.30 or 1.00 98%",
-        "One condition for all laws of the heights: 0.3 N, 10 mm/s, 1 µm; right in 50% of the "
+        "over 0.3 N, 100 mm/s, 2 µm 0.30 or 1.00 98 %",
+        "One condition for all laws of the heights: 0.3 N, 10 mm/s, 1 µm; right in 50 % of the "
         "cases for the two told worst.",
-        "One condition for all shear elements: 0.3 N, 100 mm/s, 2 µm; right in 84% of the cases "
+        "One condition for all shear elements: 0.3 N, 100 mm/s, 2 µm; right in 84 % of the cases "
         "for the two told worst.",
-        "“Right” is how often whoever measures would choose the right one of the two; 50% is "
+        "“Right” is how often whoever measures would choose the right one of the two; 50 % is "
         "guessing. The rest of the finger is drawn (16 fingers); a measured µ′/µ is taken to "
-        "scatter by 5%, which is assumed.",
+        "scatter by 5 %, which is assumed.",
     ]
 
 
@@ -79,5 +79,5 @@ def test_a_map_has_force_up_and_the_speeds_within_each_amplitude() -> None:
     words = figure.get_suptitle().replace("\u00a0", " ").replace("\n", " ")
     assert words == (
         "One measurement tells shear elements best: following or rigid, at 0.3 N, 100 mm/s, 2 µm, "
-        "right in 84% of the cases"
+        "right in 84 % of the cases"
     )

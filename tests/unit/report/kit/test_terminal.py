@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
-from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.quantities import Unit
 from squeezefilm.report.kit import terminal
 from squeezefilm.report.kit.numbers import micro, printable, shown
@@ -24,45 +21,6 @@ def printed(capsys: pytest.CaptureFixture[str]) -> str:
     assert "\x1b" not in captured.out
     assert all(len(line) <= 80 for line in captured.out.splitlines())
     return captured.out
-
-
-def test_analysis_at_80_columns(
-    plate_analysis: Analysis, capsys: pytest.CaptureFixture[str]
-) -> None:
-    terminal.show_analysis(plate_analysis)
-    text = printed(capsys)
-    for part in (
-        "33.57 kHz",
-        "Finger speed                 80 mm/s",
-        "(8,0), solved to ± ",
-        shown(plate_analysis.prediction.vibration_amplitude, Unit("m")),
-        f"{plate_analysis.prediction.relative_friction:.3f}",
-        "piezoelectric_solid_3d",
-        "timoshenko_beam_plane_strain",
-        "shear_plate",
-        "paper2008",
-        "film-open",
-    ):
-        assert part in text
-    words = " ".join(text.split())
-    for finding in plate_analysis.verdict:
-        assert f"{finding.kind} {finding.text[:40]}" in words
-    assert "contradict each other" in words
-    assert words.count("carries the finger at a mean gap") == 1
-
-
-def test_hostile_names_are_printed_and_not_obeyed(
-    hostile_analysis: Analysis, capsys: pytest.CaptureFixture[str]
-) -> None:
-    terminal.show_analysis(hostile_analysis)
-    text = printed(capsys)
-    assert "[bold]" in text
-    assert "\u202e" not in text
-
-
-def test_a_display_without_texture(analysis_of: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.show_analysis(analysis_of("no-voltage"))
-    assert "Finest grating" not in printed(capsys)
 
 
 def test_what_a_model_misses_is_said(capsys: pytest.CaptureFixture[str]) -> None:

@@ -68,7 +68,7 @@ def test_the_threshold_stands_on_its_interval_half_way_up() -> None:
     assert interval.get_ydata() == pytest.approx([74, 74])
     assert threshold.get_xydata() == pytest.approx(np.array([[3, 74]]))
     assert {to_hex(one.get_color()) for one in (interval, threshold)} == {ORANGE}
-    assert words(figure.get_suptitle()) == "The threshold is 3, with 90% between 2.25 and 4.12"
+    assert words(figure.get_suptitle()) == "The threshold is 3, with 90 % between 2.25 and 4.12"
     assert words(figure.get_supxlabel()) == (
         "Model: logistic function, guess rate 0.5, lapse rate 0.02; 80 trials; credible interval"
     )

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tests.unit.report.printed import printed
 
+from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.study.page import key_rows
 from squeezefilm.report.study.terminal_identification import show_analyses, show_power
 from squeezefilm.study.identification.analysis import (
@@ -37,8 +38,8 @@ def test_each_display_has_its_confusions_and_main_numbers(
         "4 mm 100 % 25 %",
         "8 mm 0 % 75 %",
     ]
-    rows = [" ".join(" ".join(row).split()) for row in key_rows(analysis)]
-    notes = [" ".join(note.split()) for note in analysis.notes]
+    rows = [printable(" ".join(map(printable, row))) for row in key_rows(analysis)]
+    notes = [printable(note) for note in analysis.notes]
     assert half[4:] == [*rows, *notes]
     assert "Participants 1 8 trials" in half
     assert any(note.startswith("intervals over people: there is one") for note in notes)

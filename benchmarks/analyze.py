@@ -1,0 +1,70 @@
+"""The whole verb `analyze` with its report: what an engineer waits for, and what takes the time.
+
+Peer: the same answer without report and interval, `predict` alone, in the same process. Times are
+those of the processor, one thread, what was compiled loaded from the cache; the verb is run once
+before it is measured. A step takes all until the next one is told.
+Run: python benchmarks/analyze.py [DISPLAY …]
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
+os.environ["NUMBA_NUM_THREADS"] = "1"
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROUNDS = 2
+DISPLAYS = ("biet2008-plate", "biet2008-stator", "touchpad-glass")
+
+# Its own process, as a person starts it: imports are waited for too.
+STEPS = """
+import json, sys, time
+took, last = {}, ["imports", 0.0]
+def tell(text):
+    name, began = last
+    now = time.process_time()
+    name = "figures" if name.startswith("figure") else name
+    took[name] = took.get(name, 0.0) + now - began
+    last[:] = [text, now]
+from pathlib import Path
+from squeezefilm.analysis.analyze import analyze
+from squeezefilm.display import load_display
+from squeezefilm.report.display.page import write_analysis
+found = analyze(load_display(sys.argv[1]), progress=tell)
+tell("summary")
+write_analysis(found, Path(sys.argv[2]), tell)
+tell("end")
+print(json.dumps(took))
+"""
+
+
+def steps(display: str, folder: Path) -> dict[str, float]:
+    """Processor time (s) of each step of one run."""
+    command = [sys.executable, "-c", STEPS, display, str(folder)]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    found: dict[str, float] = json.loads(done.stdout)
+    return found
+
+
+def main() -> None:
+    """Print the least of some rounds for each display, and what limits it."""
+    print(f"{'display':<16}{'whole':>8}{'over predict':>14}   what takes it")
+    for display in sys.argv[1:] or DISPLAYS:
+        with tempfile.TemporaryDirectory() as folder:
+            rounds = [steps(display, Path(folder)) for _ in range(ROUNDS + 1)][1:]
+        best = min(rounds, key=lambda one: sum(one.values()))
+        whole = sum(best.values())
+        predicted = best["resonance, amplitude and friction"]
+        ranked = sorted(best.items(), key=lambda item: -item[1])[:5]
+        most = ", ".join(f"{name} {100 * took / whole:.0f} %" for name, took in ranked)
+        print(f"{display:<16}{whole:>6.1f} s{whole / predicted:>14.1f}   {most}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,110 @@
+"""What the command line prints of an analysis: one screen to decide from, the rest where asked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
+from squeezefilm.report.kit.decisions import (
+    felt_rows,
+    interval_rows,
+    sensitivity_rows,
+    wanted_rows,
+)
+from squeezefilm.report.kit.electronics import electronics_rows
+from squeezefilm.report.kit.model_rows import film_rows, models, theory_rows
+from squeezefilm.report.kit.terminal import bullets, heading, plain_console, show_missed, table
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.friction.wanted import Wanted
+    from squeezefilm.analysis.verdict import Finding
+
+_KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
+_STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
+
+# Of a warning where it is not asked for in full: two lines of a terminal.
+_SHORT = 140
+
+
+def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
+    """Print an analysis: verdict, warnings and key numbers; `whole`: all warnings in full, and
+    then what other models say."""
+    display, console = analysis.display, plain_console()
+    heading(console, f"{display.title} [{display.name}]")
+    _findings(console, (*analysis.verdict, analysis.ears_finding))
+    warned = unsaid_warnings(analysis)
+    cut = [text if whole else shortened(text) for text in warned]
+    if cut:
+        heading(console, "Warnings")
+        bullets(console, [("!", text, "yellow") for text in cut])
+    heading(console, "Key numbers")
+    rows = [row for group in decision_rows(analysis) for row in group.rows]
+    table(console, ("", "", ""), rows, fixed=(0, 1))
+    _show_wanted(console, analysis.wanted)
+    if whole:
+        _show_certainty(console, analysis)
+        _show_models(console, analysis)
+        return
+    more = "intervals, what each value does, amplifiers, other models, textures and thermal details"
+    if cut != warned:
+        more = f"the warnings in full, {more}"
+    console.print(f"\n--all prints {more}")
+
+
+def shortened(text: str) -> str:
+    """A long text up to the last whole word that two lines hold."""
+    if len(text) <= _SHORT:
+        return text
+    return text[:_SHORT].rsplit(" ", 1)[0].rstrip(",;:") + " …"
+
+
+def _findings(console: Console, findings: tuple[Finding, ...]) -> None:
+    bullets(console, [(_KINDS[item.kind], item.text, _STYLES[item.kind]) for item in findings])
+
+
+def _show_wanted(console: Console, wanted: Wanted | None) -> None:
+    """What a friction that was asked for takes."""
+    if wanted is not None:
+        heading(console, "The friction that was asked for")
+        table(console, ("", "", ""), wanted_rows(wanted), fixed=(0,))
+
+
+def _show_certainty(console: Console, analysis: Analysis) -> None:
+    """The intervals of what one decides from, what each value does, and the amplifier."""
+    if rows := interval_rows(analysis.uncertainty) + felt_rows(analysis.felt):
+        heading(console, "How sure it is")
+        table(console, ("", "", ""), rows, fixed=(0,))
+    found = analysis.sensitivities
+    if found is not None:
+        heading(console, "What each value does, from the 5 % to the 95 % end of its range")
+        head = ("value", "from, to", "frequency", "amplitude", "µ′/µ", "range")
+        table(console, head, sensitivity_rows(found), fixed=(0,))
+        console.print(
+            f"µ′/µ is {found.relative_friction:.2f} as described. Plates with one thing different "
+            f"by {found.plate_model}; the drive follows the resonance. --json has all "
+            f"{len(found.rows)} values."
+        )
+    if analysis.prediction.voltage is not None:
+        heading(console, "Drive electronics")
+        table(console, ("", "", ""), electronics_rows(analysis.drive_electronics), fixed=(0,))
+
+
+def _show_models(console: Console, analysis: Analysis) -> None:
+    """What made the numbers, and what other models and theories say."""
+    heading(console, "More numbers")
+    table(console, ("", "", ""), more_rows(analysis), fixed=(0, 1))
+    heading(console, "Models")
+    table(console, ("", ""), models(analysis), fixed=(0,))
+    show_missed(console, analysis.prediction.model)
+    if analysis.other_models:
+        heading(console, "The same plate by other theories, without a finger")
+        others = [(model, at, amplitude) for model, at, _, amplitude in theory_rows(analysis)]
+        table(console, ("model", "resonance", "amplitude"), others)
+    if films := film_rows(analysis):
+        heading(console, "The film under the finger, drawn in five ways")
+        table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
+        console.print()
+        _findings(console, analysis.film_findings)

@@ -1,0 +1,37 @@
+"""One colour, one line and one name for each model of film and friction, in every figure."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from squeezefilm.report.kit import style
+
+
+class Look(NamedTuple):
+    """How a model is drawn and called."""
+
+    color: str
+    dashes: str | tuple[int, tuple[float, ...]]
+    name: str
+
+
+_LOOKS = {
+    "partial-levitation-shear": Look(style.INK, "-", "partial levitation with shear"),
+    "partial-levitation": Look(style.BLUE, "-", "partial levitation"),
+    "partial-levitation-one-gap": Look(
+        style.BLUE, (0, (1.4, 1.2)), "partial levitation, one mean gap"
+    ),
+    "paper2008": Look(*style.LINES[1], "paper's asymptote"),
+    "paper2008-printed": Look(*style.LINES[1], "paper's asymptote, as printed"),
+    "film-smooth": Look(*style.LINES[2], "solved film, no ridges"),
+    "film-sealed": Look(*style.LINES[3], "solved film, grooves sealed"),
+    "film-open": Look(
+        style.MUTED, (0, (3, 1, 1, 1, 1, 1)), "solved film, grooves open at the ends"
+    ),
+    "film-plateau": Look(style.GREEN, "-", "solved film, ridges pressed flat"),
+}
+
+
+def look_of(model: str) -> Look:
+    """The look of a model; one that has none is drawn as a plain line under its own name."""
+    return _LOOKS.get(model, Look(style.INK, "-", model))
