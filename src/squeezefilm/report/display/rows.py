@@ -141,13 +141,17 @@ def _electrical_rows(analysis: Analysis) -> list[Row]:
         said = "no admittance was solved here; squeezefilm plate solves plates, discs and stators"
         return [("Current", "not known", said)]
     real = f"{shown(load.real_power, W, 3)} of them are real power"
-    can = [check.part for check in load.amplifiers if check.suffices]
-    cannot = [check.part for check in load.amplifiers if not check.suffices]
-    parts = f"cannot: {', '.join(cannot)}" if cannot else "all that are listed can"
+    able = {
+        can: [check.part for check in load.amplifiers if check.suffices == can]
+        for can in (True, False)
+    }
+    said = [
+        f"{', '.join(parts)} {'can' if can else 'cannot'}" for can, parts in able.items() if parts
+    ]
     return [
         ("Current", shown(load.current, A, 3), "zero-to-peak, without a finger"),
         ("Apparent power", f"{load.apparent_power:.3g} VA", real),
-        ("Amplifier", ", ".join(can) or "none listed", parts),
+        ("Amplifiers that can", f"{len(able[True])} of {len(load.amplifiers)}", "; ".join(said)),
     ]
 
 

@@ -10,7 +10,9 @@ from squeezefilm.chain.prediction import Prediction
 
 def place_rows(p: Prediction, judged: JudgedArea | None) -> list[tuple[str, str, str]]:
     """Where the friction is meant, and what it is over the active area: quantity, value, remark."""
-    rows = [("Place of the finger", p.place_said, "")]
+    where = place_words(p.place)
+    said = p.place_said.replace(f"{where}, ", "").replace(f", {where}", "")
+    rows = [("Place of the finger", where, said)]
     area = None if judged is None else judged.area
     if area is None or area.best_place is None or area.worst_place is None:
         return [
