@@ -6,34 +6,16 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import pytest
 from tests.unit.report.made_results import WARM
 
-from squeezefilm.report.display.rows import (
-    decision_rows,
-    electrical_rows,
-    unsaid_warnings,
-    vibration_rows,
-)
+from squeezefilm.report.display.rows import decision_rows, unsaid_warnings, vibration_rows
 from squeezefilm.report.kit.point_rows import heat_rows
-
-
-def response(**changes: Any) -> Any:
-    """A body that takes 10 mA, 50 mVA and 40 mW for each volt at 30 kHz, twice that at 32."""
-    slope = np.array([1.0, 2.0])
-    parts = {
-        "frequencies": np.array([30e3, 32e3]),
-        "current": lambda volts: 0.01 * volts * slope,
-        "apparent_power": lambda volts: 0.05 * volts * slope,
-        "input_power": lambda volts: 0.04 * volts * slope,
-    }
-    return SimpleNamespace(**{**parts, **changes})
 
 
 def point(**changes: Any) -> Any:
     mode = SimpleNamespace(
         resonance_frequency=30e3, frequency_error=0.058, label="(8,0)", quality_factor=60.0,
-        amplitude_per_volt=100e-9, solid=SimpleNamespace(response=response()),
+        amplitude_per_volt=100e-9, solid=None,
     )  # fmt: skip
     parts: dict[str, Any] = {
         "mode": mode, "voltage": 20.0, "frequency": 30e3, "vibration_amplitude": 1.5e-6,
@@ -41,6 +23,7 @@ def point(**changes: Any) -> Any:
         "relative_friction": 0.312, "normal_force": 0.5, "speed": 0.08, "heat": WARM,
         "surface": SimpleNamespace(name="polished", roughness=0.6e-6),
         "warnings": ("said already", "not yet"),
+        "place": (0.03, 0.02), "place_said": "at the best antinode, x 30 mm, y 20 mm",
     }  # fmt: skip
     return SimpleNamespace(**{**parts, **changes})
 
@@ -52,7 +35,8 @@ def analysis(**changes: Any) -> Any:
     )  # fmt: skip
     parts: dict[str, Any] = {
         "prediction": point(), "fidelity": table, "envelope_time_constant": 1e-3,
-        "envelope_bandwidth": 160.0, "sound": None,
+        "envelope_bandwidth": 160.0, "ears": None, "felt": None,
+        "active_area": None, "drive_electronics": None,
         "own_curve": SimpleNamespace(amplitude_for_criterion=0.7e-6),
         "uncertainty": SimpleNamespace(level=0.9, interval=(0.04, 0.786), median=0.37),
         "verdict": (SimpleNamespace(text="said already"),),
@@ -96,15 +80,27 @@ def test_the_free_amplitude_is_told_from_that_under_the_finger() -> None:
     assert unknown[2].startswith("the finger is taken to change nothing")
 
 
-def test_the_amplifier_is_asked_at_the_drives_frequency() -> None:
-    current, power = electrical_rows(point(frequency=31e3))
-    assert current[:2] == ("Current", "300 mA")
-    assert power == ("Apparent power", "1.5 VA", "1.2 W of it are real power")
+def rows_of(made: Any) -> dict[str, tuple[str, str]]:
+    return {row[0]: row[1:] for one in decision_rows(made) for row in one.rows}
 
 
-@pytest.mark.parametrize("changes", [{"frequency": 29e3}, {"voltage": None}, {"voltage": 0.0}])
-def test_where_no_admittance_was_solved_none_is_said(changes: dict[str, Any]) -> None:
-    assert [row[1] for row in electrical_rows(point(**changes))] == ["not known"]
+def test_what_the_amplifier_has_to_give_and_which_can() -> None:
+    kinds = [SimpleNamespace(part=part, suffices=part == "B") for part in "ABC"]
+    load = SimpleNamespace(current=0.3, apparent_power=1.5, real_power=1.2, amplifiers=kinds)
+    said = rows_of(analysis(drive_electronics=load))
+    assert said["Current"][0] == "300 mA"
+    assert said["Apparent power"] == ("1.5 VA", "1.2 W of them are real power")
+    assert said["Amplifiers that can"] == ("1 of 3", "B can; A, C cannot")
+    assert rows_of(analysis())["Current"][0] == "not known"
+
+
+def test_the_level_at_an_ear_stands_beside_its_limits() -> None:
+    limits = [SimpleNamespace(guidance=SimpleNamespace(level_dB=level)) for level in (100, 110)]
+    ears = SimpleNamespace(distance=0.5, level_dB=123.6, low_dB=115.0, high_dB=132.0, limits=limits)
+    said = rows_of(analysis(ears=ears))["Sound at 0.5 m"]
+    assert said == ("124 dB", "115 to 132 dB, loudest direction; guidance 100 dB and 110 dB")
+    ears.limits = []
+    assert rows_of(analysis(ears=ears))["Sound at 0.5 m"][1].endswith("no guidance")
 
 
 def test_a_plate_whose_power_is_not_known_says_so() -> None:
