@@ -102,7 +102,7 @@ def analysis(**changes: Any) -> Any:
         "ripple": SimpleNamespace(ripple=0.0123, half_wavelength=9.8765e-3),
         "wanted": Wanted(0.7, 1.2345e-6, 12.345),
         "tapping": Tapping(0.08, 0.91234),
-        "verdict": Finding("limit", "Whether it is met is open."),
+        "verdict": (Finding("limit", "Whether it is met is open."),),
         "apart": None,
         "active_area": None,
     }
