@@ -147,10 +147,15 @@ def _odds(area: JudgedArea) -> str:
     if area.odds is None:
         return ""
     best, median, worst = (_probability(p) for p in area.odds.probabilities_below(CRITERIA[0]))
-    return (
+    draws = len(area.odds.samples)
+    unknown = int(np.sum(np.any(np.isnan(area.odds.samples), axis=1)))
+    text = (
         f" With all that is uncertain drawn, it is below {CRITERIA[0]:.2f} with probability {best} "
-        f"at the best place, {median} in the median and {worst} at the worst."
+        f"at the best place, {median} in the median and {worst} at the worst"
     )
+    if unknown:
+        text += f"; {unknown} of the {draws} draws give no friction there and count as not below it"
+    return f"{text}."
 
 
 def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:

@@ -119,6 +119,7 @@ def area(worst: float, draws: list[float] | None) -> JudgedArea:
 
 def test_good_is_only_what_is_good_at_the_worst_place_too(point: Prediction) -> None:
     sure = unsure(0.2, 0.69, [0.2, 0.5, 0.6, 0.69])
+
     def kinds(over: JudgedArea) -> list[str]:
         return [one.kind for one in friction_verdict(point, sure, "", over)]
 
@@ -134,6 +135,17 @@ def test_good_is_only_what_is_good_at_the_worst_place_too(point: Prediction) -> 
         "and 0.50 at the worst."
     )
     assert "µ′/µ is 0.20 at the best place" in missed.text
+
+
+def test_draws_without_a_friction_over_the_area_are_counted(point: Prediction) -> None:
+    judged = area(0.6, [0.3, 0.5, 0.65])
+    assert "no friction" not in friction_verdict(point, None, "", judged)[1].text
+    assert judged.odds is not None
+    judged.odds.samples[1] = np.nan
+    assert friction_verdict(point, None, "", judged)[1].text.endswith(
+        "0.67 in the median and 0.67 at the worst; 1 of the 3 draws give no friction there and "
+        "count as not below it."
+    )
 
 
 def test_what_the_criterion_takes_is_said_where_it_is_missed(point: Prediction) -> None:
