@@ -87,7 +87,7 @@ def test_a_friction_has_its_interval_its_shares_and_what_to_measure_next(tmp_pat
     assert 0 < result["relative_friction"] < shares["asperities"]
     assert abs(shares["residual"]) < 1e-6
     assert result["model"] == "partial-levitation-shear"
-    assert f"interval {low:.2f}–{high:.2f}" in result["verdict"]["text"]
+    assert f"interval {low:.2f}–{high:.2f}" in result["verdict"][0]["text"]
     assert set(result["uncertainty"]["groups"]) == {"measurable", "unknown"}
     assert result["friction_reduction"] == pytest.approx(
         result["friction_coefficient"] * (1 - result["relative_friction"])

@@ -83,7 +83,7 @@ def _findings(
 ) -> Iterator[Finding]:
     """The sentences of a verdict but for those on the working mode."""
     amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
-    yield friction_verdict(p, unsure, why_not, area)
+    yield from friction_verdict(p, unsure, why_not, area)
     yield from _of_needed_amplitude(p, own)
     if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
         yield Finding(
@@ -124,21 +124,22 @@ def friction_verdict(
     unsure: UncertainFriction | None,
     why_not: str,
     area: JudgedArea | None = None,
-) -> Finding:
-    """How probable it is that the friction falls below the paper's criterion, and over the area.
+) -> tuple[Finding, ...]:
+    """How probable it is that the friction falls below the paper's criterion: at the place of the
+    prediction, and over the active area where there is one.
 
     Good where all of the interval lies below it, at the worst place of the active area too, and no
     objection stands; a limit where it does not, a doubt where there is no interval (`why_not` says
-    why). The same sentence wherever this verdict is shown.
+    why). The same sentences wherever this verdict is shown.
     """
     found = _at_the_place(p, unsure, why_not)
     if area is None:
-        return found
+        return (found,)
     worst = area.area.worst
     highest = worst if area.odds is None else max(worst or 0.0, area.odds.worst_interval[1])
     everywhere = highest is not None and worst is not None and highest < PAPER_CRITERION
     kind = "limit" if found.kind == "good" and not everywhere else found.kind
-    return Finding(kind, f"{found.text} {area.area.sentence}{_odds(area)}")
+    return replace(found, kind=kind), Finding(kind, f"{area.area.sentence}{_odds(area)}")
 
 
 def _odds(area: JudgedArea) -> str:
@@ -146,10 +147,15 @@ def _odds(area: JudgedArea) -> str:
     if area.odds is None:
         return ""
     best, median, worst = (_probability(p) for p in area.odds.probabilities_below(CRITERIA[0]))
-    return (
+    draws = len(area.odds.samples)
+    unknown = int(np.sum(np.any(np.isnan(area.odds.samples), axis=1)))
+    text = (
         f" With all that is uncertain drawn, it is below {CRITERIA[0]:.2f} with probability {best} "
-        f"at the best place, {median} in the median and {worst} at the worst."
+        f"at the best place, {median} in the median and {worst} at the worst"
     )
+    if unknown:
+        text += f"; {unknown} of the {draws} draws give no friction there and count as not below it"
+    return f"{text}."
 
 
 def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
@@ -169,11 +175,11 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE
     text = (
-        f"{p.place_said[0].upper()}{p.place_said[1:]}, µ′/µ is below {asked}, with probability "
-        f"{_probability(unsure.probability_below(PAPER_CRITERION))} "
-        f"({si.percent(unsure.level)} interval {low:.2f}–{high:.2f}, median {unsure.median:.2f}; "
-        f"{unsure.nominal:.2f} as described at {amplitude}); "
-        f"below {noticed:.2f}, where people notice it, with probability "
+        f"µ′/µ is {unsure.nominal:.2f} as described {p.place_said}, at {amplitude}. With all that "
+        f"is uncertain drawn, its median is {unsure.median:.2f} ({si.percent(unsure.level)} "
+        f"interval {low:.2f}–{high:.2f}); it is below {asked}, with probability "
+        f"{_probability(unsure.probability_below(PAPER_CRITERION))}, and below {noticed:.2f}, "
+        "where people notice it, with probability "
         f"{_probability(unsure.probability_below(noticed))}."
     )
     if high < PAPER_CRITERION:

@@ -116,7 +116,8 @@ class Prediction(Result):
             return (
                 f"{1e3 * self.law.position:.4g} mm along the wave from the best antinode, {where}"
             )
-        return f"at the best antinode, {where}, as if of an even wave"
+        half = f"{1e3 * self.mode.half_wavelength:.3g} mm"
+        return f"at the best antinode, {where}, taken as an even wave of half wavelength {half}"
 
     @property
     def amplitude_at_place(self) -> si.Metre:

@@ -60,40 +60,45 @@ def unsure(low: float, high: float, samples: list[float], refused: int = 0) -> A
 
 def test_a_verdict_is_the_probability_of_the_criterion(point: Prediction) -> None:
     p = dataclasses.replace(point, vibration_amplitude=2e-6)
-    inside = friction_verdict(p, unsure(0.2, 0.81, [0.2, 0.5, 0.75, 0.9]), "")
+    (inside,) = friction_verdict(p, unsure(0.2, 0.81, [0.2, 0.5, 0.75, 0.9]), "")
+    half = f"{1e3 * p.mode.half_wavelength:.3g} mm"
     assert inside == Finding(
         "limit",
-        "At the best antinode, x 0 mm, y 5 mm, as if of an even wave, µ′/µ is below 0.70, as the "
-        "paper asks, with probability 0.50 (90 % interval 0.20–0.81, median 0.40; 0.51 as "
-        "described at 2 µm); below 0.80, where people notice it, with probability 0.75. The "
-        "criterion lies inside the interval: whether it is met is open.",
+        "µ′/µ is 0.51 as described at the best antinode, x 0 mm, y 5 mm, taken as an even wave of "
+        f"half wavelength {half}, at 2 µm. With all that is uncertain drawn, its median is 0.40 "
+        "(90 % interval 0.20–0.81); it is below 0.70, as the paper asks, with probability 0.50, "
+        "and below 0.80, where people notice it, with probability 0.75. The criterion lies inside "
+        "the interval: whether it is met is open.",
     )
-    good = friction_verdict(p, unsure(0.2, 0.69, [0.2, 0.5, 0.6, 0.69]), "")
+    (good,) = friction_verdict(p, unsure(0.2, 0.69, [0.2, 0.5, 0.6, 0.69]), "")
     assert good.kind == "good"
-    assert "with probability above 0.99 (90 % interval 0.20–0.69" in good.text
+    assert "(90 % interval 0.20–0.69); it is below 0.70" in good.text
+    assert "asks, with probability above 0.99, and" in good.text
     assert good.text.endswith("notice it, with probability above 0.99.")
     # Never good where the criterion is at the very end of the interval, nor where it is missed.
-    assert friction_verdict(p, unsure(0.2, 0.7, [0.2, 0.7]), "").kind == "limit"
-    missed = friction_verdict(p, unsure(0.75, 0.9, [0.75, 0.9]), "")
+    assert friction_verdict(p, unsure(0.2, 0.7, [0.2, 0.7]), "")[0].kind == "limit"
+    (missed,) = friction_verdict(p, unsure(0.75, 0.9, [0.75, 0.9]), "")
     assert missed.kind == "limit"
     assert "probability below 0.01" in missed.text
     assert "open" not in missed.text
 
 
 def test_refused_draws_do_not_meet_the_criterion(point: Prediction) -> None:
-    found = friction_verdict(point, unsure(0.2, 0.9, [0.2, 0.9], refused=2), "")
+    (found,) = friction_verdict(point, unsure(0.2, 0.9, [0.2, 0.9], refused=2), "")
     assert "with probability 0.49" in found.text
 
 
 def test_without_an_interval_nothing_is_good(point: Prediction) -> None:
     p = dataclasses.replace(point, vibration_amplitude=2e-6, relative_friction=0.3)
-    assert friction_verdict(p, None, "too many draws are refused") == Finding(
+    half = f"{1e3 * p.mode.half_wavelength:.3g} mm"
+    (found,) = friction_verdict(p, None, "too many draws are refused")
+    assert found == Finding(
         "doubt",
-        "µ′/µ is 0.30 as described at the best antinode, x 0 mm, y 5 mm, as if of an even wave, "
-        f"at 2 µm by the model '{p.model}'. How probable it is that it lies below 0.70, as the "
-        "paper asks, is not known: too many draws are refused.",
+        "µ′/µ is 0.30 as described at the best antinode, x 0 mm, y 5 mm, taken as an even wave of "
+        f"half wavelength {half}, at 2 µm by the model '{p.model}'. How probable it is that it "
+        "lies below 0.70, as the paper asks, is not known: too many draws are refused.",
     )
-    assert friction_verdict(p, None, "").text.endswith("not known: no interval was computed.")
+    assert friction_verdict(p, None, "")[0].text.endswith("not known: no interval was computed.")
     assert said(point)[0].kind == "doubt"
 
 
@@ -114,17 +119,33 @@ def area(worst: float, draws: list[float] | None) -> JudgedArea:
 
 def test_good_is_only_what_is_good_at_the_worst_place_too(point: Prediction) -> None:
     sure = unsure(0.2, 0.69, [0.2, 0.5, 0.6, 0.69])
-    assert friction_verdict(point, sure, "", area(0.6, [0.3, 0.5, 0.65])).kind == "good"
-    assert friction_verdict(point, sure, "", area(0.6, None)).kind == "good"
+
+    def kinds(over: JudgedArea) -> list[str]:
+        return [one.kind for one in friction_verdict(point, sure, "", over)]
+
+    assert kinds(area(0.6, [0.3, 0.5, 0.65])) == ["good", "good"]
+    assert kinds(area(0.6, None)) == ["good", "good"]
     # As described, or in some draws, the worst place misses it.
-    assert friction_verdict(point, sure, "", area(0.72, None)).kind == "limit"
-    missed = friction_verdict(point, sure, "", area(0.6, [0.3, 0.5, 0.75, 0.9]))
-    assert missed.kind == "limit"
+    assert kinds(area(0.72, None)) == ["limit", "limit"]
+    at_place, missed = friction_verdict(point, sure, "", area(0.6, [0.3, 0.5, 0.75, 0.9]))
+    assert (at_place.kind, missed.kind) == ("limit", "limit")
+    assert "active area" not in at_place.text
     assert missed.text.endswith(
         "it is below 0.70 with probability above 0.99 at the best place, above 0.99 in the median "
         "and 0.50 at the worst."
     )
     assert "µ′/µ is 0.20 at the best place" in missed.text
+
+
+def test_draws_without_a_friction_over_the_area_are_counted(point: Prediction) -> None:
+    judged = area(0.6, [0.3, 0.5, 0.65])
+    assert "no friction" not in friction_verdict(point, None, "", judged)[1].text
+    assert judged.odds is not None
+    judged.odds.samples[1] = np.nan
+    assert friction_verdict(point, None, "", judged)[1].text.endswith(
+        "0.67 in the median and 0.67 at the worst; 1 of the 3 draws give no friction there and "
+        "count as not below it."
+    )
 
 
 def test_what_the_criterion_takes_is_said_where_it_is_missed(point: Prediction) -> None:

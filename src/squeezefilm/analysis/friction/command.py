@@ -71,7 +71,7 @@ class FrictionAnalysis(Result):
     ripple: FrictionRipple | None
     wanted: Wanted | None
     tapping: Tapping
-    verdict: Finding
+    verdict: tuple[Finding, ...]
     apart: ToldApart | None = None
     active_area: JudgedArea | None = None
     _shown: ClassVar[str] = (
@@ -219,6 +219,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         if asked.tell_apart
         else None
     )
+    why = None if prediction.voltage is None else why_undriven(display, prediction.mode)
     tell("ripple of the standing wave, and the active area")
     area = judged_area(display, prediction, active_area(display, prediction), samples=asked.samples)
     return FrictionAnalysis(
@@ -230,9 +231,9 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         _ripple(prediction),
         wanted,
         Tapping(prediction.speed, without_gas(prediction.law, prediction.vibration_amplitude)),
-        unless_undriven(
-            friction_verdict(prediction, unsure, why_not, area),
-            None if prediction.voltage is None else why_undriven(display, prediction.mode),
+        tuple(
+            unless_undriven(finding, why)
+            for finding in friction_verdict(prediction, unsure, why_not, area)
         ),
         apart,
         area,

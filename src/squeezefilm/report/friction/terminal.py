@@ -29,7 +29,8 @@ def show_friction(result: FrictionAnalysis) -> None:
         console.print(f"µ′/µ = {p.relative_friction:.2f} as described")
     else:
         console.print(f"{unsure.sentence}: {si.percent(unsure.level)} interval. {unsure.standing}.")
-    console.print(f"{result.verdict.kind}: {result.verdict.text}")
+    for finding in result.verdict:
+        console.print(f"{finding.kind}: {finding.text}")
     table(console, ("", "", ""), _rows(result), fixed=(0,))
     heading(console, "The same finger by other models")
     others: list[tuple[str, str]] = [

@@ -133,7 +133,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     for name in names:
         stand_in(name, f"the {name}")
     stand_in("interval_or_reason", ("the interval", "a reason"))
-    stand_in("friction_verdict", "the verdict")
+    stand_in("friction_verdict", (Finding("doubt", "the verdict"),))
     stand_in("without_gas", 0.6)
     monkeypatch.setattr(command, "why_undriven", lambda display, mode: None)
     return asked
@@ -179,7 +179,8 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     )  # fmt: skip
     assert found.wanted == "the wanted"
     assert found.tapping == Tapping(0.1, 0.6)
-    assert (found.verdict, found.apart) == ("the verdict", "the tell_apart")
+    assert found.verdict == (Finding("doubt", "the verdict"),)
+    assert found.apart == "the tell_apart"
     assert found.active_area == "the judged_area"
     assert told == [
         "amplitude and load balance", "models side by side", "map over amplitude and force",
@@ -205,7 +206,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
     unsure = SimpleNamespace(interval=(0.3, 0.5), level=0.9, summary=lambda: {"seed": 1})
     found: Any = FrictionAnalysis(
         stator, PREDICTION, (curve,), unsure, None, SimpleNamespace(ripple=0.07),  # type: ignore[arg-type]
-        Wanted(0.6, 1.4e-6, 12.0), Tapping(0.08, 0.7), Finding("limit", "open"),
+        Wanted(0.6, 1.4e-6, 12.0), Tapping(0.08, 0.7), (Finding("limit", "open"),),
     )  # fmt: skip
     said = found.summary()
     assert said.pop("provenance")["config_sha256"]
@@ -234,7 +235,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
         # In the middle of 0.8 at 1 µm and 0.4 at 3 µm.
         "models": [{"model": "paper2008", "relative_friction": pytest.approx(0.6)}],
         "measurements_missed": None, "uncertainty": {"seed": 1}, "warnings": ["mind this"],
-        "verdict": {"kind": "limit", "text": "open"}, "tell_apart": None,
+        "verdict": [{"kind": "limit", "text": "open"}], "tell_apart": None,
     }  # fmt: skip
 
 
@@ -245,7 +246,7 @@ def test_a_summary_says_none_where_there_is_nothing(stator: Display) -> None:
     )
     none: Any = None
     said = FrictionAnalysis(
-        stator, p, (), none, none, none, none, Tapping(0.1, 0.5), Finding("doubt", "")
+        stator, p, (), none, none, none, none, Tapping(0.1, 0.5), (Finding("doubt", ""),)
     ).summary()
     for name in ("relative_friction_interval", "interval_level", "relative_friction_limits",
                  "load_shares", "standing_wave_ripple", "wanted", "uncertainty"):  # fmt: skip
@@ -255,7 +256,7 @@ def test_a_summary_says_none_where_there_is_nothing(stator: Display) -> None:
 def test_a_verdict_on_a_mode_that_is_not_driven_is_not_good(
     parts: list[Any], stator: Display, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(command, "friction_verdict", lambda *about: Finding("good", "Fine."))
+    monkeypatch.setattr(command, "friction_verdict", lambda *about: (Finding("good", "Fine."),))
     monkeypatch.setattr(command, "why_undriven", lambda display, mode: "It is not driven.")
     found = analyze_friction(stator, samples=0)
-    assert found.verdict == Finding("limit", "Fine. It is not driven.")
+    assert found.verdict == (Finding("limit", "Fine. It is not driven."),)

@@ -52,7 +52,8 @@ def prediction(**changes: Any) -> SimpleNamespace:
         "surface": SimpleNamespace(name="copper", roughness=0.7e-6), "friction_reduction": 0.11357,
         "friction_coefficient": 0.2, "tangential_force": 0.043216, "speed": 0.08,
         "relative_friction_limits": (0.41, 0.49), "heat": WARM,
-        "warnings": ("mind this", "and that"), "place_said": "at the best antinode, somewhere",
+        "warnings": ("mind this", "and that"), "place_said": "at the best antinode",
+        "place": (0.03, 0.02),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -102,7 +103,7 @@ def analysis(**changes: Any) -> Any:
         "ripple": SimpleNamespace(ripple=0.0123, half_wavelength=9.8765e-3),
         "wanted": Wanted(0.7, 1.2345e-6, 12.345),
         "tapping": Tapping(0.08, 0.91234),
-        "verdict": Finding("limit", "Whether it is met is open."),
+        "verdict": (Finding("limit", "Whether it is met is open."),),
         "apart": None,
         "active_area": None,
     }
@@ -131,7 +132,7 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "Film carries 56.8 % of the load",
         "Asperities carry 43.2 % mean gap 1.23 µm",
         "Relative friction µ′/µ 0.432 a-model",
-        "Place of the finger at the best antinode, somewhere",
+        "Place of the finger x 30 mm, y 20 mm at the best antinode",
         "µ′/µ over the active area not known",
         "Friction reduction µ − µ′ 0.114 of µ = 0.2",
         "Tangential force 43.2 mN sliding steadily",
