@@ -9,7 +9,7 @@ import squeezefilm as sf
 
 def main() -> dict[str, float]:
     plate = sf.solve_plate("own_plate.toml", band=("38 kHz", "42 kHz"))
-    modes = plate.to_pandas()[["label", "frequency_Hz", "amplitude_m_per_V"]]
+    modes = plate.to_pandas()[["label", "frequency_Hz", "quality_factor"]]
     print(modes.to_string(index=False))
     sf.plot(plate).savefig("modes_of_an_own_plate.png")
     return dict(zip(modes["label"], modes["frequency_Hz"], strict=True))
