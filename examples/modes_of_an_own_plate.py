@@ -1,7 +1,8 @@
 """# The modes of a plate of one's own
 
-An aluminium plate described in a file, solved in three dimensions: the modes near the one that it is to work in, and the
-shape of that one. `squeezefilm modes` lists them quickly before anything is chosen.
+An aluminium plate described in a file, solved in three dimensions: the modes near the one that it
+is to work in, and the shape of that one. `squeezefilm modes` lists them quickly before anything
+is chosen.
 """
 
 import squeezefilm as sf

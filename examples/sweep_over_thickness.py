@@ -1,7 +1,7 @@
 """# A sweep over the thickness
 
-How thick must an aluminium plate be to work at 40 kHz, and what does each thickness do to amplitude and friction? Every
-point is a plate solved in three dimensions.
+How thick must an aluminium plate be to work at 40 kHz, and what does each thickness do to
+amplitude and friction? Every point is a plate solved in three dimensions.
 """
 
 import squeezefilm as sf

@@ -1,7 +1,7 @@
 """# A texture on a plate of one's own
 
-A sine grating of 3 mm on an aluminium plate, under a finger that slides at 60 mm/s: what was asked for, what the plate
-renders, and how much of the contrast is left.
+A sine grating of 3 mm on an aluminium plate, under a finger that slides at 60 mm/s: what was
+asked for, what the plate renders, and how much of the contrast is left.
 """
 
 import squeezefilm as sf

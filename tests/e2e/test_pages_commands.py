@@ -1,7 +1,8 @@
 """What the tutorial and the how-tos tell to type is typed, and what they tell to write is written.
 
-Commands stand in blocks fenced as `sh`, files in blocks with a title, or taken from the examples by `--8<--`. All of one page share a
-folder. Nothing is compared with what a page shows of the output: that it works is checked here.
+Commands stand in blocks fenced as `sh`, files in blocks with a title, or taken from the examples
+by `--8<--`. All of one page share a folder. Nothing is compared with what a page shows of the
+output: that it works is checked here.
 """
 
 import re
