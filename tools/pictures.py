@@ -42,6 +42,7 @@ def lab() -> None:
             chromium = playwright.chromium.launch(executable_path=browser, args=["--no-sandbox"])
             page = chromium.new_page(viewport={"width": 1280, "height": 900})
             page.goto(link[0])
+            page.get_by_role("button", name="No tour").click()
             page.locator(".quality").filter(has_text="solved:").wait_for(timeout=SOLVED)
             page.screenshot(path=PICTURES / "lab.png")
             chromium.close()
