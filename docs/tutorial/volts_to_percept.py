@@ -24,8 +24,9 @@ from squeezefilm.study.simulated.chain_tables import chain_tables
 # %% [markdown]
 # ## Volts → vibration → friction
 #
-# The plate of Biet, Giraud and Lemaire-Semail (2008), "the paper", at its own 15 V. The plate is solved as a piezoelectric solid; the finger takes
-# a little of its amplitude; film and asperities share the load of each fingerprint ridge.
+# The plate of Biet, Giraud and Lemaire-Semail (2008), "the paper", at its own 15 V. The plate is
+# solved as a piezoelectric solid; the finger takes a little of its amplitude; film and asperities
+# share the load of each fingerprint ridge.
 
 # %%
 display = sf.load_display("biet2008-plate")
