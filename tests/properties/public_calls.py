@@ -56,6 +56,9 @@ NOT_CALLED = {
     plate.ring.response.RingResponse
     plate.shear.modes.ShearMode plate.solid.working.SolidMode plate.exposure.ExposureGuidance
     plate.sound.SoundField plate.working_mode.ModeLine plate.working_mode.WorkingMode
+    plate.surface_shape.BeamSurface plate.surface_shape.DiscSurface
+    plate.surface_shape.SolvedSurface plate.surface_shape.SurfaceShape
+    plate.surface_shape.TrackSurface
     plate.ring.stator.StatorFit
     chain.prediction.Prediction render.resonator.compensation.CompensatedDrive
     render.fidelity.report.FidelityReport render.motion.estimator.MotionCounts
@@ -87,7 +90,6 @@ NOT_CALLED = {
     plate.ring.elements.HarmonicSystem.field plate.ring.elements.RingMesh
     plate.ring.elements.harmonic_system plate.elements.block_ldl.PartialLDL
     plate.elements.block_ldl.partial_ldl plate.elements.mirrored_element.MirroredElement
-    plate.elements.mirrored_element.SliceMatrices plate.elements.mirrored_element.mirrored_element
     plate.elements.box_model.BoxModel
     plate.elements.box_model.Electrode
     plate.elements.box_model.Foundation plate.elements.box_model.Medium

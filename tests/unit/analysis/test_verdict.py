@@ -202,7 +202,7 @@ def test_assumed_values_are_counted(point: Prediction) -> None:
         "lists them.",
     ) in found  # fmt: skip
     bare = dataclasses.replace(STATOR, provenance={**sources, "d": Provenance("", UNSTATED)})
-    found = findings(bare, point, (curve(1e-6),), None, None)
+    found = findings(bare, point, None, curve(1e-6), None)
     assert Finding(
         "doubt",
         "1 of 4 values of this display have no source, and 2 are assumed, not measured or "

@@ -44,6 +44,7 @@ def test_a_texture_is_rendered_under_a_known_finger(rendered: SimpleNamespace) -
     assert rendered.asked.named == {
         "voltage": None, "normal_force": None, "surface": None, "model": None, "sensor": None,
         "compensation": "none", "braking": False, "wave": "ignored", "seed": 0,
+        "place": None,
     }  # fmt: skip
     assert rendered.shown.given == (ANSWER,)
     assert (done.stdout, done.stderr) == ("", "  a step …\n")
@@ -61,7 +62,7 @@ def test_every_option_of_a_rendering_arrives(rendered: SimpleNamespace, tmp_path
     assert rendered.asked.named == {
         "voltage": 15.0, "normal_force": 0.3, "surface": "copper", "model": "film-open",
         "sensor": "touch-panel-120-hz", "compensation": "inverse", "braking": True, "wave": "felt",
-        "seed": 5,
+        "seed": 5, "place": None,
     }  # fmt: skip
     assert rendered.written.given == (ANSWER, tmp_path)
     assert rendered.written.named == {"table": "parquet", "drive": True, "hjif": True}

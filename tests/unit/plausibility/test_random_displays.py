@@ -3,6 +3,8 @@ before any solve, and none is called good; those that are built pass."""
 
 import dataclasses
 import functools
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -93,6 +95,7 @@ def check(seed: int, count: int, monkeypatch: pytest.MonkeyPatch) -> dict[str, i
         raise AssertionError("a solve was begun")
 
     rng, good = np.random.default_rng(seed), some_prediction()
+    curve: Any = SimpleNamespace(amplitude_for_criterion=None)
     bases = [*displays(), *(plausible_display(rng) for _ in range(5))]
     monkeypatch.setattr(chosen_mode, "working_mode", never)
     counted, missed = {"not built": 0, "refused": 0, "doubted": 0}, []
@@ -108,7 +111,7 @@ def check(seed: int, count: int, monkeypatch: pytest.MonkeyPatch) -> dict[str, i
             counted["refused"] += 1
         elif found:
             objected = dataclasses.replace(good, objections=tuple(one.sentence for one in found))
-            lines = tuple(verdict(display, objected, (), None, None))
+            lines = tuple(verdict(display, objected, None, curve, None))
             assert not [line for line in lines if line.kind == "good"], said
             assert lines[0].text == found[0].sentence
             counted["doubted"] += 1

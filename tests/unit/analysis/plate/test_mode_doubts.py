@@ -28,7 +28,16 @@ def mode(label: str, frequency: float = 30e3, own: float = 1.0, **changes: Any) 
         index=0,
         modes=SimpleNamespace(labels=(lines,)),
     )
-    one = WorkingMode(label, frequency, 11e-3, 60.0, 1e-7, "a model", solid=solid)  # type: ignore[arg-type]
+    one = WorkingMode(
+        label,
+        frequency,
+        11e-3,
+        60.0,
+        1e-7,
+        "a model",
+        (0.0, 0.0),
+        solid=solid,  # type: ignore[arg-type]
+    )
     return dataclasses.replace(one, **changes)
 
 
@@ -129,5 +138,6 @@ def test_an_amplitude_that_is_given_needs_no_mode() -> None:
     display = load_display("biet2008-stator")
     p = predict(display, vibration_amplitude=2e-6)
     quiet = dataclasses.replace(p, mode=dataclasses.replace(p.mode, resonance_frequency=10e3))
-    texts = [one.text for one in verdict(display, quiet, (), None, None)]
+    curve: Any = SimpleNamespace(amplitude_for_criterion=None)
+    texts = [one.text for one in verdict(display, quiet, None, curve, None)]
     assert not any("audible" in text for text in texts)

@@ -1,4 +1,4 @@
-"""Which solver a plate, a disc or a stator goes to, with which arguments, and what is refused."""
+"""Which solver a plate, a disc or a stator goes to, with which arguments."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import pytest
 from squeezefilm.analysis.plate import command as solve
 from squeezefilm.analysis.plate.command import solve_plate
 from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
 
 # The solvers themselves take seconds and have tests of their own.
 DEFAULTS = {"mode": None, "band": None, "points": 200, "progress": None}
@@ -31,13 +30,12 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str, dict[str, Any
 def test_a_rectangle_is_solved_with_all_that_is_asked(asked: list[Any]) -> None:
     assert solve_plate("biet2008-plate") == "solved by analyze_plate"
     given: dict[str, Any] = {
-        "mode": (7, 0), "band": (30e3, 40e3), "points": 50, "sensitivity": True, "track": object(),
+        "mode": (7, 0), "band": (30e3, 40e3), "points": 50,
         "progress": print, "budget": 60.0,
     }  # fmt: skip
-    for_rectangles = {"sensitivity": False, "track": None, "budget": None}
     solve_plate(load_display("biet2008-plate"), **given)
     assert asked == [
-        ("analyze_plate", "biet2008-plate", {**DEFAULTS, **for_rectangles}),
+        ("analyze_plate", "biet2008-plate", {**DEFAULTS, "budget": None}),
         ("analyze_plate", "biet2008-plate", given),
     ]
 
@@ -50,16 +48,3 @@ def test_discs_and_stators_are_solved_as_rings(asked: list[Any], name: str) -> N
     }  # fmt: skip
     solve_plate(name, **given)
     assert asked == [("analyze_ring", name, DEFAULTS), ("analyze_ring", name, given)]
-
-
-@pytest.mark.parametrize("more", [{"sensitivity": True}, {"track": object()}])
-def test_what_is_for_rectangles_is_refused_of_others(
-    asked: list[Any], more: dict[str, Any]
-) -> None:
-    for name, kind in (("biet2008-stator", "annular stator"), ("winfield2007-tpad", "disc")):
-        with pytest.raises(InputError) as caught:
-            solve_plate(name, **more)
-        assert str(caught.value) == (
-            f"sensitivity and track are for rectangular plates; '{name}' is a {kind}"
-        )
-    assert not asked

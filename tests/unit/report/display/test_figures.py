@@ -169,7 +169,8 @@ def test_svg_is_the_same_every_time(plate_analysis: Analysis) -> None:
 
 
 def test_svg_follows_the_palette_and_stands_alone(plate_analysis: Analysis) -> None:
-    text = style.svg(FIGURES[4].draw(plate_analysis), "friction", 'a "label" <b>')
+    (figure,) = (one for one in FIGURES if one.key == "friction")
+    text = style.svg(figure.draw(plate_analysis), "friction", 'a "label" <b>')
     assert "http" not in text
     assert "<metadata" not in text
     assert "var(--blue)" in text
