@@ -1,8 +1,10 @@
 """What is uncertain of a friction, how it is drawn, and what becomes of the draws."""
 
 import dataclasses
+import math
 from collections import Counter
 from collections.abc import Callable
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
@@ -43,6 +45,7 @@ from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.display import Display, load_display
 from squeezefilm.distributions import Uniform
 from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.plate.working_mode import working_mode
 from squeezefilm.quantities import Unit
 
 
@@ -522,6 +525,30 @@ def test_the_free_amplitude_follows_voltage_quality_and_dimensions(
     # At rest there is nothing to be in proportion to.
     still = dataclasses.replace(plate, drive=dataclasses.replace(plate.drive, voltage=0.0))
     assert FreeAmplitude(still, _predicted(voltage=15.0))(plate) == 3e-6
+
+
+def test_a_disc_of_a_draw_is_told_from_few_solved_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    disc = load_display("winfield2007-tpad")
+    solved: list[Any] = []
+
+    def counted(actuator: Any) -> Any:
+        solved.append(actuator)
+        return working_mode(actuator)
+
+    monkeypatch.setattr(draws, "working_mode", counted)
+    free = FreeAmplitude(disc, _predicted(voltage=15.0))
+    reference = working_mode(disc.actuator).amplitude_per_volt
+    rng = np.random.default_rng(18)
+    paths = ("substrate.young_modulus", "substrate.density", "thickness")
+    for _ in range(8):
+        changes = {
+            f"actuator.{path}": getter(disc.actuator) * math.exp(rng.uniform(-0.1, 0.1))
+            for path, getter in ((path, attrgetter(path)) for path in paths)
+        }
+        other = replaced(disc, changes)
+        wanted = working_mode(other.actuator).amplitude_per_volt / reference
+        assert free(other) / 3e-6 == pytest.approx(wanted, rel=0.03)
+    assert len(solved) == 1 + 2 * len(paths)
 
 
 def test_draws_beyond_the_range_of_their_law_count_without_a_warning_for_each() -> None:
