@@ -10,7 +10,7 @@ MUTANTS_SEED ?= 1
 COUNT ?= 150
 MINUTES ?= 480
 
-.PHONY: help demo lab test slow check lint types layers gallery docs bench coverage nightly campaign release clean
+.PHONY: help demo lab test slow check lint types layers gallery pictures docs bench coverage nightly campaign release clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -90,7 +90,10 @@ layers: $(VENV)/test.stamp  ## who may import whom
 gallery: $(VENV)/run.stamp  ## draw the preset textures for the documentation
 	@$(BIN)/python -m squeezefilm.report.textures.gallery
 
-docs: $(VENV)/test.stamp  ## build the documentation, strictly, with examples run and drawn
+pictures: $(VENV)/test.stamp  ## draw the pictures of the README, with a Chromium
+	@$(BIN)/python tools/pictures.py
+
+docs: $(VENV)/test.stamp  ## build the documentation, strictly, with examples run and drawn: some two minutes
 	@rm -rf docs/examples
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 

@@ -24,8 +24,9 @@ from squeezefilm.study.simulated.chain_tables import chain_tables
 # %% [markdown]
 # ## Volts → vibration → friction
 #
-# The paper's plate at its own 15 V. The plate is solved as a piezoelectric solid; the finger takes
-# a little of its amplitude; film and asperities share the load of each fingerprint ridge.
+# The plate of Biet, Giraud and Lemaire-Semail (2008), "the paper", at its own 15 V. The plate is
+# solved as a piezoelectric solid; the finger takes a little of its amplitude; film and asperities
+# share the load of each fingerprint ridge.
 
 # %%
 display = sf.load_display("biet2008-plate")
@@ -43,7 +44,8 @@ sf.plot(p)
 # %%
 mixture = Mixture(display, p, driven=True)
 points = sobol_points(mixture, 128, seed=1)
-friction, amplitude, refused = evaluate(mixture, points, lambda _: None)
+drawn, refused = evaluate(mixture, points, lambda _: None)
+friction = drawn.friction
 levels = (0.05, 0.5, 0.95)
 quantiles = np.nanquantile(friction, levels)
 print(f"µ′/µ: median {quantiles[1]:.2f}, 90 % of draws {quantiles[0]:.2f} to {quantiles[2]:.2f}")

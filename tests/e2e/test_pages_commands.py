@@ -1,7 +1,8 @@
 """What the tutorial and the how-tos tell to type is typed, and what they tell to write is written.
 
-Commands stand in blocks fenced as `sh`, files in blocks with a title. All of one page share a
-folder. Nothing is compared with what a page shows of the output: that it works is checked here.
+Commands stand in blocks fenced as `sh`, files in blocks with a title, or taken from the examples
+by `--8<--`. All of one page share a folder. Nothing is compared with what a page shows of the
+output: that it works is checked here.
 """
 
 import re
@@ -25,6 +26,12 @@ def _commands(text: str) -> list[list[str]]:
     return [shlex.split(line, comments=True) for line in lines if line.strip()]
 
 
+def _included(text: str) -> str:
+    """A file that stands in the checkout once, and on the page by the name of it."""
+    taken = re.fullmatch(r'--8<-- "([^"]+)"\n', text)
+    return text if taken is None else (DOCS.parent / taken[1]).read_text(encoding="utf-8")
+
+
 WITH_COMMANDS = [
     page
     for page in PAGES
@@ -37,7 +44,7 @@ WITH_COMMANDS = [
 def test_what_a_page_tells_to_type_works(page: Path, tmp_path: Path) -> None:
     for found in BLOCK.finditer(page.read_text(encoding="utf-8")):
         if found["file"]:
-            (tmp_path / found["file"]).write_text(found["text"], encoding="utf-8")
+            (tmp_path / found["file"]).write_text(_included(found["text"]), encoding="utf-8")
             continue
         for name, *words in _commands(found["text"]):
             assert name == "squeezefilm", f"{page.name} tells to type {name}"

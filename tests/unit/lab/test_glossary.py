@@ -44,3 +44,20 @@ def test_every_number_on_a_page_names_an_explanation() -> None:
             asked |= set(re.findall(r'\["[^"]+", "(\w+)"\]', table[1]))
     assert asked - set(ENTRIES) == set()
     assert len(asked) > 20
+
+
+def test_the_glossary_of_the_pages_names_things_as_the_lab_does() -> None:
+    # The lab explains a number where it stands, the page a word; the same thing has one name.
+    page = Path(__file__).parents[3] / "docs" / "reference" / "glossary.md"
+    word = re.compile(r"^\*\*([^*]+)\*\*(?: ([^:(;,]+?))?(?: \([^)]*\))?:", re.MULTILINE)
+    words = word.findall(page.read_text(encoding="utf-8"))
+    symbols = {
+        found[1].lower(): found[2]
+        for entry in ENTRIES.values()
+        if (found := re.search(r'name: "([^"]+)", symbol: "([^"]+)"', entry))
+    }
+    both = [(name.lower(), symbol) for name, symbol in words if name.lower() in symbols]
+    assert len(both) >= 5, "the two glossaries have drifted apart"
+    for name, symbol in both:
+        assert symbol in ("", symbols[name]), name
+    assert len({name for name, _ in words}) == len(words) > 40
