@@ -1,12 +1,14 @@
 """How probable a friction is at the best place of the active area, in its middle and at the worst.
 
-A draw of all that is uncertain is asked at three amplitudes: those of an even wave that gives, as
-described, the best, the median and the worst friction of the area. Which place is which, and how
-the amplitudes stand to each other, is taken from the display as described.
+A draw of all that is uncertain is asked for the friction of one ridge against amplitude, and a pad
+meets its mean over what the ridges move at the place. Which place is which, and what a finger there
+leaves of the amplitude beside one at the best antinode, is taken from the display as described; so
+is what the ridges of a stiff pad take from each other, from the best antinode.
 """
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -14,15 +16,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import FreeAmplitude, Mixture, between_limits, outcome_of
+from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, outcome_of
 from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea
+from squeezefilm.chain.friction import FrictionLaw
+from squeezefilm.chain.pad_place import pad_place
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
-from squeezefilm.errors import SqueezefilmError, UnreachableError
+from squeezefilm.errors import SqueezefilmError
 
 DRAWS = 64
+# Of the largest that a ridge meets: dense where friction falls most.
+_AMPLITUDES = np.linspace(0.0, 1.0, 33) ** 1.5
 WHERE = ("best", "median", "worst")
 
 
@@ -72,30 +78,39 @@ def area_odds(
     display: Display, prediction: Prediction, area: ActiveArea, *, seed: int = 1
 ) -> AreaOdds | None:
     """The friction of an area by 64 draws of all that is uncertain in a display; None where the
-    area has no friction or an even wave does not reach it."""
+    area has no friction, nothing vibrates or nothing touches."""
     p = prediction
-    known = (area.best, area.median, area.worst)
-    if p.touch.sharing is None or p.vibration_amplitude == 0:
+    if p.touch.sharing is None or p.vibration_amplitude == 0 or not area.of_note:
         return None
-    even = dataclasses.replace(p.law, place=None, position=0.0)
-    try:
-        asked = [even.amplitude_for(min(one, 1.0)) for one in known if one is not None]
-    except UnreachableError:
-        return None
-    if len(asked) < len(known):
-        return None
-    shares = np.array(asked) / p.vibration_amplitude
-    there = dataclasses.replace(p, law=even)
+    there = dataclasses.replace(p, law=dataclasses.replace(p.law, place=None, position=0.0))
+    places = [pad_place(display.actuator, p.mode, p.frequency, one) for one, _ in area.of_note]
+    side = area.contact_side
+    swings = [
+        np.abs(one.ridges(display.finger, side)[1]) * (lobe / p.vibration_amplitude)
+        for one, (_, lobe) in zip(places, area.of_note, strict=True)
+        if one is not None
+    ]
     mixture = Mixture(display, there, driven=p.voltage is not None)
     free = FreeAmplitude(display, there)
-    samples = np.full((DRAWS, len(known)), np.nan)
+    samples = np.full((DRAWS, len(swings)), np.nan)
     for row, draw in zip(samples, mixture.draws(sobol_points(mixture, DRAWS, seed)), strict=True):
-        try:
+        with contextlib.suppress(SqueezefilmError), as_drawn():
             amplitude = outcome_of(mixture, draw, free(draw.display)).amplitude
-            row[:] = between_limits(mixture.law(draw), draw, amplitude * shares)
-        except SqueezefilmError:
-            continue
+            row[:] = _met(mixture.law(draw), draw, amplitude, swings)
     return AreaOdds(samples)
+
+
+def _met(
+    law: FrictionLaw, draw: Draw, amplitude: si.Metre, swings: list[si.DimensionlessArray]
+) -> list[float]:
+    """The friction of a draw under pads whose ridges move by `swings`, over an amplitude (m)."""
+    asked = amplitude * max(float(np.max(one)) for one in swings) * _AMPLITUDES
+    ridge = law.ridge_friction(asked)
+    at = np.array([amplitude])
+    limits = law.limits(at)
+    tied = (1 - draw.skin_compliance) * float(limits.one_gap[0] - limits.own[0])
+    means = (float(np.mean(np.interp(amplitude * one, asked, ridge))) for one in swings)
+    return [min(max(mean + tied, 0.0), 1.0) for mean in means]
 
 
 def judged_area(

@@ -126,6 +126,19 @@ class ActiveArea:
         return self._place(int(np.nanargmax(np.round(self.relative_friction, 9))))
 
     @property
+    def of_note(self) -> tuple[tuple[tuple[si.Metre, si.Metre], si.Metre], ...]:
+        """The best place, one in the median and the worst (m), each with the best antinode's
+        amplitude (m) while the finger is there; none where the friction is not known."""
+        if self.relative_friction is None:
+            return ()
+        near = np.round(self.relative_friction, 9), self.lobe_amplitude.ravel()
+        wanted = (self.best, self.median, self.worst)
+        found = [
+            int(np.nanargmin(np.abs(near[0] - value))) for value in wanted if value is not None
+        ]
+        return tuple((self._place(at), float(near[1][at])) for at in found)
+
+    @property
     def amplitude_range(self) -> tuple[si.Metre, si.Metre]:
         """The least and the largest root mean square under the pad (m)."""
         under = self.amplitude_under_pad

@@ -79,11 +79,12 @@ def loaded_mode(
     modal_mass: Annotated[si.Kilogram, si.Above(0.0)],
     stiffness_per_area: complex,
     area: Annotated[si.SquareMetre, si.Above(0.0)],
-    mean_square: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)],
+    mean_square: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1e4)],
 ) -> LoadedMode:
     """A mode of `frequency` (Hz) and Q that moves `modal_mass` (kg, for unit amplitude at an
     antinode), with a load of complex `stiffness_per_area` (Pa/m) on `area` (m²), over which the
-    square of the mode's shape has the mean `mean_square`.
+    square of the mode's shape has the mean `mean_square`: above 1 where free ends, or neighbours
+    of a mode that is hardly driven, move more than its antinode.
 
     First order in the load. On the paper's plate a damper's effect at the finger agrees with the
     whole solved plate to a sixth, a spring's or mass's to two fifths: they also mix modes nearby.

@@ -54,7 +54,7 @@ def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: P
         "voltage": 15.0, "frequency": 34e3, "vibration_amplitude": None, "normal_force": 0.3,
         "surface": "copper", "model": "film-open", "position": pytest.approx(2e-3),
         "speed": pytest.approx(0.05), "ambient_pressure": 2000.0, "wanted_friction": 0.7,
-        "samples": 8, "seed": 5, "tell_apart": False,
+        "samples": 8, "seed": 5, "tell_apart": False, "place": None,
     }  # fmt: skip
     assert written.given == (ANSWER, tmp_path)
     assert done.stdout == "figures: a/folder\n"

@@ -73,7 +73,7 @@ def finger_impedance(
     stiffness_per_area: complex,
     area: Annotated[si.SquareMetre, si.Above(0.0)],
     frequency: Annotated[si.Hertz, si.Above(0.0)],
-    mean_square: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 1.0,
+    mean_square: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1e4)] = 1.0,
 ) -> NewtonSecondPerMetreComplex:
     """The mechanical impedance of a whole finger, Z = K A ⟨cos²⟩/(iω) (N·s/m, complex).
 

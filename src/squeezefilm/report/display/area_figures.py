@@ -123,5 +123,6 @@ def _line(axes: Axes, area: ActiveArea) -> None:
         right.plot(place, area.relative_friction.ravel(), **style.WANTED, label=name)
         right.set(ylabel="relative friction µ′/µ", ylim=(0, 1.02))
         right.grid(visible=False)
+        right.xaxis.set_tick_params(labelbottom=False)
         handles = handles + right.get_legend_handles_labels()[0]
     style.legend_below(axes, handles=handles)

@@ -93,6 +93,11 @@ def drawn_texts(figure: Any) -> list[tuple[str, Any]]:
         ]
 
 
+def figure_of(key: str) -> Any:
+    """One of the report's figures."""
+    return next(one for one in FIGURES if one.key == key)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "key"), CASES)
 def test_texts_are_inside_the_figure_and_apart_and_axes_labelled(
@@ -151,7 +156,7 @@ def test_messages_tell_the_numbers_of_the_analysis(plate_analysis: Analysis) -> 
 def test_the_response_says_when_the_drive_is_beside_it_or_in_vain(
     analysis_of: Callable[[str], Analysis],
 ) -> None:
-    draw = FIGURES[2].draw
+    draw = figure_of("response").draw
     off = analysis_of("off-resonance").prediction
     share = off.touch.free_amplitude / (15 * off.mode.amplitude_per_volt)
     assert 0.4 < share < 0.7
@@ -163,14 +168,13 @@ def test_the_response_says_when_the_drive_is_beside_it_or_in_vain(
 @pytest.mark.slow
 def test_svg_is_the_same_every_time(plate_analysis: Analysis) -> None:
     first, second = (
-        style.svg(FIGURES[2].draw(plate_analysis), "response", "label") for _ in range(2)
+        style.svg(figure_of("response").draw(plate_analysis), "response", "label") for _ in range(2)
     )
     assert first == second
 
 
 def test_svg_follows_the_palette_and_stands_alone(plate_analysis: Analysis) -> None:
-    (figure,) = (one for one in FIGURES if one.key == "friction")
-    text = style.svg(figure.draw(plate_analysis), "friction", 'a "label" <b>')
+    text = style.svg(figure_of("response").draw(plate_analysis), "response", 'a "label" <b>')
     assert "http" not in text
     assert "<metadata" not in text
     assert "var(--blue)" in text
@@ -214,7 +218,7 @@ def test_drawing_leaves_the_users_matplotlib_alone(plate_analysis: Analysis) -> 
     import matplotlib
 
     before = dict(matplotlib.rcParams)
-    style.svg(FIGURES[2].draw(plate_analysis), "response", "label")
+    style.svg(figure_of("response").draw(plate_analysis), "response", "label")
     assert dict(matplotlib.rcParams) == before
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from squeezefilm.analysis.area_odds import area_odds, judged_area
+from squeezefilm.analysis.area_odds import judged_area
 from squeezefilm.chain.active_area import active_area, percent
 from squeezefilm.chain.pad_place import place_words
 from squeezefilm.chain.prediction import predict
@@ -45,20 +45,6 @@ def test_a_model_without_ridges_of_their_own_says_why() -> None:
     assert judged.odds is None
     assert "paper2008" in place_rows(p, judged)[1][2]
     assert "root mean square" in figure_of(_analysis(judged)).get_suptitle()
-
-
-def test_odds_fall_from_the_best_place_to_the_worst() -> None:
-    assert AREA is not None
-    odds = area_odds(STATOR, POINT, AREA)
-    assert odds is not None
-    best, median, worst = odds.probabilities_below(0.7)
-    assert 1 >= best >= median >= worst >= 0
-    low, high = odds.worst_interval
-    assert 0 <= low < AREA.worst < high <= 1  # type: ignore[operator]
-    assert odds.summary()["probability_below_0.70"]["worst"] == worst
-    # As described, an even wave of the worst place's amplitude has the worst place's friction.
-    amplitude = POINT.law.amplitude_for(AREA.worst)  # type: ignore[arg-type]
-    assert abs(POINT.law.at(amplitude) - AREA.worst) < 1e-5  # type: ignore[operator]
 
 
 def _analysis(judged: Any) -> Any:
