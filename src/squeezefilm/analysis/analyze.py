@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import functools
-import itertools
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -32,6 +29,7 @@ from squeezefilm.analysis.felt import FeltGratings, felt_gratings
 from squeezefilm.analysis.film.models import FilmComparison, compare_film_models
 from squeezefilm.analysis.friction.wanted import Wanted
 from squeezefilm.analysis.friction.wanted import wanted_friction as friction_wanted
+from squeezefilm.analysis.other_models import OtherModel, other_models
 from squeezefilm.analysis.sensitivities import (
     DisplaySensitivities,
     Effort,
@@ -40,9 +38,9 @@ from squeezefilm.analysis.sensitivities import (
 from squeezefilm.analysis.textures import (
     CompensatedGrating,
     TextureSurvival,
-    compensated_grating,
-    driven_envelope,
-    texture_survival,
+    along_a_stroke,
+    through_the_resonator,
+    what_survives,
 )
 from squeezefilm.analysis.uncertainty import (
     SAMPLES,
@@ -63,23 +61,13 @@ from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.pad_place import FacePlace
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
-from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.from_text import reads_text
-from squeezefilm.plate.beam.modes import BeamTheory
-from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.electronics import ElectricalLoad, load_of_mode
-from squeezefilm.plate.laminate import CrossSection
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.shear.modes import shear_mode
-from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.progress import Deadline, Pace, SayProgress, said_with_time_left
-from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
-from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
-from squeezefilm.render.motion.stroke import Stroke
+from squeezefilm.render.fidelity.survival import FidelityTable
+from squeezefilm.render.fidelity.trace import FrictionTrace
 from squeezefilm.render.resonator.envelope import envelope_bandwidth
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.shapes import SquareWave
 from squeezefilm.results import Result, stamp, to_json
 
 BAND_POINTS, BAND_SAMPLES = 9, 64
@@ -90,17 +78,6 @@ BAND_REACH = 1.5
 
 # What these steps take (s), measured on the presets; a budget without room for one leaves it out.
 _INTERVAL, _FILMS = 6.0, 4.0
-
-
-@dataclass(frozen=True)
-class OtherModel:
-    """The same plate by another theory, to show how far they differ; no amplitude where the theory
-    is used for the frequency only."""
-
-    model: str
-    resonance_frequency: si.Hertz
-    half_wavelength: si.Metre | None
-    vibration_amplitude: si.Metre | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -226,16 +203,16 @@ class Analysis(Result):
     @functools.cached_property
     def other_models(self) -> tuple[OtherModel, ...]:
         """The same plate by other theories."""
-        return tuple(_other_models(self.display, self.prediction))
+        return tuple(other_models(self.display, self.prediction))
 
     @functools.cached_property
     def texture(self) -> FrictionTrace | None:
         """A stroke over a square grating; None where the amplitude changes no friction."""
-        return _texture(self.prediction, self.envelope_time_constant)
+        return along_a_stroke(self.prediction, self.envelope_time_constant)
 
     @functools.cached_property
     def _compensation(self) -> tuple[CompensatedGrating | None, TextureSurvival | None]:
-        return _compensation(self.display, self.prediction)
+        return through_the_resonator(self.display, self.prediction)
 
     @property
     def compensated(self) -> CompensatedGrating | None:
@@ -397,7 +374,7 @@ def _what_follows(
     else:
         unsure, why_not = None, "the budget left no time for its interval"
     tell("verdict")
-    table = _fidelity(prediction, tau)
+    table = what_survives(prediction, tau)
     return Analysis(
         display=display,
         prediction=prediction,
@@ -410,57 +387,3 @@ def _what_follows(
         verdict=tuple(verdict(display, prediction, area, own, table, unsure, why_not)),
         with_films=deadline is None or deadline.allows(_FILMS),
     )
-
-
-def _compensation(
-    display: Display, prediction: Prediction
-) -> tuple[CompensatedGrating | None, TextureSurvival | None]:
-    if not prediction.voltage or prediction.vibration_amplitude == 0:
-        return None, None
-    envelope = driven_envelope(prediction)
-    return compensated_grating(envelope), texture_survival(display.name, envelope)
-
-
-def _other_models(display: Display, prediction: Prediction) -> Iterator[OtherModel]:
-    if not isinstance(display.actuator, RectangularPlate) or prediction.voltage is None:
-        return
-    plate, volts = display.actuator, prediction.voltage
-    mode = prediction.mode
-    # Where a budget left no time for the solid, it has none beside a beam either.
-    if mode.solid is None and not prediction.objections:
-        with contextlib.suppress(InputError):
-            solid = solid_mode(plate)
-            amplitude = volts * solid.amplitude_per_volt
-            yield OtherModel(solid.model, solid.frequency, solid.half_wavelength, amplitude)
-    # A theory that has no such mode near has nothing to set beside.
-    with contextlib.suppress(InputError):
-        shear = shear_mode(plate, plate.working_label, mode.resonance_frequency)
-        yield OtherModel("shear_plate", shear.frequency, None, None)
-    theories: tuple[BeamTheory, ...] = ("timoshenko", "euler_bernoulli")
-    sections: tuple[CrossSection, ...] = ("plane_strain", "plane_stress", "paper")
-    for theory, section in itertools.product(theories, sections):
-        try:
-            beam = beam_response(plate, theory, section)
-        except OutOfRangeError:
-            continue
-        if beam.model != mode.model:
-            amplitude = volts * beam.amplitude_per_volt
-            yield OtherModel(beam.model, beam.mode.frequency, beam.mode.half_wavelength, amplitude)
-
-
-def _texture(prediction: Prediction, tau: si.Second) -> FrictionTrace | None:
-    high = prediction.vibration_amplitude
-    if not _changes_friction(prediction):
-        return None
-    grating = Amplitude(SquareWave(2e-3), low=0.0, high=high)
-    return friction_trace(grating, Stroke(speed=0.1), tau, prediction.friction)
-
-
-def _fidelity(prediction: Prediction, tau: si.Second) -> FidelityTable | None:
-    if not _changes_friction(prediction):
-        return None
-    return fidelity_table(tau, prediction.friction, low=0.0, high=prediction.vibration_amplitude)
-
-
-def _changes_friction(prediction: Prediction) -> bool:
-    return prediction.relative_friction != 1 and prediction.vibration_amplitude != 0

@@ -10,7 +10,11 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction
+from squeezefilm.display import Display
 from squeezefilm.errors import InputError
+from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
+from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
+from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.compensation import (
     CompensatedDrive,
     DrivenEnvelope,
@@ -22,6 +26,8 @@ from squeezefilm.render.resonator.square_swing import (
     least_cycle,
     square_fundamental_compensated,
 )
+from squeezefilm.render.texture.levels import Amplitude
+from squeezefilm.render.texture.shapes import SquareWave
 
 _STEPS_PER_PERIOD = 1000
 _PERIODS = 8
@@ -215,3 +221,34 @@ def compensated_grating(
 def _wave(two_periods: si.MetreArray) -> si.Metre:
     """The amplitude of the wave of the period in two whole periods (m)."""
     return float(2 * np.abs(np.fft.rfft(two_periods)[2]) / two_periods.size)
+
+
+def through_the_resonator(
+    display: Display, prediction: Prediction
+) -> tuple[CompensatedGrating | None, TextureSurvival | None]:
+    """A fine grating through the resonator, and which survives; none where no voltage makes an
+    amplitude."""
+    if not prediction.voltage or prediction.vibration_amplitude == 0:
+        return None, None
+    envelope = driven_envelope(prediction)
+    return compensated_grating(envelope), texture_survival(display.name, envelope)
+
+
+def along_a_stroke(prediction: Prediction, tau: si.Second) -> FrictionTrace | None:
+    """A stroke over a square grating; None where the amplitude changes no friction."""
+    high = prediction.vibration_amplitude
+    if not _changes_friction(prediction):
+        return None
+    grating = Amplitude(SquareWave(2e-3), low=0.0, high=high)
+    return friction_trace(grating, Stroke(speed=0.1), tau, prediction.friction)
+
+
+def what_survives(prediction: Prediction, tau: si.Second) -> FidelityTable | None:
+    """Which grating survives at which speed; None where the amplitude changes no friction."""
+    if not _changes_friction(prediction):
+        return None
+    return fidelity_table(tau, prediction.friction, low=0.0, high=prediction.vibration_amplitude)
+
+
+def _changes_friction(prediction: Prediction) -> bool:
+    return prediction.relative_friction != 1 and prediction.vibration_amplitude != 0

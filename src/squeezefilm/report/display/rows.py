@@ -145,13 +145,15 @@ def _electrical_rows(analysis: Analysis) -> list[Row]:
         can: [check.part for check in load.amplifiers if check.suffices == can]
         for can in (True, False)
     }
-    said = [
-        f"{', '.join(parts)} {'can' if can else 'cannot'}" for can, parts in able.items() if parts
+    each = [
+        f"{' and '.join(parts)} {'can' if can else 'cannot'}"
+        for can, parts in able.items()
+        if parts
     ]
     return [
         ("Current", shown(load.current, A, 3), "zero-to-peak, without a finger"),
         ("Apparent power", f"{load.apparent_power:.3g} VA", real),
-        ("Amplifiers that can", f"{len(able[True])} of {len(load.amplifiers)}", "; ".join(said)),
+        ("Amplifiers that can", f"{len(able[True])} of {len(load.amplifiers)}", "; ".join(each)),
     ]
 
 

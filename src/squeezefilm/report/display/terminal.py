@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
@@ -21,12 +23,14 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.friction.wanted import Wanted
     from squeezefilm.analysis.verdict import Finding
+    from squeezefilm.report.kit.point_rows import Row
 
 _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
 
 # Of a warning where it is not asked for in full: two lines of a terminal.
 _SHORT = 140
+_IN_THE_VERDICT = ("Place of the finger", "µ′/µ over the active area", "Sound at")
 
 
 def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
@@ -42,7 +46,7 @@ def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
         bullets(console, [("!", text, "yellow") for text in cut])
     heading(console, "Key numbers")
     rows = [row for group in decision_rows(analysis) for row in group.rows]
-    table(console, ("", "", ""), rows, fixed=(0, 1))
+    table(console, ("", "", ""), rows if whole else list(_short(rows)), fixed=(0, 1))
     _show_wanted(console, analysis.wanted)
     if whole:
         _show_certainty(console, analysis)
@@ -52,6 +56,13 @@ def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
     if cut != warned:
         more = f"the warnings in full, {more}"
     console.print(f"\n--all prints {more}")
+
+
+def _short(rows: list[Row]) -> Iterator[Row]:
+    """Rows without what the verdict says already, each with the first part of its remark."""
+    for label, value, remark in rows:
+        if not label.startswith(_IN_THE_VERDICT):
+            yield label, value, re.split("; |, | \\(", remark)[0]
 
 
 def shortened(text: str) -> str:

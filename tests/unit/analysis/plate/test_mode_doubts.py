@@ -129,8 +129,7 @@ def test_five_symmetric_strips_with_five_lines_get_no_good_line() -> None:
     from squeezefilm.analysis.analyze import analyze
 
     found = analyze(five_strips(5), samples=0).verdict
-    assert found[0].kind == "doubt"
-    assert "not driven" in found[0].text
+    assert any(one.kind == "doubt" and "not driven" in one.text for one in found)
     assert not any(finding.kind == "good" for finding in found)
 
 

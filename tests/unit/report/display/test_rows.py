@@ -90,7 +90,7 @@ def test_what_the_amplifier_has_to_give_and_which_can() -> None:
     said = rows_of(analysis(drive_electronics=load))
     assert said["Current"][0] == "300 mA"
     assert said["Apparent power"] == ("1.5 VA", "1.2 W of them are real power")
-    assert said["Amplifiers that can"] == ("1 of 3", "B can; A, C cannot")
+    assert said["Amplifiers that can"] == ("1 of 3", "B can; A and C cannot")
     assert rows_of(analysis())["Current"][0] == "not known"
 
 

@@ -1,0 +1,60 @@
+"""How probable a friction is over the active area: by draws at its best, median and worst place."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squeezefilm.analysis import area_odds as room
+from squeezefilm.analysis.area_odds import area_odds
+from squeezefilm.analysis.draws import Draw
+from squeezefilm.chain.active_area import active_area
+from squeezefilm.chain.pad_place import pad_place
+from squeezefilm.chain.prediction import predict
+from squeezefilm.display import load_display
+
+STATOR = load_display("biet2008-stator")
+POINT = predict(STATOR)
+AREA = active_area(STATOR, POINT)
+assert AREA is not None
+
+
+def test_odds_fall_from_the_best_place_to_the_worst() -> None:
+    odds = area_odds(STATOR, POINT, AREA)
+    assert odds is not None
+    best, median, worst = odds.probabilities_below(0.7)
+    assert 1 >= best >= median >= worst >= 0
+    low, high = odds.worst_interval
+    assert AREA.worst is not None
+    assert 0 <= low < AREA.worst < high <= 1
+    assert odds.summary()["probability_below_0.70"]["worst"] == worst
+
+
+@pytest.mark.parametrize("name", ["biet2008-stator", "winfield2007-tpad"])
+def test_a_draw_that_is_as_described_has_the_friction_of_the_area(name: str) -> None:
+    display = load_display(name)
+    p = predict(display)
+    area = active_area(display, p)
+    assert area is not None
+    draw = Draw(display, p.normal_force, 1.0, p.law.slip, "persson")
+    swings = []
+    for place, lobe in area.of_note:
+        there = pad_place(display.actuator, p.mode, p.frequency, place)
+        assert there is not None
+        met = np.abs(there.ridges(display.finger, area.contact_side)[1])
+        swings.append(met * lobe / p.vibration_amplitude)
+    found = room._met(p.law, draw, p.vibration_amplitude, swings)
+    assert found == pytest.approx([area.best, area.median, area.worst], abs=5e-3)
+
+
+def test_no_draw_is_asked_for_more_amplitude_than_the_face_has() -> None:
+    # A pad as wide as waves are long: its friction is that of no even wave on an antinode.
+    display = load_display("winfield2007-tpad")
+    p = predict(display)
+    area = active_area(display, p)
+    assert area is not None
+    odds = area_odds(display, p, area)
+    assert odds is not None
+    assert not np.isnan(odds.samples).any()
+    middle = np.median(odds.samples, axis=0)
+    assert middle == pytest.approx([area.best, area.median, area.worst], abs=0.1)
