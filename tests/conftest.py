@@ -14,6 +14,8 @@ import pytest
 
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
+# What an earlier run solved must not stand in for what this one tests.
+os.environ["SQUEEZEFILM_CACHE"] = "off"
 
 from hypothesis import settings  # noqa: E402
 

@@ -200,9 +200,9 @@ def test_a_finger_takes_its_share_of_a_driven_amplitude(
     """With the quality factor of the draw; not where the amplitude is given or no mass known."""
     touched: list[tuple[float, float]] = []
 
-    def touch(mode: _Mode, _: Any, free: float) -> Any:
+    def touch(mode: _Mode, _: Any, free: float, *, tolerance: float) -> Any:
         touched.append((mode.quality_factor, free))
-        return SimpleNamespace(amplitude=0.5 * free, mode=None)
+        return SimpleNamespace(amplitude=0.5 * free, mode=None, sharing=None)
 
     monkeypatch.setattr(draws, "touch", touch)
     other = replaced(stator, {"actuator.quality_factor": 150.0})
@@ -228,15 +228,40 @@ def test_a_finger_takes_its_share_of_a_driven_amplitude(
     assert len(touched) == 1
 
 
+def test_a_limit_that_is_known_is_not_asked_for_again(stator: Display) -> None:
+    class Asked(_Law):
+        def sharing(self, amplitude: Any, limit: str) -> Any:
+            limits.append(limit)
+            return super().sharing(amplitude, limit)
+
+    law: Any = Asked()
+    at = np.array([1e-6])
+    for softness, known, asked in (
+        (0.3, None, ["own", "one-gap"]),
+        (0.3, "own", ["one-gap"]),
+        (0.3, "one-gap", ["own"]),
+        (1.0, None, ["own"]),
+        (1.0, "own", []),
+        (0.0, None, ["one-gap"]),
+    ):
+        before = None if known is None else law.sharing(at, known)
+        limits: list[str] = []
+        draw = Draw(stator, 0.5, softness, "first", "persson")
+        found = draws.between_limits(law, draw, at, before)
+        assert found == pytest.approx(0.9 * softness + 0.8 * (1 - softness))
+        assert limits == asked
+
+
 class _Law:
     """A friction law that needs no film: each limit falls with the amplitude by its own slope."""
 
     def __init__(self, own: float = 1.0, tied: float = 2.0) -> None:
         self.own, self.tied = own, tied
 
-    def limits(self, amplitude: Any) -> Any:
+    def sharing(self, amplitude: Any, limit: str) -> Any:
         a = np.atleast_1d(np.asarray(amplitude, dtype=float)) / 1e-6
-        return SimpleNamespace(own=1 - 0.1 * self.own * a, one_gap=1 - 0.1 * self.tied * a)
+        slope = self.own if limit == "own" else self.tied
+        return SimpleNamespace(relative_friction=1 - 0.1 * slope * a, limit=limit)
 
 
 def _predicted(**changes: Any) -> Any:
@@ -438,11 +463,10 @@ def test_a_band_ends_where_more_than_two_per_cent_are_refused(
         def __init__(self, wide: float) -> None:
             self.wide = wide
 
-        def limits(self, amplitude: np.ndarray) -> Any:
+        def sharing(self, amplitude: np.ndarray, limit: str) -> Any:
             if self.wide > 1.1 and amplitude.max() > 2.5e-6:
                 raise OutOfRangeError("pressed through")
-            found = _Law(self.wide, self.wide).limits(amplitude)
-            return SimpleNamespace(own=found.own, one_gap=found.own)
+            return _Law(self.wide, self.wide).sharing(amplitude, limit)
 
     monkeypatch.setattr(Mixture, "law", lambda _, draw: Law(_length(draw)))
     told: list[tuple[str, float]] = []

@@ -39,6 +39,7 @@ from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.touch import Touch, touch
+from squeezefilm.contact.sharing.pad import Limit, PadFriction
 from squeezefilm.display import Display
 from squeezefilm.errors import OutOfRangeWarning, SqueezefilmError
 from squeezefilm.plate.beam.response import beam_response
@@ -253,21 +254,39 @@ class Outcome(NamedTuple):
     power: Any
 
 
-def outcome_of(mixture: Mixture, draw: Draw, free_amplitude: si.Metre) -> Outcome:
-    """What comes of a draw at an amplitude (m) without its finger."""
+# Of the amplitude under a drawn finger: it moves µ′/µ a hundred times less than the draws differ.
+_SETTLED = 1e-4
+
+
+def outcome_of(
+    mixture: Mixture, draw: Draw, free_amplitude: si.Metre, *, settled: float = _SETTLED
+) -> Outcome:
+    """What comes of a draw at an amplitude (m) without its finger; `settled` as `touch` has its
+    tolerance."""
     law = mixture.law(draw)
-    amplitude, power = free_amplitude, None
+    amplitude, power, known = free_amplitude, None, None
     if mixture.prediction.voltage is not None and mixture.prediction.mode.modal_mass is not None:
-        felt = touch(mixture.mode(draw), law, free_amplitude)
-        amplitude, power = felt.amplitude, mixture.power(felt, draw.display.drive.voltage)
-    friction = float(between_limits(law, draw, np.array([amplitude]))[0])
+        felt = touch(mixture.mode(draw), law, free_amplitude, tolerance=settled)
+        amplitude, known = felt.amplitude, felt.sharing
+        power = mixture.power(felt, draw.display.drive.voltage)
+    friction = float(between_limits(law, draw, np.array([amplitude]), known)[0])
     return Outcome(friction, amplitude, np.nan if power is None else power)
 
 
-def between_limits(law: FrictionLaw, draw: Draw, amplitude: si.MetreArray) -> si.DimensionlessArray:
-    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it."""
-    limits, share = law.limits(amplitude), draw.skin_compliance
-    return np.asarray(share * limits.own + (1 - share) * limits.one_gap)
+def between_limits(
+    law: FrictionLaw, draw: Draw, amplitude: si.MetreArray, known: PadFriction | None = None
+) -> si.DimensionlessArray:
+    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it; one limit may be `known`."""
+    soft = draw.skin_compliance
+    weights: dict[Limit, float] = {"own": soft, "one-gap": 1 - soft}
+    found = np.zeros(amplitude.shape)
+    for limit, weight in weights.items():
+        if weight > 0:
+            if known is None or known.limit != limit:
+                found += weight * law.sharing(amplitude, limit).relative_friction
+            else:
+                found += weight * known.relative_friction
+    return found
 
 
 # How far the discs are from the described one that say how each number moves the amplitude.

@@ -20,6 +20,7 @@ from squeezefilm.analysis.draws import Mixture, as_drawn, outcome_of
 from squeezefilm.analysis.parameters import Origin, Parameter, value_at, with_values
 from squeezefilm.analysis.plate.sensitivity import with_ceramic_stiffness
 from squeezefilm.chain.prediction import Prediction
+from squeezefilm.chain.touch import TOLERANCE
 from squeezefilm.display import Display
 from squeezefilm.distributions import Uniform
 from squeezefilm.errors import InputError, SqueezefilmError
@@ -284,7 +285,8 @@ class _Bench:
         there = dataclasses.replace(p, mode=mode, frequency=mode.resonance_frequency * detuning)
         mixture = self.mixture.at(there, changed)
         draw = mixture.made({}, {})
-        return float(outcome_of(mixture, draw, p.touch.free_amplitude * share).friction)
+        free = p.touch.free_amplitude * share
+        return float(outcome_of(mixture, draw, free, settled=TOLERANCE).friction)
 
     def _outcome(self, values: dict[str, float]) -> si.Dimensionless:
         """µ′/µ with other values of finger, surface, gas or drive."""
@@ -292,4 +294,5 @@ class _Bench:
         draw = self.mixture.made(values, {})
         nominal, here = self.display.drive.voltage, draw.display.drive.voltage
         share = here / nominal if p.voltage is not None and nominal > 0 else 1.0
-        return float(outcome_of(self.mixture, draw, p.touch.free_amplitude * share).friction)
+        free = p.touch.free_amplitude * share
+        return float(outcome_of(self.mixture, draw, free, settled=TOLERANCE).friction)

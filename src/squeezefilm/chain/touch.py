@@ -28,7 +28,9 @@ _MOST_STEPS = 40
 _BELOW = np.concatenate([np.linspace(1.0, 0.05, 120), np.geomspace(0.05, 1e-6, 41)[1:]])
 # Of the mean square of the mode under a pad, between which amplitudes are interpolated.
 _KNOTS = 17
-_TOLERANCE = 1e-8  # of the amplitude
+TOLERANCE: si.Dimensionless = 1e-8
+"""To which amplitude and load fit where nothing else is asked, a share of the free amplitude."""
+
 _LEAST_AMPLITUDE: si.Metre = 1e-12
 
 
@@ -55,8 +57,17 @@ class Touch:
 
 
 @si.checked_numbers
-def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: si.Metre) -> Touch:
-    """The vibration with a finger on it, whose load depends on the amplitude: solved to 1e-8.
+def touch(
+    mode: WorkingMode,
+    law: FrictionLaw,
+    free_amplitude: si.Metre,
+    *,
+    tolerance: Annotated[si.Dimensionless, si.AtLeast(1e-12), si.AtMost(0.01)] = TOLERANCE,
+) -> Touch:
+    """The vibration with a finger on it, whose load depends on the amplitude.
+
+    Solved until amplitude and load fit to a `tolerance`, a share of the free amplitude; `sharing`
+    is at an amplitude within it.
 
     The finger rests where the law has it, film and asperities in the balance of the law (partial
     levitation, whatever its model). Where several amplitudes fit (a finger that lets go as the film
@@ -66,7 +77,7 @@ def touch(mode: WorkingMode, law: FrictionLaw, free_amplitude: si.Metre) -> Touc
     """
     if free_amplitude < _LEAST_AMPLITUDE:
         return Touch(free_amplitude, free_amplitude, None, None)
-    found = _touch(mode, _Pad.of(law), free_amplitude)
+    found = _touch(mode, _Pad.of(law), free_amplitude, tolerance)
     if law.place is None:
         return found
     # How the load is shared is asked of the ridges where they are.
@@ -91,7 +102,10 @@ def touched_amplitudes(
     low, high = float(np.min(mean_square)), float(np.max(mean_square))
     knots = np.linspace(low, high, _KNOTS) if high > low else np.array([low])
     over = _Pad.of(dataclasses.replace(law, place=None, position=0.0))
-    left = [_touch(mode, over.moved_to(float(one)), free_amplitude).amplitude for one in knots]
+    left = [
+        _touch(mode, over.moved_to(float(one)), free_amplitude, TOLERANCE).amplitude
+        for one in knots
+    ]
     return np.asarray(np.interp(mean_square, knots, left))
 
 
@@ -116,7 +130,7 @@ class _Pad(NamedTuple):
         return _Pad(self.law, mean_square, (mean_square / self.mean_square) ** 0.5)
 
 
-def _touch(mode: WorkingMode, pad: _Pad, free_amplitude: si.Metre) -> Touch:
+def _touch(mode: WorkingMode, pad: _Pad, free_amplitude: si.Metre, tolerance: float) -> Touch:
     """The vibration with a pad on it."""
     modal_mass, frequency = mode.modal_mass, pad.law.frequency
     if modal_mass is None:
@@ -131,16 +145,18 @@ def _touch(mode: WorkingMode, pad: _Pad, free_amplitude: si.Metre) -> Touch:
         new = free_amplitude * loaded.amplitude_ratio(frequency) / alone
         return Touch(free_amplitude, new, loaded, sharing, felt.impedance(frequency))
 
-    return _settled(made, free_amplitude) or _searched(made, free_amplitude, free_amplitude / alone)
+    return _settled(made, free_amplitude, tolerance) or _searched(
+        made, free_amplitude, free_amplitude / alone, tolerance
+    )
 
 
-def _settled(made: Callable[[float], Touch], free: float) -> Touch | None:
+def _settled(made: Callable[[float], Touch], free: float, tolerance: float) -> Touch | None:
     """The vibration that makes itself, by secants from the free one; None if it takes too long."""
     amplitude, slope, before = free, 0.0, None
     for _ in range(_MOST_STEPS):
         found = made(amplitude)
         new = found.amplitude
-        if abs(new - amplitude) <= _TOLERANCE * free:
+        if abs(new - amplitude) <= tolerance * free:
             return found
         # Where the finger takes much the two chase each other for long: the secant cuts that short.
         if before is not None:
@@ -152,7 +168,7 @@ def _settled(made: Callable[[float], Touch], free: float) -> Touch | None:
     return None
 
 
-def _searched(made: Callable[[float], Touch], free: float, most: float) -> Touch:
+def _searched(made: Callable[[float], Touch], free: float, most: float, tolerance: float) -> Touch:
     """The vibration that makes itself nearest to the free one, below `most` (m, the mode's free
     amplitude at its resonance): where two such are about to become one and vanish, secants crawl.
     """
@@ -171,7 +187,7 @@ def _searched(made: Callable[[float], Touch], free: float, most: float) -> Touch
             amplitude = float(brentq(gain, near, far, xtol=1e-12 * free, rtol=1e-14))
             found = made(amplitude)
             at_near = found.amplitude - amplitude
-            if abs(at_near) <= _TOLERANCE * free:
+            if abs(at_near) <= tolerance * free:
                 return found
             break
         near, at_near = far, at_far

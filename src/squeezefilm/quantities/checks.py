@@ -12,14 +12,16 @@ in another way, stands with `require`.
 
 from __future__ import annotations
 
+import cmath
 import collections.abc
 import functools
 import inspect
 import math
+import sys
 import types
 import typing
 from collections.abc import Callable
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, field, is_dataclass
 from typing import Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
@@ -39,6 +41,7 @@ __all__ = ["CLOSED_FORMS", "checked_numbers", "closed_form"]
 
 _PURE = Unit("1")
 _MOST_BITS = 64
+_MOST = sys.float_info.max
 
 _Kind = Literal[
     "number", "array", "either", "complex", "count", "row", "table", "container", "word"
@@ -61,11 +64,32 @@ class _Rule:
     words: tuple[Any, ...] = ()
     records: tuple[type, ...] = ()
 
-    def holds(self, value: float) -> bool:
-        """Whether a float is finite and within the bounds."""
-        if not self.bounds:  # most of what is called often
-            return math.isfinite(value)
-        return math.isfinite(value) and self.within(value)
+    least: float = field(init=False)
+    most: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        # Both ends within, and no float beyond: what most calls give is checked by two comparisons.
+        ends = {word: bound for word, bound in self.bounds.items() if self.kind != "count"}
+        lows = [
+            ends.get("at_least", -_MOST),
+            math.nextafter(ends.get("above", -math.inf), math.inf),
+        ]
+        highs = [ends.get("at_most", _MOST), math.nextafter(ends.get("below", math.inf), -math.inf)]
+        object.__setattr__(self, "least", max(-_MOST, *lows))
+        object.__setattr__(self, "most", min(_MOST, *highs))
+
+    def quickly(self, value: Any) -> bool:
+        """Whether a value is plainly good as it is; where not, it is looked at in full."""
+        kind, given = self.kind, type(value)
+        if given is float:
+            return kind in ("number", "either") and self.least <= value <= self.most
+        if given is np.ndarray:
+            if kind not in ("array", "either") or value.dtype != float or not value.ndim:
+                return False
+            return value.size > 0 and bool(self.least <= value.min() and value.max() <= self.most)
+        if given is complex:
+            return kind == "complex" and cmath.isfinite(value)
+        return kind == "word" and given is str and value in self.words
 
     def within(self, value: Any) -> bool:
         """Whether a number is within the bounds."""
@@ -140,10 +164,9 @@ def _rows_of(hint: Any) -> Any:
 
 def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
     """The value as the call takes it, floats for numbers. Raises `InputError`."""
-    if (value is None and rule.optional) or isinstance(value, rule.records):
-        return value
-    quick = type(value) is float and rule.kind in ("number", "either") and rule.holds(value)
-    if not quick:
+    if not rule.quickly(value):
+        if (value is None and rule.optional) or isinstance(value, rule.records):
+            return value
         value = _in_kind(name, value, rule)
     for limit in rule.limits:
         limit.refuse_outside(value, name)
@@ -242,6 +265,14 @@ def _beyond(function: Callable[..., Any], arguments: dict[str, Any], why: str) -
     )
 
 
+def _require_broadcast(shapes: list[tuple[str, tuple[int, ...]]]) -> None:
+    try:
+        np.broadcast_shapes(*(shape for _, shape in shapes))
+    except ValueError:
+        of = ", ".join(f"{name} {shape}" for name, shape in shapes)
+        raise InputError(f"the shapes of {of} do not broadcast") from None
+
+
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
 _T = TypeVar("_T", bound=Callable[..., Any])
@@ -255,6 +286,7 @@ def _guarded(
 ) -> Callable[_P, _R]:
     """The function, its arguments checked before and its result after."""
     names = list(inspect.signature(function).parameters)
+    ruled: list[tuple[int, str, _Rule]] = []
     unknown = (strictly | weakly) - set(names)
     if unknown:
         raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
@@ -274,23 +306,24 @@ def _guarded(
                 rules[name] = rule
             elif any(bounds_of(hint)):
                 raise TypeError(f"{function.__qualname__}: {name} is bounded and is no number")
+        ruled.extend((at, name, rules[name]) for at, name in enumerate(names) if name in rules)
         ready.append(True)
 
-    def check(arguments: dict[str, Any]) -> dict[str, Any]:
-        shapes = []
-        for name, value in arguments.items():
-            if (rule := rules.get(name)) is None:
+    def check(args: list[Any], kwargs: dict[str, Any]) -> None:
+        """Check arguments and put what the call takes in their place."""
+        shapes: list[tuple[str, tuple[int, ...]]] = []
+        count = len(args)
+        for at, name, rule in ruled:
+            if at < count:
+                args[at] = good = _checked_value(name, args[at], rule)
+            elif name in kwargs:
+                kwargs[name] = good = _checked_value(name, kwargs[name], rule)
+            else:
                 continue
-            arguments[name] = good = _checked_value(name, value, rule)
             if rule.kind == "either" and isinstance(good, np.ndarray):
                 shapes.append((name, good.shape))
-        try:
-            if len(shapes) > 1:
-                np.broadcast_shapes(*(shape for _, shape in shapes))
-        except ValueError:
-            of = ", ".join(f"{name} {shape}" for name, shape in shapes)
-            raise InputError(f"the shapes of {of} do not broadcast") from None
-        return arguments
+        if len(shapes) > 1:
+            _require_broadcast(shapes)
 
     @functools.wraps(function)
     def guarded(*args: _P.args, **kwargs: _P.kwargs) -> _R:
@@ -298,16 +331,18 @@ def _guarded(
             read_annotations()
         if len(args) > len(names):
             return function(*args, **kwargs)  # which says how many arguments it takes
-        named = check(dict(zip(names, args, strict=False)))
-        rest = check(dict(kwargs))
+        given: list[Any] = list(args)
+        check(given, kwargs)
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"):
-                result = function(*named.values(), **rest)
+                result = function(*given, **kwargs)
         except (ArithmeticError, np.linalg.LinAlgError) as error:
-            raise _beyond(function, named | rest, str(error)) from error
+            asked = dict(zip(names, given, strict=False)) | kwargs
+            raise _beyond(function, asked, str(error)) from error
         if _finite(result):
             return result
-        raise _beyond(function, named | rest, "the result is not finite")
+        asked = dict(zip(names, given, strict=False)) | kwargs
+        raise _beyond(function, asked, "the result is not finite")
 
     return guarded
 

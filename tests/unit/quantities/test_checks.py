@@ -437,3 +437,41 @@ def test_a_word_is_one_of_those_allowed() -> None:
     for bad in ("logs", 2, None, ["log"], np.zeros(2)):
         says = refusal(lambda bad=bad: require_one_of("axis", bad, ("linear", "log")))  # type: ignore[misc]
         assert says.endswith(" Allowed: linear, log")
+
+
+ENDS = (Above(1.0), AtLeast(1.0), Below(1.0), AtMost(1.0))
+
+
+@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize(
+    "value",
+    [
+        *(1.0, np.nextafter(1.0, 0.0), np.nextafter(1.0, 2.0), -math.inf, math.inf, math.nan),
+        *(0.0, -0.0, 5e-324, 1.7976931348623157e308, -1.7976931348623157e308),
+    ],
+)
+def test_what_is_taken_at_a_glance_is_what_the_full_look_takes(end: Any, value: float) -> None:
+    """Alone and in an array, to the last bit of a bound."""
+
+    def bounded(kind: Any) -> Callable[[Any], Any]:
+        def taken(value: Any) -> Any:
+            return value
+
+        taken.__annotations__ = {"value": Annotated[kind, end]}
+        return checked_numbers(taken)
+
+    alone, many = bounded(Metre), bounded(MetreArray)
+    words, _ = bounds_of(Annotated[Metre, end])
+    value, good = float(value), 2.0 if isinstance(end, Above | AtLeast) else 0.0
+    try:
+        require("value", value, M, **words)
+        refused = ""
+    except InputError as error:
+        refused = str(error)
+    given = np.array([good, value])
+    if refused:
+        assert refusal(lambda: alone(value)) == refused
+        assert refusal(lambda: many(given)) == refused
+    else:
+        assert alone(value) == value
+        assert many(given) is given

@@ -5,21 +5,25 @@ A plateau of width w between ambient grooves is a strip film under H = 1 + ε co
 path: at given frequency, width and gas it depends on the mean gap u and on ε = a/u alone. The
 table holds ln((W − 1)/ε²), ln of stiffness and of damping over ln(u/ℓ) and −ln(1 − ε²), as
 Chebyshev interpolants in panels that are solved when first needed. Nothing is fitted: every node
-is a solved film, and each panel is checked against films solved between its nodes.
+is a solved film, and each panel is checked against films solved between its nodes. Solved panels
+are kept on disk (`kept_arrays`): a display that is asked again finds them.
 """
 
 from __future__ import annotations
 
 import threading
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from squeezefilm import film
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.gas import slip_law
 from squeezefilm.film.periodic.batch import solve_films
+from squeezefilm.kept_arrays import KeptArrays
 from squeezefilm.materials import Gas
 
 if TYPE_CHECKING:
@@ -34,6 +38,7 @@ _FIRST_COLUMN, _COLUMNS = -6, 10
 _START = (8, 8)
 _MOST = (41, 38)
 _SMOOTH_LAWS = ("first", "second", "veijola")
+_PANELS = KeptArrays("film-panels", (Path(film.__path__[0]), Path(__file__)))
 
 
 def default_tolerance(slip: str) -> float:
@@ -145,17 +150,39 @@ class FilmTable:
                 self._empty()
 
     def _solve(self, panel: int) -> float:
+        """Fill a panel with what is kept of it, or else solved; the bound on its error."""
         column, row = divmod(panel, self._built.shape[1])
         nx, nt = self._nodes
-        xi, eta = (np.cos(np.pi * np.arange(n) / (n - 1)) for n in (nx, nt))
-        # Points between nodes where the table is checked: a lattice that meets every line. A slip
-        # law with joints leaves its mark somewhere along them: there, between all nodes.
-        smooth = self.slip in _SMOOTH_LAWS
-        lines = 1 if smooth else nt - 1
+        # Nothing else of gas, width and frequency is in it.
+        slip_length = float(self.gas.mean_free_path / self.length).hex()
+        asked = repr((slip_length, self.slip, self.tolerance, self._nodes, panel))
+        found = _PANELS.get(asked, 3 * nx * nt + 1)
+        if found is None:
+            found = self._solved(column, row)
+            _PANELS.put(asked, found)
+        self.solved += nx * nt + len(self._between()[0])
+        self._panels[column, row] = found[:-1].reshape(3, nx, nt)
+        self._built[column, row] = 1
+        error = float(found[-1])
+        self.error = max(self.relative_error, error)
+        return error
+
+    def _between(self) -> tuple[si.FloatArray, si.FloatArray]:
+        """Points between nodes where a panel is checked: a lattice that meets every line. A slip
+        law with joints leaves its mark somewhere along them: there, between all nodes."""
+        nx, nt = self._nodes
+        lines = 1 if self.slip in _SMOOTH_LAWS else nt - 1
         i = np.tile(np.arange(nx - 1), lines)
         j = (3 * i + np.repeat(np.arange(lines), nx - 1)) % (nt - 1)
-        xi_check = np.cos(np.pi * (i + 0.5) / (nx - 1))
-        eta_check = np.cos(np.pi * (j + 0.5) / (nt - 1))
+        return np.cos(np.pi * (i + 0.5) / (nx - 1)), np.cos(np.pi * (j + 0.5) / (nt - 1))
+
+    def _solved(self, column: int, row: int) -> si.FloatArray:
+        """The coefficients of a panel's three quantities, and the bound on its error."""
+        from numpy.polynomial import chebyshev
+
+        nx, nt = self._nodes
+        xi, eta = (np.cos(np.pi * np.arange(n) / (n - 1)) for n in (nx, nt))
+        xi_check, eta_check = self._between()
         XI, ETA = np.meshgrid(xi, eta, indexing="ij")
         x = np.concatenate([XI.ravel(), xi_check])
         y = np.concatenate([ETA.ravel(), eta_check])
@@ -167,26 +194,19 @@ class FilmTable:
             excursion,
             knudsen_number=self.gas.mean_free_path / (self.length * gap),
             slip=self.slip,
-            tolerance=self.tolerance / (3 if smooth else 10),
+            tolerance=self.tolerance / (3 if self.slip in _SMOOTH_LAWS else 10),
             workers=1,
         )
-        self.solved += len(gap)
         values = (
             np.log(films.over_pressure / excursion**2),
             np.log(films.stiffness_relative),
             np.log(films.damping_relative),
         )
-        for k, value in enumerate(values):
-            self._panels[column, row, k] = _coefficients(value[: nx * nt].reshape(nx, nt))
-        self._built[column, row] = 1
-        from numpy.polynomial import chebyshev
-
-        found = chebyshev.chebval2d(xi_check, eta_check, self._panels[column, row, 0])
+        panels = np.stack([_coefficients(one[: nx * nt].reshape(nx, nt)) for one in values])
+        found = chebyshev.chebval2d(xi_check, eta_check, panels[0])
         deviation = float(np.max(np.abs(np.expm1(found - values[0][nx * nt :]))))
         films_error = float(np.max(films.over_pressure_error / films.over_pressure))
-        error = 2.0 * deviation + films_error
-        self.error = max(self.relative_error, error)
-        return error
+        return np.append(panels.ravel(), 2.0 * deviation + films_error)
 
 
 def _coefficients(values: si.FloatArray) -> si.FloatArray:

@@ -179,12 +179,19 @@ def pad_friction(
         swings = np.outer(a, wave)
         tied = _tied(table, asperities, swings, plateau_pressure, offset, skin, shear)
         return dataclasses.replace(tied, amplitude=a)
-    reach = float(np.max(np.abs(points)))
-    lean = 1 + posture.pressure_tilt * points / reach if reach > 0 else np.ones_like(points)
     # Ridges on the two sides of an antinode do the same: each kind is balanced once.
     if points.size > _KINDS:
-        wave, lean = (np.round(_KINDS * one) / _KINDS for one in (wave, lean))
-    (wave, lean), counts = np.unique(np.round([wave, lean], 9), axis=1, return_counts=True)
+        wave = np.round(_KINDS * wave) / _KINDS
+    if posture.pressure_tilt == 0:
+        wave, counts = np.unique(np.round(wave, 9), return_counts=True)
+        lean = np.ones_like(wave)
+    else:
+        reach = max(float(np.max(np.abs(points))), 1e-300)
+        lean = 1 + posture.pressure_tilt * points / reach
+        if points.size > _KINDS:
+            lean = np.round(_KINDS * lean) / _KINDS
+        kinds = np.round([wave, lean], 9)
+        (wave, lean), counts = np.unique(kinds, axis=1, return_counts=True)
     weight = counts / points.size
     own = share_load(table, asperities, np.outer(a, wave), plateau_pressure * lean, skin=skin)
     share = own.relative_friction

@@ -36,6 +36,7 @@ from squeezefilm.report.kit.page_style import (
     stamped,
     text_table,
 )
+from squeezefilm.report.kit.style import rc
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
@@ -59,7 +60,8 @@ def write_analysis(
     """
     folder = require_folder(folder)
     summary = analysis.summary()
-    whole = report_page(analysis, summary, progress)
+    with rc():
+        whole = report_page(analysis, summary, progress)
     if progress is not None:
         progress("writing the report")
     data = json_text(result_data(analysis, summary))

@@ -6,6 +6,7 @@ page can put a CSS variable in its place and the same SVG follows a dark screen.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import io
 import re
@@ -124,7 +125,11 @@ def rc() -> AbstractContextManager[None]:
     """The style as a context: it holds while a figure is drawn or saved, and is then undone."""
     import matplotlib
 
+    if matplotlib.rcParams["svg.hashsalt"] == _RC["svg.hashsalt"]:
+        return contextlib.nullcontext()  # it holds: hundreds of settings need not be made again
     parameters: Any = {**matplotlib.rcParamsDefault, **_RC}
+    # Figures are drawn without a backend; to name one would load pyplot.
+    del parameters["backend"]
     return matplotlib.rc_context(parameters)
 
 

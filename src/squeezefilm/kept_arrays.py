@@ -1,0 +1,129 @@
+"""Arrays that are dear to compute and small to keep, on disk from one process to the next.
+
+Each is a file in the user's cache folder, named by a hash of all that it comes from: what was
+asked, the source of the modules that compute it, and the versions of this package, NumPy and numba.
+So nothing kept can be out of date, and the folder may be deleted at any time. What cannot be read
+or was damaged counts as not there. ``SQUEEZEFILM_CACHE=off`` keeps nothing; any other value is the
+folder to keep it in.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import sys
+import tempfile
+from collections.abc import Iterable
+from contextlib import suppress
+from hashlib import blake2b
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+CACHE_VARIABLE = "SQUEEZEFILM_CACHE"
+MOST_FILES = 20_000
+"""Above it the older half is deleted; of some 4 kB each."""
+
+_DIGEST = 16
+_DTYPE = np.dtype("<f8")
+
+
+def cache_folder() -> Path | None:
+    """Where arrays are kept; None where they are not."""
+    said = os.environ.get(CACHE_VARIABLE, "")
+    if said:
+        return None if said == "off" else Path(said)
+    try:
+        home = Path.home()
+    except RuntimeError:
+        return None
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "squeezefilm"
+    if sys.platform == "darwin":
+        return home / "Library" / "Caches" / "squeezefilm"
+    return Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache") / "squeezefilm"
+
+
+class KeptArrays:
+    """Arrays of one kind; `sources` are the files and folders of modules that compute them."""
+
+    def __init__(self, kind: str, sources: Iterable[Path]) -> None:
+        self.kind, self.sources = kind, tuple(sources)
+        self._tidied: Path | None = None
+
+    @functools.cached_property
+    def _made_by(self) -> str | None:
+        """A hash of what computes them; None where the source cannot be read."""
+        from squeezefilm import __version__
+
+        said = [__version__, version("numpy"), version("numba"), _DTYPE.str]
+        try:
+            for one in self.sources:
+                files = sorted(one.rglob("*.py")) if one.is_dir() else [one]
+                said += [blake2b(file.read_bytes()).hexdigest() for file in files]
+        except OSError:
+            return None
+        return repr(said)
+
+    def _file(self, asked: str) -> Path | None:
+        folder = cache_folder()
+        if folder is None or self._made_by is None:
+            return None
+        name = blake2b(f"{self._made_by} {asked}".encode(), digest_size=_DIGEST).hexdigest()
+        return folder / self.kind / name
+
+    def get(self, asked: str, size: int) -> NDArray[np.float64] | None:
+        """The array of so many numbers kept under what was `asked`; None if there is none."""
+        file = self._file(asked)
+        if file is None:
+            return None
+        try:
+            data = file.read_bytes()
+        except OSError:
+            return None
+        whole = len(data) == _DIGEST + size * _DTYPE.itemsize
+        if not whole or _digest(data[_DIGEST:]) != data[:_DIGEST]:
+            return None
+        return np.frombuffer(data[_DIGEST:], _DTYPE).astype(np.float64)
+
+    def put(self, asked: str, values: NDArray[np.float64]) -> None:
+        """Keep an array; where the folder cannot be written to nothing is kept."""
+        file = self._file(asked)
+        if file is None:
+            return
+        data = np.asarray(values, _DTYPE).tobytes()
+        with suppress(OSError):
+            file.parent.mkdir(parents=True, exist_ok=True)
+            if self._tidied != file.parent:  # once a process
+                self._tidied = file.parent
+                _tidy(file.parent)
+            with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as part:
+                try:
+                    part.write(_digest(data) + data)
+                    part.close()
+                    # Others see all of it or nothing.
+                    Path(part.name).replace(file)
+                except OSError:
+                    Path(part.name).unlink()
+                    raise
+
+
+def _digest(data: bytes) -> bytes:
+    return blake2b(data, digest_size=_DIGEST).digest()
+
+
+def _tidy(folder: Path) -> None:
+    """Delete the older half of too many files; another process may be doing so too."""
+    with os.scandir(folder) as entries:
+        files = [entry for entry in entries if entry.is_file()]
+    if len(files) <= MOST_FILES:
+        return
+    aged = []
+    for entry in files:
+        with suppress(OSError):
+            aged.append((entry.stat().st_mtime, entry.path))
+    for _, path in sorted(aged)[: len(aged) - MOST_FILES // 2]:
+        with suppress(OSError):
+            Path(path).unlink()
