@@ -134,7 +134,7 @@ def test_by_default_a_plate_that_holds_the_finger_firmly_feels_the_published_imp
         assert Z.real == pytest.approx(PUBLISHED_IMPEDANCE, rel=1e-4)
         assert Z.imag > 0
     with pytest.raises(InputError, match="mean_square"):
-        finger_impedance(felt, 1e-4, 30e3, 1.2)
+        finger_impedance(felt, 1e-4, 30e3, 1.2e4)
 
 
 def test_the_default_is_of_the_order_of_a_piston_in_tissue() -> None:

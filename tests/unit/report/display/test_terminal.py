@@ -11,7 +11,7 @@ from squeezefilm.report.display import terminal
 from squeezefilm.report.display.rows import decision_rows, unsaid_warnings
 from squeezefilm.report.kit.numbers import printable
 
-LINES, COLUMNS = 62, 80
+LINES, COLUMNS = 66, 80
 
 
 @pytest.fixture(autouse=True)
