@@ -137,8 +137,13 @@ def _pooled(
                     return
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
-        for process in set(multiprocessing.active_children()) - before:
+        left = set(multiprocessing.active_children()) - before
+        for process in left:
             process.terminate()
+        for process in left:
+            process.join(2.0)
+            if process.is_alive():
+                process.kill()
 
 
 def _prepare() -> None:
