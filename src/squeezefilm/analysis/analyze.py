@@ -53,8 +53,9 @@ from squeezefilm.analysis.verdict import (
     Finding,
     ears_finding,
     film_findings,
-    unless_undriven,
+    held_back,
     verdict,
+    why_not_good,
 )
 from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction_models import FrictionModel
@@ -146,11 +147,11 @@ class Analysis(Result):
         """What reaches an ear, beside the guidance; about a second, when it is first asked for."""
         return ear_exposure(self.display, self.prediction, self.uncertainty)
 
-    @property
-    def ears_finding(self) -> Finding:
-        """What that amounts to; not good while an objection stands."""
-        found = ears_finding(self.ears)
-        return unless_undriven(found, "" if self.prediction.objections else None)
+    @functools.cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """The verdict, with what reaches an ear."""
+        why = None if why_not_good(self.display, self.prediction) is None else ""
+        return (*self.verdict, held_back(ears_finding(self.ears), why))
 
     @functools.cached_property
     def felt(self) -> FeltGratings | None:
@@ -282,7 +283,7 @@ class Analysis(Result):
             },
             "other_models": to_json(self.other_models),
             "drive_electronics": to_json(self.drive_electronics),
-            "verdict": to_json((*self.verdict, self.ears_finding, *self.film_findings)),
+            "verdict": to_json((*self.findings, *self.film_findings)),
             "provenance": stamp(self.display),
         }
 

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, outcome_of
+from squeezefilm.analysis.draws import FreeAmplitude, Mixture, Outcome, as_drawn, outcome_of
 from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea
@@ -95,21 +95,18 @@ def area_odds(
     samples = np.full((DRAWS, len(swings)), np.nan)
     for row, draw in zip(samples, mixture.draws(sobol_points(mixture, DRAWS, seed)), strict=True):
         with contextlib.suppress(SqueezefilmError), as_drawn():
-            amplitude = outcome_of(mixture, draw, free(draw.display)).amplitude
-            row[:] = _met(mixture.law(draw), draw, amplitude, swings)
+            found = outcome_of(mixture, draw, free(draw.display))
+            row[:] = _met(mixture.law(draw), found, swings)
     return AreaOdds(samples)
 
 
-def _met(
-    law: FrictionLaw, draw: Draw, amplitude: si.Metre, swings: list[si.DimensionlessArray]
-) -> list[float]:
-    """The friction of a draw under pads whose ridges move by `swings`, over an amplitude (m)."""
-    asked = amplitude * max(float(np.max(one)) for one in swings) * _AMPLITUDES
+def _met(law: FrictionLaw, found: Outcome, swings: list[si.DimensionlessArray]) -> list[float]:
+    """The friction under pads whose ridges move by `swings`, over the amplitude that a draw has."""
+    asked = found.amplitude * max(float(np.max(one)) for one in swings) * _AMPLITUDES
     ridge = law.ridge_friction(asked)
-    at = np.array([amplitude])
-    limits = law.limits(at)
-    tied = (1 - draw.skin_compliance) * float(limits.one_gap[0] - limits.own[0])
-    means = (float(np.mean(np.interp(amplitude * one, asked, ridge))) for one in swings)
+    own = law.sharing(found.amplitude, "own").relative_friction
+    tied = found.friction - float(own[0])
+    means = (float(np.mean(np.interp(found.amplitude * one, asked, ridge))) for one in swings)
     return [min(max(mean + tied, 0.0), 1.0) for mean in means]
 
 

@@ -13,7 +13,7 @@ from squeezefilm.analysis.area_odds import JudgedArea
 from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
 from squeezefilm.analysis.ears import AUDIBLE, EarExposure
 from squeezefilm.analysis.film.models import FilmComparison
-from squeezefilm.analysis.plate.mode_doubts import mode_doubts
+from squeezefilm.analysis.plate.mode_doubts import mode_doubts, why_undriven
 from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.chain.active_area import CRITERIA
 from squeezefilm.chain.friction_models import MODEL_KINDS
@@ -59,14 +59,21 @@ def verdict(
     yield from (Finding("doubt", objection) for objection in p.objections)
     doubts = () if p.voltage is None else mode_doubts(display, p.mode)
     yield from (Finding("doubt", doubt.text) for doubt in doubts)
-    undriven = any(doubt.kind == "undriven" for doubt in doubts)
+    # Why is said above.
+    why = None if why_not_good(display, p) is None else ""
     for finding in _findings(display, p, own, table, unsure, why_not, area):
-        yield unless_undriven(finding, "") if undriven else finding
+        yield held_back(finding, why)
 
 
-def unless_undriven(finding: Finding, why: str | None) -> Finding:
-    """A finding that is not good where the working mode is not driven (`why`, added to it; None
-    where it is driven)."""
+def why_not_good(display: Display, p: Prediction) -> str | None:
+    """Why nothing that is found of a display may be called good: its working mode is not driven, or
+    an objection stands, which says so itself (then empty). None where things may be good."""
+    undriven = None if p.voltage is None else why_undriven(display, p.mode)
+    return undriven or ("" if p.objections else None)
+
+
+def held_back(finding: Finding, why: str | None) -> Finding:
+    """A finding that is a limit in place of good news where there is a `why`, which is added."""
     if why is None or finding.kind != "good":
         return finding
     return replace(finding, kind="limit", text=f"{finding.text} {why}".strip())
@@ -92,7 +99,7 @@ def _findings(
             "turn nonlinear and bonds fail long before, and nothing here sees that.",
         )
     if table is not None:
-        yield _of_gratings(p, table)
+        yield _of_gratings(table)
     if MODEL_KINDS[p.model].film == "asymptote":
         yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
     if (doubt := source_doubt(display.provenance)) is not None:
@@ -128,9 +135,9 @@ def friction_verdict(
     """How probable it is that the friction falls below the paper's criterion: at the place of the
     prediction, and over the active area where there is one.
 
-    Good where all of the interval lies below it, at the worst place of the active area too, and no
-    objection stands; a limit where it does not, a doubt where there is no interval (`why_not` says
-    why). The same sentences wherever this verdict is shown.
+    Good where all of the interval lies below it, at the worst place of the active area too; a limit
+    where it does not, a doubt where there is no interval (`why_not` says why). The same sentences
+    wherever this verdict is shown; `held_back` is for whoever shows it.
     """
     found = _at_the_place(p, unsure, why_not)
     if area is None:
@@ -183,15 +190,10 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
         f"{_probability(unsure.probability_below(noticed))}."
     )
     if high < PAPER_CRITERION:
-        return Finding(good_unless_objected(p), text)
+        return Finding("good", text)
     if low <= PAPER_CRITERION:
         text += " The criterion lies inside the interval: whether it is met is open."
     return Finding("limit", text)
-
-
-def good_unless_objected(p: Prediction) -> Literal["good", "limit"]:
-    """What good news about a prediction may be called: a limit while an objection stands."""
-    return "limit" if p.objections else "good"
 
 
 def _probability(value: si.Dimensionless) -> str:
@@ -213,7 +215,7 @@ def _of_needed_amplitude(p: Prediction, own: FrictionCurve) -> Iterator[Finding]
         )
 
 
-def _of_gratings(p: Prediction, table: FidelityTable) -> Finding:
+def _of_gratings(table: FidelityTable) -> Finding:
     """Which square gratings survive, and how fast the finger may be on the worst."""
     fastest = table.fastest_speed
     worst = int(np.argmin(fastest))
@@ -225,7 +227,7 @@ def _of_gratings(p: Prediction, table: FidelityTable) -> Finding:
         if survives
     ]
     return Finding(
-        good_unless_objected(p) if kept else "limit",
+        "good" if kept else "limit",
         f"Square gratings of {', '.join(kept) or 'no listed'} mm keep 90 % of their swing, peak to "
         f"peak, up to {1e3 * table.speeds[-1]:g} mm/s; {1e3 * table.spatial_periods[worst]:g} mm "
         f"up to {1e3 * fastest[worst]:.0f} mm/s. Of the fundamental "

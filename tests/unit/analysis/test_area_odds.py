@@ -7,7 +7,7 @@ import pytest
 
 from squeezefilm.analysis import area_odds as room
 from squeezefilm.analysis.area_odds import area_odds
-from squeezefilm.analysis.draws import Draw
+from squeezefilm.analysis.draws import Outcome
 from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.pad_place import pad_place
 from squeezefilm.chain.prediction import predict
@@ -36,15 +36,17 @@ def test_a_draw_that_is_as_described_has_the_friction_of_the_area(name: str) -> 
     p = predict(display)
     area = active_area(display, p)
     assert area is not None
-    draw = Draw(display, p.normal_force, 1.0, p.law.slip, "persson")
+    own = float(p.law.sharing(p.vibration_amplitude, "own").relative_friction[0])
+    found = Outcome(own, p.vibration_amplitude, None)
     swings = []
     for place, lobe in area.of_note:
         there = pad_place(display.actuator, p.mode, p.frequency, place)
         assert there is not None
         met = np.abs(there.ridges(display.finger, area.contact_side)[1])
         swings.append(met * lobe / p.vibration_amplitude)
-    found = room._met(p.law, draw, p.vibration_amplitude, swings)
-    assert found == pytest.approx([area.best, area.median, area.worst], abs=5e-3)
+    assert room._met(p.law, found, swings) == pytest.approx(
+        [area.best, area.median, area.worst], abs=5e-3
+    )
 
 
 def test_no_draw_is_asked_for_more_amplitude_than_the_face_has() -> None:

@@ -14,9 +14,8 @@ from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve, model_curves
 from squeezefilm.analysis.friction.tell_apart import ToldApart, tell_apart
 from squeezefilm.analysis.friction.wanted import Wanted, wanted_friction
-from squeezefilm.analysis.plate.mode_doubts import why_undriven
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
-from squeezefilm.analysis.verdict import Finding, friction_verdict, unless_undriven
+from squeezefilm.analysis.verdict import Finding, friction_verdict, held_back, why_not_good
 from squeezefilm.arguments import called_with
 from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction import FrictionLaw
@@ -219,7 +218,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         if asked.tell_apart
         else None
     )
-    why = None if prediction.voltage is None else why_undriven(display, prediction.mode)
+    why = why_not_good(display, prediction)
     tell("ripple of the standing wave, and the active area")
     area = judged_area(display, prediction, active_area(display, prediction), samples=asked.samples)
     return FrictionAnalysis(
@@ -232,7 +231,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         wanted,
         Tapping(prediction.speed, without_gas(prediction.law, prediction.vibration_amplitude)),
         tuple(
-            unless_undriven(finding, why)
+            held_back(finding, why)
             for finding in friction_verdict(prediction, unsure, why_not, area)
         ),
         apart,

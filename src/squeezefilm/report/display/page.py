@@ -125,7 +125,7 @@ def report_page(
 
     parts = [
         part("decide", "To decide from", _INTRODUCTION),
-        section("Verdict", _findings((*analysis.verdict, analysis.ears_finding))),
+        section("Verdict", _findings(analysis.findings)),
         section("Warnings", _warnings(analysis)),
         section("Key numbers", _key_numbers(analysis)),
         *drawn(DECISION),

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 
 _EXPLORING: si.MetrePerSecond = 0.1
-_AT_EXPLORING = f"at {1e3 * _EXPLORING:g} mm/s"
 
 
 class Rows(NamedTuple):
@@ -119,7 +118,7 @@ def texture_rows(analysis: Analysis) -> list[Row]:
     rows = [("Envelope time constant", shown(tau, S, 3), band)]
     if table is not None:
         rows.append(_grating(analysis, int(np.argmin(np.abs(table.speeds - _EXPLORING)))))
-    return [*rows, *(row for row in felt_rows(analysis.felt) if _AT_EXPLORING in row[0])]
+    return [*rows, *felt_rows(analysis.felt, _EXPLORING)]
 
 
 def _grating(analysis: Analysis, at: int) -> Row:

@@ -38,7 +38,7 @@ def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
     then what other models say."""
     display, console = analysis.display, plain_console()
     heading(console, f"{display.title} [{display.name}]")
-    _findings(console, (*analysis.verdict, analysis.ears_finding))
+    _findings(console, analysis.findings)
     warned = unsaid_warnings(analysis)
     cut = [text if whole else shortened(text) for text in warned]
     if cut:

@@ -68,8 +68,8 @@ def _volts(value: si.Volt | None) -> str:
     return "out of reach" if value is None else shown(value, V, 3)
 
 
-def felt_rows(felt: FeltGratings | None) -> list[Row]:
-    """The finest grating that is felt, by finger speed."""
+def felt_rows(felt: FeltGratings | None, speed: si.MetrePerSecond | None = None) -> list[Row]:
+    """The finest grating that is felt, by finger speed; at one of them only (m/s) if asked."""
     if felt is None:
         return []
     return [
@@ -79,6 +79,7 @@ def felt_rows(felt: FeltGratings | None) -> list[Row]:
             _felt_remark(felt, one),
         )
         for one in felt.at
+        if speed in (None, one.speed)
     ]
 
 

@@ -135,7 +135,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     stand_in("interval_or_reason", ("the interval", "a reason"))
     stand_in("friction_verdict", (Finding("doubt", "the verdict"),))
     stand_in("without_gas", 0.6)
-    monkeypatch.setattr(command, "why_undriven", lambda display, mode: None)
+    monkeypatch.setattr(command, "why_not_good", lambda display, p: None)
     return asked
 
 
@@ -257,6 +257,6 @@ def test_a_verdict_on_a_mode_that_is_not_driven_is_not_good(
     parts: list[Any], stator: Display, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command, "friction_verdict", lambda *about: (Finding("good", "Fine."),))
-    monkeypatch.setattr(command, "why_undriven", lambda display, mode: "It is not driven.")
+    monkeypatch.setattr(command, "why_not_good", lambda display, p: "It is not driven.")
     found = analyze_friction(stator, samples=0)
     assert found.verdict == (Finding("limit", "Fine. It is not driven."),)

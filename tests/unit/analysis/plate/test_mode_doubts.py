@@ -11,7 +11,7 @@ import pytest
 from squeezefilm.analysis.plate import mode_doubts as room
 from squeezefilm.analysis.plate.listed_modes import ListedMode
 from squeezefilm.analysis.plate.mode_doubts import mode_doubts, why_undriven
-from squeezefilm.analysis.verdict import Finding, unless_undriven, verdict
+from squeezefilm.analysis.verdict import Finding, held_back, verdict
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
@@ -119,9 +119,9 @@ def test_the_papers_plate_is_not_doubted() -> None:
 
 def test_good_is_taken_back_where_the_mode_is_not_driven() -> None:
     good, limit = Finding("good", "Fine."), Finding("limit", "Not fine.")
-    assert unless_undriven(good, None) is good
-    assert unless_undriven(limit, "Undriven.") is limit
-    assert unless_undriven(good, "Undriven.") == Finding("limit", "Fine. Undriven.")
+    assert held_back(good, None) is good
+    assert held_back(limit, "Undriven.") is limit
+    assert held_back(good, "Undriven.") == Finding("limit", "Fine. Undriven.")
 
 
 @pytest.mark.slow
