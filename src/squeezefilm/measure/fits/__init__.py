@@ -1,0 +1,1 @@
+"""Fits: numbers with intervals out of recordings, and whether the fitted model is adequate."""

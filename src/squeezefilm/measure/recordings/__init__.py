@@ -1,0 +1,1 @@
+"""Recordings: files of a bench with a description beside them, read into arrays with units."""

@@ -1,0 +1,138 @@
+"""The kinds of recordings of a bench, in SI units and zero-to-peak amplitudes, whatever the file was in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from squeezefilm import quantities as si
+
+
+@dataclass(frozen=True)
+class Told:
+    """What the description beside a recording tells of it; an empty text is not told.
+
+    `temperature` in kelvin; `name` is the recording's own, `file` its file's name without a folder.
+    """
+
+    name: str = ""
+    file: str = ""
+    who: str = ""
+    when: str = ""
+    instrument: str = ""
+    licence: str = ""
+    source: str = ""
+    temperature: si.Kelvin | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ImpedanceSweep:
+    """Admittance (S, complex, time factor e^{iωt}) at rising `frequency` (Hz), both (points,)."""
+
+    frequency: si.HertzArray
+    admittance: si.ComplexArray
+    told: Told = field(default_factory=Told)
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyResponse:
+    """Displacement per volt (m/V, complex) at one place against `frequency` (Hz), both (points,);
+    `voltage` (V) is the drive's amplitude during the sweep, `coherence` (0 to 1) where recorded."""
+
+    frequency: si.HertzArray
+    displacement_per_volt: si.ComplexArray
+    voltage: si.Volt | None = None
+    coherence: si.DimensionlessArray | None = None
+    told: Told = field(default_factory=Told)
+
+
+@dataclass(frozen=True, eq=False)
+class LineScan:
+    """Displacement (m, complex; real where the phase was not recorded) at `position` (m) along a
+    line, both (points,), at one `frequency` (Hz) and drive `voltage` (V)."""
+
+    position: si.MetreArray
+    displacement: si.ComplexArray
+    frequency: si.Hertz
+    voltage: si.Volt | None = None
+    told: Told = field(default_factory=Told)
+
+
+@dataclass(frozen=True, eq=False)
+class GridScan:
+    """Displacement (m, complex) at places `x`, `y` (m), all (points,), at one `frequency` (Hz) and
+    drive `voltage` (V)."""
+
+    x: si.MetreArray
+    y: si.MetreArray
+    displacement: si.ComplexArray
+    frequency: si.Hertz
+    voltage: si.Volt | None = None
+    told: Told = field(default_factory=Told)
+
+
+@dataclass(frozen=True, eq=False)
+class RingDown:
+    """Displacement (m) against `time` (s) after the drive was switched off, both (points,)."""
+
+    time: si.SecondArray
+    displacement: si.MetreArray
+    told: Told = field(default_factory=Told)
+
+
+@dataclass(frozen=True, eq=False)
+class VoltageSweeps:
+    """Frequency responses at several drive voltages, each swept in one direction ("up", "down")."""
+
+    sweeps: tuple[FrequencyResponse, ...]
+    directions: tuple[str, ...]
+    told: Told = field(default_factory=Told)
+
+
+@dataclass(frozen=True, eq=False)
+class RawSignals:
+    """Drive voltage (V) and displacement (m) against `time` (s), all (points,), evenly sampled."""
+
+    time: si.SecondArray
+    voltage: si.VoltArray
+    displacement: si.MetreArray
+    told: Told = field(default_factory=Told)
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionBench:
+    """Strokes of a finger or probe: `time` (s), `normal_force` and `tangential_force` (N),
+    `position` (m) and `vibration_amplitude` (m, zero to peak), all (points,)."""
+
+    time: si.SecondArray
+    normal_force: si.NewtonArray
+    tangential_force: si.NewtonArray
+    position: si.MetreArray
+    vibration_amplitude: si.MetreArray
+    told: Told = field(default_factory=Told)
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionCurve:
+    """µ′/µ with its spread (one standard deviation) against `vibration_amplitude` (m), all
+    (points,), at one `frequency` (Hz), `normal_force` (N) and `speed` (m/s)."""
+
+    vibration_amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
+    spread: si.DimensionlessArray
+    frequency: si.Hertz
+    normal_force: si.Newton
+    speed: si.MetrePerSecond
+    told: Told = field(default_factory=Told)
+
+
+Recording = (
+    ImpedanceSweep
+    | FrequencyResponse
+    | LineScan
+    | GridScan
+    | RingDown
+    | VoltageSweeps
+    | RawSignals
+    | FrictionBench
+    | FrictionCurve
+)
