@@ -147,6 +147,7 @@ class Prediction(Result):
             "display": self.display,
             "surface": self.surface.name,
             "mode": self.mode.label,
+            "neighbour": to_json(self.mode.neighbour),
             "voltage_V": self.voltage,
             "frequency_Hz": self.frequency,
             "normal_force_N": self.normal_force,
@@ -309,6 +310,8 @@ def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
         for item in caught
         if film == "asymptote" or not issubclass(item.category, OutOfRangeWarning)
     ]
+    if (company := p.mode.company) is not None:
+        messages.append(company)
     if film == "held":
         inertia = p.validity.check("inertia")
         messages += [] if inertia.holds else [inertia.sentence]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from squeezefilm.plate.ring.body import (
     nodal_circles,
     ring_body,
 )
-from squeezefilm.plate.ring.modes import AnnularMode, annular_modes
+from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, AnnularMode, annular_modes
 from squeezefilm.plate.ring.response import (
     RingResponse,
     ring_circuit,
@@ -204,9 +204,15 @@ def mode_row(body: RingBody, mode: AnnularMode, capacitance: si.Farad) -> ModeRo
 
 
 def modes_in_band(
-    body: RingBody, band: tuple[si.Hertz, si.Hertz], progress: SayProgress | None = None
+    body: RingBody,
+    band: tuple[si.Hertz, si.Hertz],
+    progress: SayProgress | None = None,
+    *,
+    degree: Annotated[int, si.AtLeast(3), si.AtMost(12)] = DEFAULT_DEGREE,
 ) -> tuple[AnnularMode, ...]:
     """All elastic modes of a body in a band (Hz), rising; each stands for its two orientations.
+
+    `degree` is that of the elements: one less is quicker, and less exact (`frequency_error`).
 
     Harmonics are tried until the lowest mode of one lies above the band, beyond the working one.
     Raises `InputError` where there is none.
@@ -223,6 +229,7 @@ def modes_in_band(
                 m,
                 near=(low + high) / 2,
                 count=count,
+                degree=degree,
                 quality_factor=body.quality_factor,
             )
             inside = [x for x in modes if low <= x.frequency <= high and not x.is_rigid]

@@ -16,7 +16,7 @@ from squeezefilm.analysis.plate.solved import ModeRow
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.circuit import EquivalentCircuit
-from squeezefilm.plate.ring.modes import AnnularMode
+from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, AnnularMode
 from squeezefilm.plate.ring.response import RingResponse
 from squeezefilm.plate.ring.section import SectorDrive
 from squeezefilm.plate.ring.stator import StatorAssumptions
@@ -177,8 +177,16 @@ class Harmonics:
         self.asked: list[tuple[int, float, int]] = []
 
     def __call__(
-        self, section: Any, harmonic: int, *, near: float, count: int, quality_factor: float
+        self,
+        section: Any,
+        harmonic: int,
+        *,
+        near: float,
+        count: int,
+        degree: int,
+        quality_factor: float,
     ) -> list[AnnularMode]:
+        assert degree == DEFAULT_DEGREE
         assert section.surface_radii == (10e-3, 30e-3)
         assert quality_factor == self.quality
         self.asked.append((harmonic, near, count))

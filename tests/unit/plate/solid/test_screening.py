@@ -129,5 +129,5 @@ def test_an_antinode_lies_inside_the_face() -> None:
 def test_a_driven_mode_has_a_name_and_a_bandwidth() -> None:
     mode = DrivenMode(30e3, 60.0, (8, 0), 0.9, ("S", "S"), 1e-7, 2e-7, np.ones((3, 3)))
     assert mode.name == "(8,0)"
-    assert mode.half_bandwidth == pytest.approx(250.0)
+    assert mode.moving == ("(8,0)", 30e3, pytest.approx(250.0), 1e-7)
     assert dataclasses.replace(mode, label=None).name == "in plane"
