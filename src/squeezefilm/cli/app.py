@@ -78,7 +78,8 @@ Budget = Annotated[
     str | None,
     In("s"),
     typer.Option(
-        help='Time after which the best answer so far comes, with its larger error: "60 s".'
+        help="Wall-clock time for the solve and what follows, without the start of the program: "
+        'like "60 s". What has no time is left coarser, with its larger error, or out.'
     ),
 ]
 Force = Annotated[str | None, In("N"), typer.Option("--force", help='Normal force, like "0.5 N".')]

@@ -112,10 +112,20 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         asked["modes"].append((plate, mode, band))
         return Modes(band)
 
+    def working(
+        plate: RectangularPlate, mode: Any, tolerance: float, tell: Any, deadline: Any
+    ) -> tuple[Modes, list[str]]:
+        return solve(plate, mode=mode, deadline=deadline, tolerance=tolerance), ["pieces"]
+
     def respond(
-        plate: RectangularPlate, frequencies: np.ndarray, *, resolution: Resolution
+        plate: RectangularPlate,
+        frequencies: np.ndarray,
+        *,
+        resolution: Resolution,
+        solved: list[str],
     ) -> Response:
         assert resolution == NORMAL
+        assert solved == ["pieces"]
         asked["sweep"] = frequencies
         return Response(plate, frequencies, asked["circuit"])
 
@@ -127,6 +137,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         monkeypatch.setattr(command, name, asked_for)
 
     monkeypatch.setattr(command, "solve_modes", solve)
+    monkeypatch.setattr(command, "solve_for_response", working)
     monkeypatch.setattr(command, "harmonic_response", respond)
     stand_in(
         "plate_sound",

@@ -100,6 +100,10 @@ def test_the_suggestion_is_inaudible_straight_and_moves_most() -> None:
     assert best.mode is modes[3]
     assert best.text.startswith("Write nodal_lines = 8: at 30 kHz (8,0)")
     assert "of 2 such modes" in best.text
+    # What the file has already need not be written.
+    kept = suggested(modes, modes[3])
+    assert kept.text.startswith("Keep nodal_lines = 8, as described: at 30 kHz (8,0)")
+    assert suggested(modes, modes[4]).text == best.text
     nothing = suggested(modes[:3])
     assert nothing.mode is None
     assert "none can be suggested" in nothing.text
