@@ -66,7 +66,9 @@ def main() -> None:
         solid_mode(plate)
         took = time.process_time() - clock
         ratios.append(size.seconds / took)
-        print(f"{what:28s} {size.unknowns:9d} {size.seconds:7.2f} s {took:6.2f} s {ratios[-1]:6.2f}")
+        print(
+            f"{what:28s} {size.unknowns:9d} {size.seconds:7.2f} s {took:6.2f} s {ratios[-1]:6.2f}"
+        )
     print(f"from {min(ratios):.2f} to {max(ratios):.2f} times the processor time")
 
 

@@ -182,8 +182,9 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
         alone = "" if best.unique else f', working_frequency = "{shown_frequency(best)}"'
         write = f"Write {best.choice}{alone}"
     said = (
-        f"{write}: at {shown_frequency(best)} {best.label} is above the hearing range{straight}{others} "
-        f"({si.format_quantity(best.amplitude_per_volt, _PER_VOLT, 3)} at an antinode"
+        f"{write}: at {shown_frequency(best)} {best.label} is above the hearing range"
+        f"{straight}{others} ({si.format_quantity(best.amplitude_per_volt, _PER_VOLT, 3)} at an "
+        "antinode"
     )
     if best.neighbour is not None and best.neighbour_distance is not None:
         said += (

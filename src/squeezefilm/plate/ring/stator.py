@@ -216,9 +216,7 @@ class _Ring:
         quality = self.assumptions.quality_factor
         return bending_mode(section, self.waves, degree=self.degree, quality_factor=quality)
 
-    def frequency_of(
-        self, thickness: float, teeth: ToothModel, degree: int | None = None
-    ) -> float:
+    def frequency_of(self, thickness: float, teeth: ToothModel, degree: int | None = None) -> float:
         """Its frequency (Hz), by elements of this degree or another."""
         section = stator_section(self.mean_diameter, thickness, self.assumptions, teeth)
         return bending_frequency(section, self.waves, degree=degree or self.degree)

@@ -87,9 +87,7 @@ def solve_size(plate: RectangularPlate, label: Label, frequency: si.Hertz) -> So
         return seconds, most
 
     response, unknowns = answered(NORMAL)
-    return SolveSize(
-        unknowns, searched(COARSE), searched(NORMAL), answered(COARSE)[0], response
-    )
+    return SolveSize(unknowns, searched(COARSE), searched(NORMAL), answered(COARSE)[0], response)
 
 
 @si.checked_numbers

@@ -48,7 +48,8 @@ def test_a_class_is_told_in_plain_words() -> None:
     assert told_of((None, None)) == "all modes"
     assert told_of((None, "A")) == "modes that move opposite on both halves of the width"
     assert told_of(("S", "A")) == (
-        "modes that move alike on both halves of the length and opposite on both halves of the width"
+        "modes that move alike on both halves of the length and "
+        "opposite on both halves of the width"
     )
 
 
