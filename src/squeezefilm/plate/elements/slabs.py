@@ -167,7 +167,7 @@ class Slabs:
         count, nodes, n, vectors = local.shape
         flat = local.reshape(count, nodes, n * vectors)
 
-        def term(line: si.FloatArray, matrix: sparse.csr_array) -> si.FloatArray:
+        def term(line: si.FloatArray, matrix: sparse.csr_array | sparse.csc_array) -> si.FloatArray:
             along = (line @ flat).reshape(count * nodes, n, vectors).transpose(1, 0, 2)
             return np.asarray(matrix @ along.reshape(n, -1))
 

@@ -159,7 +159,7 @@ def test_a_disc_without_diameters_has_no_pair() -> None:
     found = list_modes(load_display("winfield2007-tpad"), (20e3, 30e3))
     assert found.pair is None
     assert found.working_mode is not None
-    assert found.suggestion.text.startswith("Write nodal_circles = 1, nodal_diameters = 0")
+    assert found.suggestion.text.startswith("Keep nodal_circles = 1, nodal_diameters = 0")
 
 
 def test_one_channel_carries_no_finger_and_a_split_does_a_little() -> None:
