@@ -13,6 +13,7 @@ from scipy import ndimage
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
@@ -142,7 +143,7 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
     def neighbour(self, frequency: si.Hertz) -> Neighbour | None:
         """Of the driven modes that this response is made of, the one that adds most at the
         resonance of that nearest to a frequency (Hz), within 10 % of it."""
-        si.require("frequency", frequency, si.Unit("Hz"), above=0)
+        si.require("frequency", frequency, si.Unit("Hz"), above=0, at_most=FREQUENCY.most)
         around = 0.9 * frequency, 1.1 * frequency
         found = [one.moving for part in self._parts for one in driven_modes(part, around)]
         if not found:
