@@ -45,8 +45,8 @@ def test_the_quickest_verb_that_knows_a_name_is_asked(
 
 
 def test_commas_part_names_and_none_is_asked_twice() -> None:
-    found = asked_for(["relative_friction, coupling", "relative_friction,"])
-    assert [one.column for one in found] == ["relative_friction", "coupling"]
+    found = asked_for(["relative_friction, coupling_coefficient", "relative_friction,"])
+    assert [one.column for one in found] == ["relative_friction", "coupling_coefficient"]
     other = asked_for(["analyze.relative_friction"])[0]
     assert (other.column, other.unit.symbol) == ("analyze.relative_friction", "1")
 

@@ -281,7 +281,10 @@ def mode_row(modes: PlateModes, index: int) -> ModeRow:
         frequency_error=float(modes.errors[index]),
         quality_factor=quality,
         amplitude_per_volt=quality * abs(force) * largest / (2 * np.pi * frequency) ** 2,
-        coupling=float(modes.couplings[index]),
+        coupling_coefficient=float(modes.couplings[index]),
+        coupling_coefficient_error=float(modes.coupling_errors[index]),
+        parallel_resonance_frequency=float(modes.open_frequencies[index]),
+        parallel_resonance_frequency_error=float(modes.open_errors[index]),
         modal_force=force,
         half_wavelength=half if np.isfinite(half) else None,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -191,13 +192,15 @@ def mode_row(body: RingBody, mode: AnnularMode, capacitance: si.Farad) -> ModeRo
     is against the `capacitance` beside the mode.
     """
     lift = float(np.max(np.abs(mode.surface_shape)))
+    coupling = mode.coupling_coefficient(body.drive, capacitance)
     return ModeRow(
         label=mode.label,
         frequency=mode.frequency,
         frequency_error=mode.frequency_error,
         quality_factor=mode.quality_factor,
         amplitude_per_volt=lift * mode.amplitude_per_volt(body.drive),
-        coupling=mode.coupling_coefficient(body.drive, capacitance),
+        coupling_coefficient=coupling,
+        parallel_resonance_frequency=mode.frequency / math.sqrt(1 - coupling**2),
         modal_force=mode.modal_force(body.drive) / np.sqrt(mode.modal_mass),
         half_wavelength=half_wavelength_of(mode)[0],
     )

@@ -42,6 +42,9 @@ class Modes:
     quality_factors = np.array([50.0, 60.0, 70.0])
     drive_forces = np.array([-0.2, 0.1, 0.0])
     couplings = np.array([0.15, 0.05, 0.0])
+    coupling_errors = np.array([1e-3, 5e-4, 0.0])
+    open_frequencies = np.array([1.0, 2.0, 3.0])
+    open_errors = np.array([0.1, 0.2, 0.3])
     x, y = np.linspace(0, LENGTH, 201), np.linspace(0, WIDTH, 101)
     count = 3
     model, status = "solid", "fine"
@@ -192,7 +195,7 @@ def test_the_table_has_each_mode_of_the_band(display: Display, parts: dict[str, 
     assert [row.frequency_error for row in one.rows] == [3, 4, 5]
     assert [row.quality_factor for row in one.rows] == [50, 60, 70]
     assert [row.modal_force for row in one.rows] == [-0.2, 0.1, 0.0]
-    assert [row.coupling for row in one.rows] == [0.15, 0.05, 0.0]
+    assert [row.coupling_coefficient for row in one.rows] == [0.15, 0.05, 0.0]
     assert [row.half_wavelength for row in one.rows] == [20e-3, None, 16e-3]
     # Q F/ω² of unit modal mass, at the ends three times the lobes between.
     assert first.amplitude_per_volt == pytest.approx(50 * 0.2 * 3 / (2 * math.pi * 30e3) ** 2)

@@ -133,7 +133,9 @@ def test_a_summary_has_every_number_under_its_name() -> None:
         "frequency_error_Hz": 4.0, "amplitude_m_per_V": pytest.approx(6e-8),
         "centreline_amplitude_m_per_V": pytest.approx(2e-8), "half_wavelength_m": 31e-3,
         "half_wavelength_along": "circumference", "nodal_circles_m": [15e-3],
-        "quality_factor": 100.0, "coupling": 0.2, "voltage_V": 20.0,
+        "quality_factor": 100.0, "coupling_coefficient": 0.2, "voltage_V": 20.0,
+        "coupling_coefficient_error": None, "parallel_resonance_frequency_Hz": None,
+        "parallel_resonance_frequency_error_Hz": None,
         "current_A": pytest.approx(0.2), "apparent_power_VA": pytest.approx(2.0),
         "input_power_W": pytest.approx(1.2), "described_amplitude_m_per_V": None, "fit": None,
         "sound_pressure_level_dB": {"0.3 m": 70.0, "1 m": 60.0}, "sound_guidance": None,
@@ -165,7 +167,10 @@ def test_a_row_is_a_mode_under_its_drive() -> None:
     # Half as far as the highest antinode of a mode that is scaled to 1.
     assert row.amplitude_per_volt == pytest.approx(0.5 * 100 * 16e-3 / stiffness)
     assert row.modal_force == pytest.approx(16e-3 / math.sqrt(2e-3))
-    assert row.coupling == pytest.approx(16e-3 / math.sqrt(16e-3**2 + stiffness * 1e-9))
+    assert row.coupling_coefficient == pytest.approx(16e-3 / math.sqrt(16e-3**2 + stiffness * 1e-9))
+    assert row.parallel_resonance_frequency == pytest.approx(
+        40e3 * math.sqrt(1 + 16e-3**2 / (stiffness * 1e-9))
+    )
     assert row.half_wavelength == 31e-3
 
 
