@@ -68,10 +68,6 @@ def analysis_named(name: str) -> Analysis:
         return analyze(plate(base, nodal_lines=30, length=0.4, patches=patches[:1]))
     if name == "square":
         return analyze(plate(base, width=0.083))
-    if name == "smooth-finger":
-        return analyze(
-            dataclasses.replace(base, finger=dataclasses.replace(base.finger, ridge_amplitude=0.0))
-        )
     if name == "five-surfaces":
         surfaces = tuple(
             dataclasses.replace(base.surfaces[0], name=f"surface {n}", roughness=n * 0.2e-6)

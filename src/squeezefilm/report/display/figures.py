@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from squeezefilm.report.display import (
     area_figures,
-    fidelity_figures,
     friction_figures,
     layout_figures,
     plate_figures,
@@ -68,29 +67,8 @@ MODELS: tuple[FigureOf, ...] = (
         "The film's mean over-pressure divided by the finger's pressure: above 1 the film would "
         "carry the finger alone. The same finger, drawn in five ways.",
     ),
-    FigureOf(
-        "pressure",
-        "Pressure under the finger",
-        friction_figures.pressure,
-        "Above, the gap under the ridges of the finger, averaged over a period; below, the mean "
-        "pressure of the film, to compare with what would carry the finger. The paper's Fig 4.",
-    ),
-    FigureOf(
-        "friction",
-        "Friction on each surface, by the paper's model and by the verdict's",
-        friction_figures.friction,
-        "A colour for each model, dashes for each surface; squares mark where the model's film "
-        "carries the whole finger. The paper's Fig 5.",
-    ),
-    FigureOf(
-        "wavelength",
-        "Wave length against amplitude, by the paper's model",
-        friction_figures.wavelength,
-        "The amplitude that each of the paper's four half wavelengths needs for a relative "
-        "friction of 0.7. The paper's Fig 11.",
-    ),
 )
-"""What other models and the paper say."""
+"""What other models say."""
 
 TEXTURES: tuple[FigureOf, ...] = (
     FigureOf(
@@ -109,17 +87,9 @@ TEXTURES: tuple[FigureOf, ...] = (
         "rounded edges lose first; then both of the friction.",
     ),
     FigureOf(
-        "compensation",
-        "Getting a fine grating through the resonator",
-        fidelity_figures.compensation,
-        "A grating of 0.4 mm at twice the finger speed that it survives uncompensated, up to 0.8 "
-        "of the full amplitude: above the amplitude, below the command that makes it, within the "
-        "voltage. Phase inversion asks for an amplifier that can turn its sign.",
-    ),
-    FigureOf(
         "survival",
         "Which period survives at which speed, compensated or not",
-        fidelity_figures.survival,
+        texture_figures.survival,
         "The finest square grating that keeps 90 % of a swing to 0.8 of the full amplitude, peak "
         "to peak; the legend says how much of its fundamental that leaves.",
     ),

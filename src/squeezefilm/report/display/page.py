@@ -75,12 +75,10 @@ def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
         **summary,
         "curves": {
             "response": analysis.response,
-            "pressure": analysis.pressure,
             "friction": analysis.friction_curves,
             "band": analysis.band,
             "chain": analysis.model_curves,
             "films": None if analysis.film_models is None else analysis.film_models.curves,
-            "wavelength": analysis.wavelength_curves,
             "texture": None if analysis.texture is None else _trace(analysis.texture),
             "fidelity": analysis.fidelity,
             "active_area": None if analysis.active_area is None else analysis.active_area.area,
@@ -131,7 +129,7 @@ def report_page(
         *drawn(DECISION),
         section("Drive electronics", _electronics(analysis)),
         section("What to measure next", _measure_next(analysis)),
-        part("models", "Appendix: other models, and the paper's claims", _aside(analysis)),
+        part("models", "Appendix: other models", _aside(analysis)),
         *drawn(MODELS),
         section("What the readings of the film say", _films(analysis)),
         section("How far the film's model is from where it holds", _validity(analysis)),
@@ -172,7 +170,8 @@ def _aside(analysis: Analysis) -> str:
     return (
         f"The verdict's friction of {p.relative_friction:.2f} is by "
         f"<code>{escape(p.model)}</code>. What follows is by the models that each figure names, "
-        "for comparison: none of it is in the verdict."
+        "for comparison: none of it is in the verdict. "
+        "<code>squeezefilm reproduce</code> draws the paper's own figures."
     )
 
 
