@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
+from typing import TYPE_CHECKING
+
 from squeezefilm.report.display import (
     area_figures,
     friction_figures,
@@ -10,7 +13,11 @@ from squeezefilm.report.display import (
     texture_figures,
 )
 from squeezefilm.report.friction import figures as friction_report
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.page_style import FigureOf
+
+if TYPE_CHECKING:
+    from squeezefilm.analysis.analyze import Analysis
 
 DECISION: tuple[FigureOf, ...] = (
     FigureOf(
@@ -40,6 +47,7 @@ DECISION: tuple[FigureOf, ...] = (
         plate_figures.frequency_response,
         "Vibration amplitude per volt around the working resonance, without a finger. Outside the "
         "half-power band less than 71 % of it is left.",
+        needs=("response",),
     ),
     FigureOf(
         "band",
@@ -48,6 +56,7 @@ DECISION: tuple[FigureOf, ...] = (
         "Friction divided by that without vibration, by the model of the verdict. The band and the "
         "bar hold what is uncertain in the description, in the finger and in the laws; in the bar "
         "the amplitude is uncertain too.",
+        needs=("band", "own_curves"),
     ),
 )
 """What one decides from."""
@@ -59,6 +68,7 @@ MODELS: tuple[FigureOf, ...] = (
         friction_report.chain,
         "The same finger by the paper's model, by solved films and by partial levitation, where "
         "film and asperities share the load.",
+        needs=("model_curves",),
     ),
     FigureOf(
         "films",
@@ -66,6 +76,7 @@ MODELS: tuple[FigureOf, ...] = (
         friction_figures.film_models,
         "The film's mean over-pressure divided by the finger's pressure: above 1 the film would "
         "carry the finger alone. The same finger, drawn in five ways.",
+        needs=("film_models",),
     ),
 )
 """What other models say."""
@@ -77,6 +88,7 @@ TEXTURES: tuple[FigureOf, ...] = (
         texture_figures.texture,
         "Amplitude and friction along a stroke over a square grating: as wanted, and as the "
         "resonator lets them through.",
+        needs=("texture",),
     ),
     FigureOf(
         "fidelity",
@@ -92,8 +104,24 @@ TEXTURES: tuple[FigureOf, ...] = (
         texture_figures.survival,
         "The finest square grating that keeps 90 % of a swing to 0.8 of the full amplitude, peak "
         "to peak; the legend says how much of its fundamental that leaves.",
+        needs=("survival",),
     ),
 )
 """What a texture becomes along a stroke."""
 
 FIGURES = (*DECISION, *MODELS, *TEXTURES)
+
+
+def prepare() -> None:
+    """Load what drawing takes, before there is anything to draw."""
+    importlib.import_module("squeezefilm.analysis.analyze")
+    style.svg(style.message_figure("Fonts", "are looked for"), "fonts", "")
+
+
+def drawing(analysis: Analysis, key: str) -> str:
+    """One of the figures as an SVG element, with its message for those who cannot see it."""
+    item = next(one for one in FIGURES if one.key == key)
+    with style.rc():
+        figure = item.draw(analysis)
+        message = " ".join(figure.get_suptitle().split())
+        return style.svg(figure, key, f"{item.heading}. {message}. {item.reading}")
