@@ -16,8 +16,8 @@ if TYPE_CHECKING:
         Shift,
     )
     from squeezefilm.analysis.uncertainty import UncertainFriction
+    from squeezefilm.report.kit.point_rows import Row
 
-Row = tuple[str, str, str]
 _W = si.Unit("W")
 SHOWN = 12
 
@@ -88,8 +88,13 @@ def _felt_remark(felt: FeltGratings, one: FeltAt) -> str:
     if one.interval is None:
         return f"by assumed senses ('{felt.observer}'){survives}"
     low, high = (_period(end) for end in one.interval)
-    said = f"{100 * felt.level:.0f} % interval {low} to {high}" if low != high else "in all draws"
-    return said + (f"; in {100 * one.never:.0f} % none" if one.never else "") + survives
+    said = "in all draws"
+    if low != high:
+        ends = (
+            f"{low} to {high}" if one.interval[1] is not None else f"from {low} up, or none is felt"
+        )
+        said = f"{ends} ({si.percent(felt.level)} interval)"
+    return said + (f"; none is felt in {si.percent(one.never)}" if one.never else "") + survives
 
 
 def _period(value: si.Metre | None) -> str:
