@@ -342,10 +342,10 @@ def _doubts(found: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
             "Thermal resistance and temperature coefficient are computed or assumed"
         )
     if found.other_fixed:
-        others = ", ".join(f"{1e6 * one.amplitude:.3g} um" for one in found.other_fixed)
+        others = ", ".join(f"{1e6 * one.amplitude:.3g} µm" for one in found.other_fixed)
         said.append(
             f"at a fixed {found.frequency:.0f} Hz the warm plate has several states: "
-            f"{1e6 * found.fixed.amplitude:.3g} um is reached from cold, {others} by coming down "
+            f"{1e6 * found.fixed.amplitude:.3g} µm is reached from cold, {others} by coming down "
             "from a higher frequency or a warmer plate"
         )
     if rise >= _END:

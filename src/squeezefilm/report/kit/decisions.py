@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.numbers import M, V, micro, shown
+from squeezefilm.report.kit.numbers import M, V, shown
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.felt import FeltAt, FeltGratings
@@ -90,11 +90,9 @@ def _felt_remark(felt: FeltGratings, one: FeltAt) -> str:
     low, high = (_period(end) for end in one.interval)
     said = "in all draws"
     if low != high:
-        ends = (
-            f"{low} to {high}" if one.interval[1] is not None else f"from {low} up, or none is felt"
-        )
-        said = f"{ends} ({si.percent(felt.level)} interval)"
-    return said + (f"; none is felt in {si.percent(one.never)}" if one.never else "") + survives
+        said = f"{low} at best and {high} at worst ({si.percent(felt.level)} interval)"
+    never = f"; none is felt in {si.percent(one.never)} of the draws" if one.never else ""
+    return said + never + survives
 
 
 def _period(value: si.Metre | None) -> str:
@@ -111,7 +109,7 @@ def sensitivity_rows(found: DisplaySensitivities) -> list[list[str]]:
     return [
         [
             one.path,
-            " to ".join(micro(_value(end.value, one.unit)) for end in (one.low, one.high)),
+            " to ".join(_value(end.value, one.unit) for end in (one.low, one.high)),
             _shifts(one.low.frequency_shift, one.high.frequency_shift),
             _shifts(one.low.amplitude_shift, one.high.amplitude_shift),
             _frictions(one.low, one.high),

@@ -37,7 +37,7 @@ def shown(value: float, unit: si.Unit, digits: int = 4) -> str:
     """A quantity as a person reads it, e.g. ``"2 µm"``."""
     if unit.symbol == "Hz" and 0 < abs(value) < 1:
         return f"{value:.{digits}g} Hz"  # nobody reads millihertz
-    text = micro(si.format_quantity(value, unit, digits))
+    text = si.format_quantity(value, unit, digits)
     number, _, symbol = text.partition(" ")
     # 0.6 µm and 0.5 N are what the field says, not 600 nm and 500 mN.
     larger = {"n": "µ", "µ": "m"} | ({"m": ""} if unit.symbol in ("N", "V") else {})
@@ -61,12 +61,6 @@ def changed(share: float, decimals: int = 1) -> str:
 def span(low: float, high: float) -> str:
     """Two relative frictions with what lies between, e.g. ``"0.04–0.79"``."""
     return f"{low:.2f}–{high:.2f}"
-
-
-def micro(text: str) -> str:
-    """The text of a quantity with the micro sign in place of the u that is typed for it."""
-    head, separator, unit = text.rpartition(" ")
-    return f"{head}{separator}µ{unit[1:]}" if separator and unit[:1] == "u" else text
 
 
 def printable(text: str) -> str:

@@ -8,7 +8,7 @@ import pytest
 
 from squeezefilm.quantities import Unit
 from squeezefilm.report.kit import terminal
-from squeezefilm.report.kit.numbers import micro, printable, shown
+from squeezefilm.report.kit.numbers import printable, shown
 
 
 def test_what_a_model_misses_is_said(printed: Callable[[], str]) -> None:
@@ -55,7 +55,5 @@ def test_quantities_read_as_the_field_says_them(value: float, unit: str, text: s
     assert shown(value, Unit(unit)) == text
 
 
-def test_micro_sign_and_printable() -> None:
-    assert micro("50 um") == "50 µm"
-    assert micro("copper") == "copper"
+def test_printable() -> None:
     assert printable("a\x1b[31m\n b\u202e") == "a [31m b"
