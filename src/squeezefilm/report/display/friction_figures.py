@@ -10,7 +10,7 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.model_looks import look_of
-from squeezefilm.report.kit.numbers import HZ, SPEED, M, N, shown, span
+from squeezefilm.report.kit.numbers import HZ, SPEED, M, N, carried, shown, span
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,10 +65,10 @@ def film_models(analysis: Analysis) -> Figure:
     if films is None:
         said = "Without vibration no film carries anything."
         return style.message_figure("Nothing vibrates", said)
-    shares = [100 * r.load_share for r in films.results if np.isfinite(r.load_share)]
+    shares = [r.load_share for r in films.results if np.isfinite(r.load_share)]
     title = (
-        f"At {shown(p.vibration_amplitude, M, 3)} the film carries from {min(shares):.2g} to "
-        f"{max(shares):.3g} % of the finger: how ridges are drawn decides"
+        f"At {shown(p.vibration_amplitude, M, 3)} the film carries from {carried(min(shares))} "
+        f"to {carried(max(shares))} of the finger: how ridges are drawn decides"
     )
     figure = style.new_figure(
         title, f"all at {shown(p.frequency, HZ, 3)}, with slip but for the asymptote", 5.4
@@ -82,7 +82,11 @@ def film_models(analysis: Analysis) -> Figure:
         axes.plot(*here, "o", color=color, ms=6, zorder=3)
     axes.axhline(1, **style.REFERENCE, label="carries the whole finger")
     left, right = (1e6 * float(films.curves[0].amplitude[end]) for end in (0, -1))
-    axes.set(xlim=(left, right), ylim=(1e-4, 30), xlabel="vibration amplitude, zero-to-peak (µm)")
+    axes.set(
+        xlim=(left, right),
+        ylim=(1e-4, max(30.0, 2 * max(shares))),
+        xlabel="vibration amplitude, zero-to-peak (µm)",
+    )
     axes.set(ylabel="film's pressure over the finger's")
     axes.set_xticks(
         [tick for tick in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50) if left <= tick <= right]

@@ -71,6 +71,7 @@ def write_analysis(
         shows = {name: getattr(analysis, name) for name in item.needs}
         if aside is not None:
             aside.ask(item.key, shows)
+    tell("what is felt, what each value does, other models")
     summary = analysis.summary()
     tell("writing the report")
     data = json_text(result_data(analysis, summary))
@@ -192,7 +193,7 @@ def _findings(findings: tuple[Finding, ...]) -> str:
 
 def _key_numbers(analysis: Analysis) -> str:
     rows, kinds = [], []
-    for heading, of_subject in decision_rows(analysis):
+    for heading, of_subject, _ in decision_rows(analysis):
         rows.append((escape(heading), "", ""))
         rows += [
             (escape(label), f'<span class="mark">{escape(text)}</span>', escape(remark))

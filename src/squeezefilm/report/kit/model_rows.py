@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.record import missed_by
-from squeezefilm.report.kit.numbers import HZ, M, shown
+from squeezefilm.report.kit.numbers import HZ, M, carried, shown
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -85,8 +85,8 @@ def film_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
         said = ("not solved", "–", "–")
         if math.isfinite(item.over_pressure):
             error = f" ± {item.over_pressure_error:.1g}" if item.over_pressure_error else ""
-            carried = f"{100 * item.load_share:.3g} %"
-            said = f"{item.over_pressure:.3g}{error}", carried, f"{item.relative_friction:.3f}"
+            share = carried(item.load_share)
+            said = f"{item.over_pressure:.3g}{error}", share, f"{item.relative_friction:.3f}"
         rows.append((item.model, *said))
     return rows
 

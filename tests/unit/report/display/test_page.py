@@ -63,7 +63,7 @@ def written(
     analysis = analysis_of("biet2008-plate")
     steps: list[str] = []
     path = write_analysis(analysis, tmp_path_factory.mktemp("out") / "new", steps.append)
-    assert len(steps) == len(FIGURE_KEYS) + 1
+    assert len(steps) == len(FIGURE_KEYS) + 2
     return path, analysis
 
 

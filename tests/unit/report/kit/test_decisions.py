@@ -82,8 +82,8 @@ def test_what_is_felt_stands_beside_what_survives() -> None:
         (
             "Finest grating felt at 200 mm/s",
             "0.43 mm",
-            "0.25 mm or finer at best and none at worst (90 % interval); none is felt in 3 % of the "
-            "draws; 0.67 mm survives the resonator",
+            "0.25 mm or finer at best and none at worst (90 % interval); none is felt in 3 % of "
+            "the draws; 0.67 mm survives the resonator",
         ),
     ]
     plain = dataclasses.replace(felt, at=(FeltAt(0.1, 0.5e-3, None),))
