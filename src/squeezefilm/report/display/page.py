@@ -27,9 +27,10 @@ from squeezefilm.report.kit.model_rows import (
     theory_rows,
     weight_rows,
 )
-from squeezefilm.report.kit.numbers import display_values, printable
+from squeezefilm.report.kit.numbers import display_values
 from squeezefilm.report.kit.page_style import (
     FigureOf,
+    as_html,
     bullets,
     html_table,
     page,
@@ -121,7 +122,7 @@ def report_page(
     that are there already, by key."""
     summary, ready = summary or analysis.summary(), drawn or {}
     display = analysis.display
-    title, name = escape(printable(display.title)), escape(printable(display.name))
+    title, name = as_html(display.title), as_html(display.name)
 
     def shown(figures: tuple[FigureOf, ...]) -> Iterator[str]:
         for item in figures:
@@ -185,7 +186,7 @@ def _aside(analysis: Analysis) -> str:
 def _findings(findings: tuple[Finding, ...]) -> str:
     items = "\n".join(
         f'<li class="{finding.kind}"><b>{_KINDS[finding.kind]}</b>'
-        f"<span>{escape(printable(finding.text))}</span></li>"
+        f"<span>{as_html(finding.text)}</span></li>"
         for finding in findings
     )
     return f'<ul class="verdict">\n{items}\n</ul>'
@@ -196,7 +197,7 @@ def _key_numbers(analysis: Analysis) -> str:
     for heading, of_subject, _ in decision_rows(analysis):
         rows.append((escape(heading), "", ""))
         rows += [
-            (escape(label), f'<span class="mark">{escape(text)}</span>', escape(remark))
+            (as_html(label), f'<span class="mark">{as_html(text)}</span>', as_html(remark))
             for label, text, remark in of_subject
         ]
         kinds += ["subject", *[""] * len(of_subject)]
@@ -277,7 +278,7 @@ def _validity(analysis: Analysis) -> str:
                 f"{check.value:.3g}",
                 limits(check.low, check.high),
                 f'<span class="mark">{"✓ holds" if holds else "✗ does not hold"}</span>',
-                escape(printable(check.sentence)),
+                as_html(check.sentence),
             )
         )
     head = ("Assumption", "Number", "Wanted", "Here", "In words")
@@ -304,12 +305,17 @@ def _models(analysis: Analysis) -> str:
         used += "\n<br>\n" + html_table(
             "The film under the finger, drawn in five ways",
             ("Model", "Over-pressure over ambient", "Carries", "µ′/µ", "What it is"),
-            [(f"<code>{escape(row[0])}</code>", *row[1:], escape(means[row[0]])) for row in drawn],
+            [
+                (f"<code>{escape(row[0])}</code>", *map(as_html, row[1:]), escape(means[row[0]]))
+                for row in drawn
+            ],
             kinds=["used" if row[0] == analysis.prediction.model else "" for row in drawn],
         )
     if not analysis.other_models:
         return used
-    rows = [(f"<code>{escape(row[0])}</code>", *row[1:]) for row in theory_rows(analysis)]
+    rows = [
+        (f"<code>{escape(row[0])}</code>", *map(as_html, row[1:])) for row in theory_rows(analysis)
+    ]
     others = html_table(
         "The same plate by other theories, each driven at its own resonance, without a finger",
         ("Model", "Resonance", "Half wavelength", "Amplitude"),
@@ -327,8 +333,8 @@ def _provenance(analysis: Analysis) -> str:
         rows.append(
             (
                 f"<code>{escape(value.path)}</code>",
-                escape(printable(value.text)),
-                escape(printable(value.source)) or "–",
+                as_html(value.text),
+                as_html(value.source) or "–",
                 f'<span class="mark">⚠\u00a0{evidence}</span>' if assumed else evidence,
             )
         )

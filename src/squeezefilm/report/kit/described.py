@@ -171,7 +171,7 @@ _COLUMNS: dict[str, dict[str, str]] = {
 
 def _shown(value: dict[str, Any]) -> str:
     star = "*" if value["evidence"] == "assumed" else ""
-    return value["text"] + star
+    return f"{value['text']}{star}"
 
 
 def _show_material(one: dict[str, Any]) -> None:

@@ -77,6 +77,12 @@ def printable(text: str) -> str:
     return _MINUS.sub("−", _TYPED_MICRO.sub("µ", line))
 
 
+def unit_stays(text: str) -> str:
+    """A text of which no line may end between a number and its unit, nor after an equals sign."""
+    text = re.sub(r"(?<=\d) (?=%|[µnmkM]?(?:m|Hz|s|N|V|W|A|K|VA|dB|F|H)\b)", "\u00a0", text)
+    return re.sub(r" = (?=\d)", "\u00a0=\u00a0", text)
+
+
 def display_values(display: Display) -> list[Value]:
     """Every value of a display with its unit, its source and the evidence behind it.
 
