@@ -29,7 +29,7 @@ _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
 
 # Letters of a warning where it is not asked for in full: three lines of a terminal.
-_SHORT = 220
+_SHORT = 210
 
 
 def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
@@ -67,13 +67,13 @@ def _short(group: Rows) -> Iterator[Row]:
 
 
 def shortened(text: str) -> str:
-    """A text up to the end of its first sentence, and of those after it that three lines hold."""
-    kept, *more = re.split(r"(?<=[.!?]) (?=[A-ZΜ])", text)
-    for sentence in more:
-        if len(kept) + len(sentence) >= _SHORT:
+    """A text up to the end of its first statement, and of those after it that three lines hold."""
+    kept, *more = re.split(r"(?<=[.!?]) (?=[A-Z])|(?<=;) ", text)
+    for statement in more:
+        if len(kept) + len(statement) >= _SHORT:
             break
-        kept += f" {sentence}"
-    return kept
+        kept += f" {statement}"
+    return kept.removesuffix(";")
 
 
 def _findings(console: Console, findings: tuple[Finding, ...]) -> None:

@@ -48,7 +48,7 @@ def test_all_of_it_is_printed_where_it_is_asked_for(
     assert words.count("carries the finger at a mean gap") == 1
 
 
-def test_a_long_warning_is_cut_between_sentences() -> None:
+def test_a_long_warning_is_cut_between_statements() -> None:
     assert terminal.shortened("short") == "short"
     assert terminal.shortened("One is 2.5 mm. Two follows") == "One is 2.5 mm. Two follows"
     long = "a word, " * 40
@@ -56,6 +56,7 @@ def test_a_long_warning_is_cut_between_sentences() -> None:
     assert terminal.shortened(f"{long}ends. Another") == f"{long}ends."
     assert terminal.shortened(f"One. {long}") == f"One. {long}"
     assert terminal.shortened(f"One. A {long}") == "One."
+    assert terminal.shortened(f"one; two; {long}") == "one; two"
 
 
 def test_hostile_names_are_printed_and_not_obeyed(
