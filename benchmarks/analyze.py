@@ -1,9 +1,10 @@
 """The whole verb `analyze` with its report: what an engineer waits for, and what takes the time.
 
 Peer: the same answer without report and interval, `predict` alone, in the same process. Times are
-those of the processor, one thread, of the process that computes (figures are drawn by another one meanwhile), what was compiled loaded from the cache; the verb is run once
-before it is measured. "asked again" finds the films that the run before it solved and kept on disk,
-"first" solves them. A step takes all until the next one is told.
+those of the processor, one thread, of the process that computes (another draws the figures
+meanwhile), what was compiled loaded from the cache; the verb is run once before it is measured.
+"asked again" finds the films that the run before it solved and kept on disk, "first" solves them.
+A step takes all until the next one is told.
 Run: python benchmarks/analyze.py [DISPLAY …]
 """
 
