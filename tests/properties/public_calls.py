@@ -157,6 +157,7 @@ NOT_CALLED = {
     """,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
     quantities.require.require quantities.require.require_valid quantities.units.format_quantity
+    quantities.units.typed_quantity
     """,
 }
 """The public calls for which no good call is made here, by the reason. A new one must be named."""

@@ -200,6 +200,6 @@ def amplifier_check(
     if enough[0] < current:
         return answer(False, f"gives {said(enough[0], 'A')}, and {wanted}")
     if amplifier.slew_rate is not None and amplifier.slew_rate < slew_rate:
-        fast = f"{amplifier.slew_rate / 1e6:.3g} V/us"
-        return answer(False, f"gives {fast}, and {slew_rate / 1e6:.3g} V/us is wanted")
+        fast = f"{amplifier.slew_rate / 1e6:.3g} V/µs"
+        return answer(False, f"gives {fast}, and {slew_rate / 1e6:.3g} V/µs is wanted")
     return answer(True, f"gives {said(enough[0], 'A')}, and {wanted}")

@@ -99,7 +99,7 @@ PART = Amplifier("a kind", "a part", ((50.0, 1.0), (100.0, 0.5)), 20e6, "nobody"
         ((50.0, 1.0, 1e6), True, "gives 1 A, and 1 A is wanted at 50 V"),
         ((51.0, 0.6, 1e6), False, "gives 500 mA, and 600 mA is wanted at 51 V"),
         ((101.0, 0.1, 1e6), False, "gives 100 V at most, and 101 V is wanted"),
-        ((50.0, 0.5, 21e6), False, "gives 20 V/us, and 21 V/us is wanted"),
+        ((50.0, 0.5, 21e6), False, "gives 20 V/µs, and 21 V/µs is wanted"),
     ],
 )
 def test_an_amplifier_is_asked_for_voltage_current_and_slope(

@@ -228,7 +228,7 @@ def _both(name: str, path: str, unit: str, low: float, high: float) -> Iterator[
 def _text(value: float, unit: str) -> str:
     if unit == "1":
         return f"{value:.3g}"
-    return si.format_quantity(value, si.Unit(unit), 4).replace(" um", " µm").replace("m3", "m³")
+    return si.format_quantity(value, si.Unit(unit), 4).replace("m3", "m³")
 
 
 def with_ceramic_stiffness(plate: _Plate, share: si.Dimensionless) -> _Plate:

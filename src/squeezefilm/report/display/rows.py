@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.area_rows import place_rows
 from squeezefilm.report.kit.decisions import felt_rows
 from squeezefilm.report.kit.numbers import (
     HZ,
@@ -23,7 +22,7 @@ from squeezefilm.report.kit.numbers import (
     shown,
     span,
 )
-from squeezefilm.report.kit.point_rows import Row, heat_rows, reduction_row
+from squeezefilm.report.kit.point_rows import Row, heat_rows, place_rows, reduction_row
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -35,25 +34,27 @@ _EXPLORING: si.MetrePerSecond = 0.1
 
 
 class Rows(NamedTuple):
-    """Rows of one subject under its heading."""
+    """Rows of one subject under its heading; those that are `said` stand in the verdict, too."""
 
     heading: str
     rows: list[Row]
+    said: list[Row]
 
 
 def decision_rows(analysis: Analysis) -> list[Rows]:
     """The key numbers by subject, in the order of the chain."""
     p = analysis.prediction
     groups = [
-        Rows("Vibration", vibration_rows(p)),
-        Rows("Friction", friction_rows(analysis)),
-        Rows("Textures", texture_rows(analysis)),
+        Rows("Vibration", vibration_rows(p), []),
+        Rows("Friction", friction_rows(analysis), place_rows(p, analysis.active_area)),
+        Rows("Textures", texture_rows(analysis), []),
     ]
     if p.voltage:
+        sound = _sound_rows(analysis)
         groups += [
-            Rows("Electrical load", _electrical_rows(analysis)),
-            Rows("Heat", heat_rows(p.heat)[:2]),
-            Rows("Sound", _sound_rows(analysis)),
+            Rows("Electrical load", _electrical_rows(analysis), []),
+            Rows("Heat", heat_rows(p.heat)[:2], []),
+            Rows("Sound", sound, [] if analysis.ears is None else sound),
         ]
     return groups
 

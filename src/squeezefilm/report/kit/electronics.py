@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from squeezefilm import quantities as si
 from squeezefilm.plate.electronics import ElectricalLoad
-from squeezefilm.report.kit.numbers import HZ, V, micro, shown
+from squeezefilm.report.kit.numbers import HZ, V, shown
 
 A, FARAD, HENRY, WATT = si.Unit("A"), si.Unit("F"), si.Unit("H"), si.Unit("W")
 
@@ -49,8 +49,7 @@ def electronics_rows(load: ElectricalLoad | None) -> list[tuple[str, str, str]]:
             (
                 "Amplifier" if number == 0 else "",
                 "can" if check.suffices else "cannot",
-                f"{check.kind}, such as {check.part}: "
-                f"{micro(check.why).replace('V/us', 'V/µs')} ({check.source})",
+                f"{check.kind}, such as {check.part}: {check.why} ({check.source})",
             )
         )
     return rows

@@ -76,12 +76,14 @@ def test_what_is_felt_stands_beside_what_survives() -> None:
         (
             "Finest grating felt at 100 mm/s",
             "0.25 mm or finer",
-            "90 % interval 0.25 mm or finer to 0.45 mm; 0.34 mm survives the resonator",
+            "0.25 mm or finer at best and 0.45 mm at worst (90 % interval); 0.34 mm survives the "
+            "resonator",
         ),
         (
             "Finest grating felt at 200 mm/s",
             "0.43 mm",
-            "90 % interval 0.25 mm or finer to none; in 3 % none; 0.67 mm survives the resonator",
+            "0.25 mm or finer at best and none at worst (90 % interval); none is felt in 3 % of "
+            "the draws; 0.67 mm survives the resonator",
         ),
     ]
     plain = dataclasses.replace(felt, at=(FeltAt(0.1, 0.5e-3, None),))

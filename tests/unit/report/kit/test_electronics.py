@@ -7,7 +7,7 @@ from squeezefilm.report.kit.electronics import electronics_rows
 
 LOAD = ElectricalLoad(
     33.58e3, 15.0, 75.4e-9, 1.07, 8.04, 7.83, 0.974, 3.16e6, 293e-6, 1.04, 15e-6, 14.6, 7, 0.153,
-    10.8e-9, (AmplifierCheck("a kind", "a part", False, "gives 2 V/us", "a sheet"),),
+    10.8e-9, (AmplifierCheck("a kind", "a part", False, "gives 2 V/µs", "a sheet"),),
 )  # fmt: skip
 
 
