@@ -143,10 +143,11 @@ def display_sensitivities(
     """What each uncertain or toleranced value does where a prediction was made, its voltage kept.
 
     The drive follows the resonance. A plate's own values move frequency and amplitude as the beam
-    says, those of its glue as the solid on its coarse mesh ("quick", some 10 ms a value, 0.2 to
-    0.8 s a value of the glue; the film's dependence on the frequency left out), or as the changed plate is solved ("solved", twice as long a value as `predict` takes for
-    the plate). What is not the plate's costs 10 ms a value, and what it needs of film tables.
-    Where the amplitude was given, the plate's values are left out. Raises `InputError` for another
+    says, those of its glue as the solid on its coarse mesh ("quick": some 10 ms a value, 0.2 to
+    0.8 s a value of the glue; the film's dependence on the frequency left out), or as the changed
+    plate is solved ("solved": twice as long a value as `predict` takes for the plate). What is not
+    the plate's costs 10 ms a value, and what it needs of film tables. Where the amplitude was
+    given, the plate's values are left out. Raises `InputError` for another
     effort.
     """
     si.require_one_of("effort", effort, ("quick", "solved"))

@@ -31,9 +31,6 @@ if TYPE_CHECKING:
     from squeezefilm.plate.working_mode import WorkingMode
 
 
-_EXPLORING: si.MetrePerSecond = 0.1
-
-
 class Rows(NamedTuple):
     """Rows of one subject under its heading."""
 
@@ -116,9 +113,10 @@ def texture_rows(analysis: Analysis) -> list[Row]:
     tau, table = analysis.envelope_time_constant, analysis.fidelity
     band = f"a bandwidth of {shown(analysis.envelope_bandwidth, HZ, 3)}"
     rows = [("Envelope time constant", shown(tau, S, 3), band)]
+    speed = analysis.prediction.speed
     if table is not None:
-        rows.append(_grating(analysis, int(np.argmin(np.abs(table.speeds - _EXPLORING)))))
-    return [*rows, *felt_rows(analysis.felt, _EXPLORING)]
+        rows.append(_grating(analysis, int(np.argmin(np.abs(table.speeds - speed)))))
+    return [*rows, *felt_rows(analysis.felt, speed)]
 
 
 def _grating(analysis: Analysis, at: int) -> Row:

@@ -71,6 +71,7 @@ def test_what_is_felt_stands_beside_what_survives() -> None:
             FeltAt(0.1, 0.335e-3, 0.25e-3, (0.25e-3, 0.45e-3), 0.0),
             FeltAt(0.2, 0.67e-3, 0.43e-3, (0.25e-3, None), 0.03),
         ),
+        0.1,
     )
     assert felt_rows(felt) == [
         (
