@@ -236,8 +236,7 @@ def solve_plate(asked: PlateRequest) -> PlateAnalysis | RingAnalysis:
     require_plausible(asked.display)
     if isinstance(actuator, RectangularPlate):
         return analyze_plate(**given)
-    given.pop("budget")  # a ring is solved in a second or two
-    return analyze_ring(**given)
+    return analyze_ring(**given, pace=Pace(given.pop("budget")))
 
 
 def _driven_plate(display: Display) -> RectangularPlate:

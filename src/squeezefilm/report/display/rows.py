@@ -135,7 +135,7 @@ def _electrical_rows(analysis: Analysis) -> list[Row]:
     """What the free plate takes from its amplifier at the drive's frequency, and of which kind."""
     load = analysis.drive_electronics
     if load is None:
-        said = "no admittance was solved here; squeezefilm plate solves plates, discs and stators"
+        said = "it takes a voltage, and an admittance solved near it"
         return [("Current", "not known", said)]
     real = f"{shown(load.real_power, W, 3)} of them are real power"
     able = {
@@ -148,7 +148,11 @@ def _electrical_rows(analysis: Analysis) -> list[Row]:
         if parts
     ]
     return [
-        ("Current", shown(load.current, A, 3), "zero-to-peak, without a finger"),
+        (
+            "Current",
+            shown(load.current, A, 3),
+            "zero-to-peak, without a finger" + ("; of an assumed ceramic" if load.assumed else ""),
+        ),
         ("Apparent power", f"{load.apparent_power:.3g} VA", real),
         ("Amplifiers that can", f"{len(able[True])} of {len(load.amplifiers)}", "; ".join(each)),
     ]
