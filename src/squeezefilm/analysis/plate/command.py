@@ -236,7 +236,8 @@ def solve_plate(asked: PlateRequest) -> PlateAnalysis | RingAnalysis:
     require_plausible(asked.display)
     if isinstance(actuator, RectangularPlate):
         return analyze_plate(**given)
-    return analyze_ring(**given, pace=Pace(given.pop("budget")))
+    pace = Pace(given.pop("budget"))
+    return analyze_ring(**given, pace=pace)
 
 
 def _driven_plate(display: Display) -> RectangularPlate:

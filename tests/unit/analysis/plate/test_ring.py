@@ -349,7 +349,7 @@ def test_a_budget_leaves_out_the_band_and_says_so(parts: dict[str, Any]) -> None
     ("name", "says"),
     [
         ("winfield2007-tpad", "of a disc and its"),
-        ("biet2008-stator", "of a stator, whose thickness"),
+        ("biet2008-stator", "of a stator, whose"),
     ],
 )
 def test_a_budget_that_allows_no_mode_is_refused_with_what_is_expected(
