@@ -130,6 +130,18 @@ def test_what_is_not_known_stands_last() -> None:
     assert not all(known)
 
 
+def test_ceramics_with_full_constants_have_rows_of_both_their_kinds() -> None:
+    """Amplitude ∝ d31, and a stiffer ceramic raises the frequency."""
+    display = load_display("touchpad-glass")
+    found = display_sensitivities(display, predict(display, theory="timoshenko"))
+    charge = _row(found, "actuator.ceramic.charge_coefficient")
+    for end in (charge.low, charge.high):
+        assert end.amplitude_shift == pytest.approx(end.value / charge.nominal - 1, rel=1e-6)
+    assert "APC International" in charge.source
+    stiff = _row(found, "actuator.ceramic.in_plane_stiffness")
+    assert stiff.low.frequency_shift < 0 < stiff.high.frequency_shift  # type: ignore[operator]
+
+
 def test_an_amplitude_that_is_given_leaves_the_plate_out() -> None:
     display = load_display("biet2008-stator")
     found = display_sensitivities(display, predict(display, vibration_amplitude=2e-6))
