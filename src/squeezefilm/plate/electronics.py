@@ -228,9 +228,9 @@ def ring_admittance(actuator: AnnularStator | DiscPlate) -> RingAdmittance:
     )
     if mode.modal_force(body.drive) <= 1e-9 * abs(mode.modal_force_all_round):
         return RingAdmittance(f, admittance, None)
-    fitted = modal_circuit(body, mode)
+    fitted, bare = modal_circuit(body, mode), RingAdmittance(f, admittance, None)
     if isinstance(actuator, DiscPlate):
-        return RingAdmittance(f, admittance, with_static_capacitance(fitted, f, admittance))
+        return replace(bare, circuit=with_static_capacitance(fitted, bare))
     measured = actuator.reference_amplitude / actuator.reference_voltage
     # The current of motion is in proportion to the force squared, and the motion to the force: a
     # ceramic that moves the ring less takes so much less current for it, in all modes alike.
@@ -242,9 +242,9 @@ def ring_admittance(actuator: AnnularStator | DiscPlate) -> RingAdmittance:
         motional_capacitance=fitted.motional_capacitance * share,
     )
     held = 2j * np.pi * f * clamped_capacitance(body.section, body.drive)
-    admittance = held + share * (admittance - held)
-    circuit = with_static_capacitance(moved, f, admittance)
-    return RingAdmittance(f, admittance, circuit, _FITTED)
+    scaled = np.asarray(held + share * (admittance - held), dtype=complex)
+    bare = RingAdmittance(f, scaled, None, _FITTED)
+    return replace(bare, circuit=with_static_capacitance(moved, bare))
 
 
 def _driven_harmonics(body: RingBody, own: int) -> list[int]:

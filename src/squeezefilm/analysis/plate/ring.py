@@ -165,9 +165,8 @@ def analyze_ring(
     tell(f"mode B({label[0]},{label[1]})")
     found = body.mode(label)
     limits = band or (0.92 * found.frequency, 1.08 * found.frequency)
-    modes, left_out = (found,), [ALONE]
-    if deadline is None or deadline.allows(_BAND * (body.label[1] + 2)):
-        modes, left_out = modes_in_band(body, limits, tell), []
+    whole = deadline is None or deadline.allows(_BAND * (body.label[1] + 2))
+    modes = modes_in_band(body, limits, tell) if whole else (found,)
     _, along = half_wavelength_of(found)
     tell(f"response at {points} frequencies")
     sweep = sweep_around(found.frequency, found.quality_factor, points | 1)
@@ -193,7 +192,7 @@ def analyze_ring(
         described_amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage
         if isinstance(actuator, AnnularStator)
         else None,
-        objections=(*require_plausible(display), *left_out),
+        objections=(*require_plausible(display), *(() if whole else (ALONE,))),
     )
 
 

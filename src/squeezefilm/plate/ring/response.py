@@ -100,13 +100,11 @@ def modal_circuit(body: RingBody, mode: AnnularMode) -> EquivalentCircuit:
     )
 
 
-def with_static_capacitance(
-    bare: EquivalentCircuit, frequencies: si.HertzArray, admittance: si.ComplexArray
-) -> EquivalentCircuit:
-    """A motional branch with the static capacitance that an admittance (S) at frequencies (Hz) has
-    beside it, in the median."""
-    omega = 2 * np.pi * frequencies
-    rest = (admittance - bare.admittance(frequencies)) / (1j * omega)
+def with_static_capacitance(bare: EquivalentCircuit, response: DrivenResponse) -> EquivalentCircuit:
+    """A motional branch with the static capacitance (F) that a response's admittance has beside it,
+    in the median."""
+    omega = 2 * np.pi * response.frequencies
+    rest = (response.admittance - bare.admittance(response.frequencies)) / (1j * omega)
     return replace(bare, static_capacitance=float(np.median(rest.real)))
 
 
@@ -114,7 +112,7 @@ def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> E
     """Butterworth-Van Dyke around the mode: the motional branch of `modal_circuit`, the static
     capacitance from what the sweep's admittance has beside it. Raises as `modal_circuit`."""
     bare = modal_circuit(body, mode)
-    return with_static_capacitance(bare, response.frequencies, response.admittance)
+    return with_static_capacitance(bare, response)
 
 
 def static_capacitance(body: RingBody, circuit: EquivalentCircuit | None) -> si.Farad:
