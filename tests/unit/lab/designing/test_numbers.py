@@ -235,7 +235,7 @@ def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.Monkey
     assert solved == [display_of(text).actuator]
     assert found["drive_electronics"] is None  # a beam has no admittance
     assert told == [("sweeping", 0.5)]
-    # Neither a beam nor what is no plate is solved ahead; a stator is fitted for its load only then.
+    # Neither a beam nor what is no plate is solved ahead, nor a stator fitted.
     loads: list[Any] = []
     monkeypatch.setattr(numbers, "load_of_mode", lambda *given: loads.append(given[0]))
     designed(point, "screening")
