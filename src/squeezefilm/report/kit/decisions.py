@@ -121,10 +121,10 @@ def sensitivity_rows(found: DisplaySensitivities) -> list[list[str]]:
 
 def _weight(one: DisplaySensitivity) -> float:
     """A change of friction by 0.1 stands beside one of the frequency by 2 %; what could not be
-    told stands first."""
+    told stands last."""
     moved = [one.low.frequency_shift, one.high.frequency_shift]
     if None in moved:
-        return float("inf")
+        return -1.0
     return max(one.friction_change / 0.1, *(abs(shift or 0.0) / 0.02 for shift in moved))
 
 

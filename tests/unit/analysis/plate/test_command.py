@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -104,7 +105,7 @@ def display() -> Display:
 
 
 @pytest.fixture
-def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+def parts(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Any]]:
     """What an analysis asks of its parts, by their names."""
     asked: dict[str, Any] = {"modes": [], "circuit": True}
 
@@ -151,7 +152,10 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         SimpleNamespace(mode=SimpleNamespace(frequency=33e3), amplitude_per_volt=9e-8),
     )
     stand_in("shear_mode", SimpleNamespace(frequency=30.3e3))
-    return asked
+    # What is made up here must not answer for a solved plate, nor the other way round.
+    command.solved_plate.cache_clear()
+    yield asked
+    command.solved_plate.cache_clear()
 
 
 def test_an_analysis_is_around_the_mode_asked_for(display: Display, parts: dict[str, Any]) -> None:
@@ -183,6 +187,19 @@ def test_an_analysis_is_around_the_mode_asked_for(display: Display, parts: dict[
     assert said["sound_pressure_level_dB"] == {"0.3 m": 70.0}
     assert said["beam"]["frequency_Hz"] == 33e3
     assert said["equivalent_circuit"] == {"R1": 1.0}
+
+
+def test_a_plate_is_solved_once_for_all_voltages(display: Display, parts: dict[str, Any]) -> None:
+    for volts in (5.0, 10.0):
+        driven = dataclasses.replace(
+            display, drive=dataclasses.replace(display.drive, voltage=volts)
+        )
+        analyze_plate(driven, mode=(4, 0), progress=lambda _: None)
+        assert parts["plate_sound"][0][3] == volts
+    assert len(parts["modes"]) == 2
+    thicker = dataclasses.replace(display.actuator, thickness=2.1e-3)
+    analyze_plate(dataclasses.replace(display, actuator=thicker), mode=(4, 0))
+    assert len(parts["modes"]) == 4
 
 
 def test_the_table_has_each_mode_of_the_band(display: Display, parts: dict[str, Any]) -> None:

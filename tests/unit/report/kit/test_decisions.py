@@ -71,6 +71,7 @@ def test_what_is_felt_stands_beside_what_survives() -> None:
             FeltAt(0.1, 0.335e-3, 0.25e-3, (0.25e-3, 0.45e-3), 0.0),
             FeltAt(0.2, 0.67e-3, 0.43e-3, (0.25e-3, None), 0.03),
         ),
+        0.1,
     )
     assert felt_rows(felt) == [
         (
@@ -93,7 +94,7 @@ def test_what_is_felt_stands_beside_what_survives() -> None:
     )
 
 
-def test_what_moves_most_stands_first_and_what_is_not_known_before_it() -> None:
+def test_what_moves_most_stands_first_and_what_is_not_known_last() -> None:
     def row(path: str, frequency: float | None, friction: float) -> DisplaySensitivity:
         ends = [
             Shift(value, sign and frequency and sign * frequency, 0.0, 0.3 + sign * friction)
@@ -107,7 +108,7 @@ def test_what_moves_most_stands_first_and_what_is_not_known_before_it() -> None:
         (row("a", 0.0, 0.1), row("b", 0.1, 0.0), row("c", None, 0.0)), 0.3, "quick", "a beam"
     )
     assert sensitivity_rows(found) == [
-        ["c", "1 mm to 2 mm", "not known", "not known", "–, –", "assumed"],
         ["b", "1 mm to 2 mm", "−10 %, +10 %", "–", "0.30, 0.30", "assumed"],
         ["a", "1 mm to 2 mm", "–", "–", "0.20, 0.40", "assumed"],
+        ["c", "1 mm to 2 mm", "not known", "not known", "–, –", "assumed"],
     ]

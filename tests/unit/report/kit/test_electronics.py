@@ -40,3 +40,9 @@ def test_what_is_not_known_is_not_said() -> None:
     rows = electronics_rows(bare)
     assert [name for name, *_ in rows] == ["Drive current, peak", "Drive power", "Slew rate"]
     assert rows[0][2] == "at 15 V and 33.58 kHz, without a finger"
+
+
+def test_what_is_assumed_of_a_load_stands_before_it() -> None:
+    first, second, *_ = electronics_rows(dataclasses.replace(LOAD, assumed="its ceramic"))
+    assert first == ("Electrical load", "assumed in part", "its ceramic")
+    assert second[0] == "Electrode capacitance"
