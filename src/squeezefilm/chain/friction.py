@@ -23,7 +23,7 @@ from squeezefilm.chain.friction_models import (
     ModelKind,
 )
 from squeezefilm.chain.friction_table import FrictionTable, tabulated
-from squeezefilm.chain.pad_place import PadPlace
+from squeezefilm.chain.pad_place import PadPlace, gauss_nodes
 from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED, Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw
@@ -190,16 +190,20 @@ class FrictionLaw:
         """The mean square over the contact of the amplitude over the best antinode's."""
         if self.place is None:
             return mean_square_wave(self.half_wavelength, self.contact_side, self.position)
-        return float(np.mean(self.place.ridges(self.finger, self.contact_side)[1] ** 2))
+        met, shares = self.ridge_swings
+        return float(met**2 @ shares)
 
     @cached_property
-    def _ridges(self) -> tuple[si.MetreArray, PadPosture]:
-        """The points of the ridges and how the pad lies on the vibration."""
-        if self.place is None:
-            points = ridge_points(self.finger, self.contact_side)
-            return points, PadPosture(position=self.position)
-        points, swings = self.place.ridges(self.finger, self.contact_side)
-        return points, PadPosture(swings=swings)
+    def ridge_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+        """The amplitudes that ridges meet over the best antinode's, and the shares that meet them:
+        those of an even wave, or, at a place, nodes that stand for them all (`gauss_nodes`)."""
+        if self.place is not None:
+            return gauss_nodes(self.place.ridges(self.finger, self.contact_side)[1])
+        points = ridge_points(self.finger, self.contact_side)
+        wave = PadPosture(self.position).over_the_antinode(points, self.half_wavelength)
+        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
+        return np.asarray(kinds, dtype=float), counts / points.size
+
 
     @si.checked_numbers
     def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
@@ -226,17 +230,22 @@ class FrictionLaw:
         posture: PadPosture | None = None,
         skin: Skin | None = None,
     ) -> PadFriction:
-        ridges, level = self._ridges if points is None else (points, posture)
+        if posture is None:
+            # A pad that lies level: where along it a ridge is makes no difference.
+            met, shares = self.ridge_swings
+            points, posture = np.zeros(met.size), PadPosture(swings=met, shares=shares)
+        elif points is None:
+            points = ridge_points(self.finger, self.contact_side)
         try:
             return pad_friction(
                 self._films,
                 self.asperities,
                 amplitude,
                 self.half_wavelength,
-                ridges,
+                points,
                 self.finger.plateau_pressure(self.normal_force),
                 limit=limit,
-                posture=posture or level,
+                posture=posture,
                 skin=skin,
                 shear=self._shear(speed),
             )
@@ -251,13 +260,6 @@ class FrictionLaw:
         return AsperityShear(
             speed, self.friction_coefficient, finger.tangential_stiffness, finger.tangential_ratio
         )
-
-    def ridge_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-        """The amplitudes that ridges meet over an antinode's, and the shares that meet them."""
-        points, level = self._ridges
-        wave = level.over_the_antinode(points, self.half_wavelength)
-        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
-        return np.asarray(kinds, dtype=float), counts / points.size
 
     def _shared_load(self, amplitude: si.Metre) -> FilmLoad:
         shared = self.sharing(amplitude)
@@ -286,7 +288,7 @@ class FrictionLaw:
         if not self.kind.shear:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
         # A pad of thousands of ridges takes them in parts, within some 100 MB.
-        parts = min(math.ceil(a.size * speeds.size * self._ridges[0].size / 1e7), a.size)
+        parts = min(math.ceil(a.size * speeds.size * self.ridge_swings[0].size / 1e7), a.size)
         asked, kind = np.array_split(a, parts), limit or self.kind.limit
         return np.hstack([self._pad(one, speeds, limit=kind).relative_friction for one in asked])
 

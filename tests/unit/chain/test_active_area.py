@@ -11,8 +11,9 @@ import pytest
 
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea, active_area, percent
 from squeezefilm.chain.pad_place import PadPlace, met_by_pads, pad_place, place_words, read_place
-from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
+from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.touch import touch, touched_amplitudes
+from squeezefilm.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.contact.sharing.pad import pad_points, ridge_points
 from squeezefilm.display import ActiveRegion, Display, load_display
 from squeezefilm.errors import GeometryError, InputError, OutOfRangeError, QuantityError

@@ -246,7 +246,7 @@ def without_gas(law: FrictionLaw, amplitude: si.Metre) -> si.Dimensionless:
     """
     pressure = law.finger.plateau_pressure(law.normal_force)
     decay = law.finger.asperity_law(law.surface.roughness).decay_length
-    swings, weights = law.ridge_swings()
+    swings, weights = law.ridge_swings
     each = [
         tapping_friction(
             float(amplitude * swing),
