@@ -157,12 +157,21 @@ class Mixture:
         # Laws of contact are compared at what a plateau carries as described.
         self._pressure = display.finger.plateau_pressure()
         self.paths = tuple(one.path for one in self.inputs)
+        self._known: dict[bytes, Outcome] = {}
 
     def at(self, prediction: Prediction, display: Display) -> Mixture:
         """The same inputs around another working point, of a display with another actuator."""
         other = copy.copy(self)
-        other.prediction, other.display = prediction, display
+        other.prediction, other.display, other._known = prediction, display, {}
         return other
+
+    def outcome(self, point: si.DimensionlessArray, draw: Draw, free: FreeAmplitude) -> Outcome:
+        """What comes of the draw at a point of the unit cube, kept: whatever is asked of a display
+        is asked of the same points."""
+        key = point.tobytes()
+        if key not in self._known:
+            self._known[key] = outcome_of(self, draw, free(draw.display))
+        return self._known[key]
 
     def draws(self, points: si.DimensionlessArray) -> Iterator[Draw]:
         """The draws at points of the unit cube, shape (n, inputs)."""
@@ -243,6 +252,13 @@ class Mixture:
             slip=draw.slip,
             place=p.law.place,
         )
+
+
+@functools.lru_cache(maxsize=4)
+def mixture_of(display: Display, prediction: Prediction) -> Mixture:
+    """All that a display may be where it was predicted, its actuator with it where a voltage drives
+    it; kept, with what comes of its draws, for the next question of an analysis."""
+    return Mixture(display, prediction, driven=prediction.voltage is not None)
 
 
 class Outcome(NamedTuple):
@@ -354,6 +370,8 @@ class FreeAmplitude:
         return math.exp(slope * off + bend * off**2)
 
     @staticmethod
+    # Every question of an analysis asks for the same discs.
+    @functools.lru_cache(maxsize=256)
     def _per_volt(actuator: Actuator) -> float:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

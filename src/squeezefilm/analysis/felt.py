@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, outcome_of
+from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import Prediction
@@ -158,7 +158,7 @@ def _drawn(
 ) -> tuple[si.MetreArray | None, str]:
     """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
     none is, NaN where the draw is refused; None with the reason where too many are."""
-    mixture = Mixture(display, p, driven=p.voltage is not None)
+    mixture = mixture_of(display, p)
     scale = FreeAmplitude(display, p)
     found = np.full((count, len(EXPLORING_SPEEDS)), np.nan)
     points = sobol_points(mixture, count, seed)
@@ -166,7 +166,8 @@ def _drawn(
         if number % max(count // 20, 1) == 0:
             tell(f"what is felt of draw {number + 1} of {count}")
         try:
-            found[number] = _felt_of(mixture, draw, scale(draw.display), senses)
+            high = mixture.outcome(points[number], draw, scale).amplitude
+            found[number] = _felt_of(mixture, draw, high, senses)
         except SqueezefilmError:
             continue
     lost = float(np.mean(np.isnan(found[:, 0])))
@@ -175,8 +176,8 @@ def _drawn(
     return found, ""
 
 
-def _felt_of(mixture: Mixture, draw: Draw, free: si.Metre, senses: Observer) -> list[si.Metre]:
-    law, high = mixture.law(draw), outcome_of(mixture, draw, free).amplitude
+def _felt_of(mixture: Mixture, draw: Draw, high: si.Metre, senses: Observer) -> list[si.Metre]:
+    law = mixture.law(draw)
     knots = high * np.linspace(0.0, 1.0, _KNOTS) ** 2
     speeds = np.array(EXPLORING_SPEEDS)
     own, tied = (law.over_speeds(knots, speeds, one) for one in ("own", "one-gap"))

@@ -83,10 +83,11 @@ def at_best_place(
     if drive.amplitude == 0 or law.kind.film != "shared" or law.kind.limit != "own":
         return law
     found = area_map(display, mode, law, drive)
-    best = None if found is None else found.best_place
-    if found is None or best is None or np.nanmin(found.relative_friction) > 1 - 1e-9:
+    if found is None or found.relative_friction is None or found.best_place is None:
         return law
-    place = PadPlace(found.shape, *best, is_best_of_area=True)
+    if np.nanmin(found.relative_friction) > 1 - 1e-9:
+        return law
+    place = PadPlace(found.shape, *found.best_place, is_best_of_area=True)
     return dataclasses.replace(law, position=0.0, place=place)
 
 
@@ -152,7 +153,7 @@ def _met(
     at: si.IntArray,
     points: tuple[si.MetreArray, si.MetreArray],
 ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-    """What the points of pads meet at places of a grid, and their weights, both (places, points)."""
+    """What the points of pads meet at places of a grid, with weights: both (places, points)."""
     x, y = axes
     dx, dy = points if shape.along == "x" else points[::-1]
     across, along = np.unique(dx), np.unique(dy)
@@ -161,7 +162,10 @@ def _met(
         grid = (x[:, None] + across).ravel(), (y[:, None] + along).ravel()
         form = x.size, across.size, y.size, along.size
         found, there = (
-            one.reshape(form).transpose(0, 2, 1, 3).reshape(at.shape[0], -1)
+            np.asarray(one, dtype=float)
+            .reshape(form)
+            .transpose(0, 2, 1, 3)
+            .reshape(at.shape[0], -1)
             for one in (shape.between(*grid), shape.on_face(grid[0][:, None], grid[1][None, :]))
         )
         return found, there / np.sum(there, axis=1, keepdims=True)

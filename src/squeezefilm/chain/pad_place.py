@@ -20,6 +20,7 @@ from squeezefilm.plate.working_mode import WorkingMode
 # Of a pad's ridges, when their mean is taken: friction bends sharply where little moves.
 _NODES, _NODES_ACROSS_REST = 8, 24
 _NEAR_REST = 0.25
+_MOST_PADS = 64
 
 
 def place_words(place: tuple[si.Metre, si.Metre]) -> str:
@@ -83,6 +84,25 @@ class PadPlace:
         """The amplitude at the pad's centre."""
         return float(self.shape.grid(np.array([self.x]), np.array([self.y]))[0, 0])
 
+    @functools.cached_property
+    def _known(self) -> dict[tuple[float, float, float], tuple[si.FloatArray, si.FloatArray]]:
+        """What was asked of `met`."""
+        return {}
+
+    def met(
+        self, finger: Finger, contact_length: si.Metre
+    ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+        """What stands for all that the ridges of a finger meet, with shares: see `gauss_nodes`.
+
+        Kept, since of many draws some have the same pad. Raises as `ridges` does.
+        """
+        pad = finger.ridge_period, finger.ridge_angle, contact_length
+        if pad not in self._known:
+            if len(self._known) >= _MOST_PADS:
+                self._known.clear()
+            self._known[pad] = gauss_nodes(self.ridges(finger, contact_length)[1])
+        return self._known[pad]
+
     @si.checked_numbers
     def ridges(
         self, finger: Finger, contact_length: si.Metre
@@ -101,7 +121,7 @@ class PadPlace:
 def gauss_nodes(
     values: Annotated[si.DimensionlessArray, si.AtLeast(0.0)],
 ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-    """Few values, and weights of sum 1, that stand for the mean of a function over many, shape (n,).
+    """Few values, with weights of sum 1, for the mean of a function over many, shape (n,).
 
     Gauss's rule of their distribution, by Lanczos' recurrence of orthogonal polynomials (Golub &
     Welsch 1969, 10.1090/S0025-5718-69-99647-1): of 8 nodes, and so exact for polynomials up to

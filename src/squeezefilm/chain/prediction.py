@@ -114,6 +114,11 @@ class Prediction(Result):
         return self.mode.lobe if at is None else (at.x, at.y)
 
     @property
+    def place_was_asked(self) -> bool:
+        """Whether the pad is at a place on the face that somebody asked for."""
+        return self.law.place is not None and not self.law.place.is_best_of_area
+
+    @property
     def place_said(self) -> str:
         """The same for people, with the amplitude there where it is not the best antinode's."""
         at, where = self.law.place, place_words(self.place)
@@ -138,7 +143,7 @@ class Prediction(Result):
         return {
             "x_m": self.place[0],
             "y_m": self.place[1],
-            "is_best_of_area": self.law.place is not None and self.law.place.is_best_of_area,
+            "is_best_of_area": self.law.place is not None and not self.place_was_asked,
             "is_on_even_wave": self.law.place is None,
             "amplitude_m": self.amplitude_at_place,
             "said": self.place_said,

@@ -152,7 +152,7 @@ class FrictionRequest:
     normal_force: si.Newton | None = None
     surface: str | None = None
     model: FrictionModel | None = None
-    position: si.Metre = 0.0
+    position: si.Metre | None = None
     speed: si.MetrePerSecond | None = None
     place: FacePlace | None = None
     ambient_pressure: si.Pascal | None = None
@@ -295,6 +295,6 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
 
 
 def _ripple(p: Prediction) -> FrictionRipple | None:
-    if p.touch.sharing is None or p.law.place is not None:
+    if p.touch.sharing is None or p.place_was_asked:
         return None
     return p.law.ripple(p.vibration_amplitude)

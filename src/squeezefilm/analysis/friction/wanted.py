@@ -152,6 +152,7 @@ def wanted_friction(
             surface=p.surface.name,
             model=p.model,
             speed=p.speed,
+            place=None if p.law.place is None else p.place,
         )
     except UnreachableError as error:
         if strict:

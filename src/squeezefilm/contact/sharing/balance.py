@@ -107,8 +107,9 @@ def share_load_tied(
     """Plateaus tied to one mean gap u (ridge i at u + offset[i]) that carry a mean pressure (Pa).
 
     `amplitude` (m) is one-dimensional, one value for each ridge, and so are `shares`, of all the
-    ridges that each stands for (None: alike); all else that is given back is of shape (): pressures are means over all plateaus and the period, `gap_amplitude` and
-    `skin_amplitude` those of the last ridge. Raises as `share_load` does.
+    ridges that each stands for (None: alike); all else that is given back is of shape ():
+    pressures are means over all plateaus and the period, `gap_amplitude` and `skin_amplitude`
+    those of the last ridge. Raises as `share_load` does.
     """
     from squeezefilm.contact.sharing import kernel
 

@@ -231,9 +231,9 @@ def pad_friction(
 def _kinds(
     shares: si.DimensionlessArray, *columns: si.FloatArray
 ) -> tuple[si.FloatArray, si.DimensionlessArray]:
-    """What differs among points, shape (columns, kinds), and which share of the pad each kind is."""
+    """What differs among points, shape (columns, kinds), and the share of the pad of each kind."""
     kinds, at = np.unique(np.stack(columns), axis=1, return_inverse=True)
-    return kinds, np.bincount(at.ravel(), weights=shares)
+    return kinds, np.bincount(at.ravel(), weights=shares).astype(float)
 
 
 class _Tied(NamedTuple):
