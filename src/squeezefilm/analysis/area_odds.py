@@ -79,13 +79,7 @@ def area_odds(
     p = prediction
     if p.touch.sharing is None or p.vibration_amplitude == 0 or not area.of_note:
         return None
-    here = p.law.place
-    over = []
-    for place, lobe in area.of_note:
-        there = pad_place(display.actuator, p.mode, p.frequency, place)
-        same = here is not None and place == (here.x, here.y)
-        swings, shares = dataclasses.replace(p.law, place=there, position=0.0).ridge_swings
-        over.append(None if same else _Elsewhere(swings * lobe / p.vibration_amplitude, shares))
+    over = _elsewhere(display, p, area)
     mixture, free = mixture_of(display, p), FreeAmplitude(display, p)
     points = sobol_points(mixture, DRAWS, seed)
     samples = np.full((DRAWS, len(over)), np.nan)
@@ -101,6 +95,20 @@ class _Elsewhere(NamedTuple):
 
     swings: si.DimensionlessArray
     shares: si.DimensionlessArray
+
+
+def _elsewhere(display: Display, p: Prediction, area: ActiveArea) -> list[_Elsewhere | None]:
+    """The places of note of an area; None for the one where the prediction is."""
+    here = p.law.place
+    over: list[_Elsewhere | None] = []
+    for place, lobe in area.of_note:
+        if here is not None and place == (here.x, here.y):
+            over.append(None)
+            continue
+        there = pad_place(display.actuator, p.mode, p.frequency, place)
+        swings, shares = dataclasses.replace(p.law, place=there, position=0.0).ridge_swings
+        over.append(_Elsewhere(swings * lobe / p.vibration_amplitude, shares))
+    return over
 
 
 def _met(law: FrictionLaw, found: Outcome, over: list[_Elsewhere | None]) -> list[float]:

@@ -177,7 +177,7 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
         because = why_not or "no interval was computed"
         return Finding(
             "doubt",
-            f"µ′/µ is {p.relative_friction:.2f} as described {where}, by the "
+            f"µ′/µ is {p.relative_friction:.2f} as described {where} by the "
             f"model '{p.model}'. How probable it is that it lies below {asked}, is not known: "
             f"{because}.",
         )

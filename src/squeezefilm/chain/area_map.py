@@ -241,7 +241,8 @@ def _along(
     nearest = int(np.argmin(np.abs(places - lobe)))
     if low <= lobe <= high and abs(places[nearest] - lobe) > 1e-6 * (high - low):
         places = np.sort(np.append(places, lobe))
-    return places
+    # The middle of a disc to rounding.
+    return np.where(np.abs(places) < 1e-12, 0.0, places)
 
 
 def _inset(low: si.Metre, high: si.Metre, side: si.Metre) -> tuple[si.Metre, si.Metre]:

@@ -33,6 +33,7 @@ def voltage_for_friction(
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
     place: FacePlace | None = None,
+    position: si.Metre | None = None,
 ) -> tuple[si.Volt, si.Metre]:
     """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
 
@@ -53,9 +54,10 @@ def voltage_for_friction(
         normal_force=normal_force,
         model=model or DEFAULT_MODEL,
         speed=speed,
+        position=position or 0.0,
         place=pad_place(display.actuator, mode, drive_frequency, place),
     )
-    if place is not None:
+    if place is not None or position is not None:
         return _needed(mode, law, relative_friction)
     # Which place is best may change with the voltage, by little: found at the drive's own first.
     volts, per_volt = display.drive.voltage, amplitude_per_volt(mode, drive_frequency)

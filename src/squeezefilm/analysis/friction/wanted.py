@@ -153,6 +153,7 @@ def wanted_friction(
             model=p.model,
             speed=p.speed,
             place=None if p.law.place is None else p.place,
+            position=p.law.position if p.law.place is None else None,
         )
     except UnreachableError as error:
         if strict:
