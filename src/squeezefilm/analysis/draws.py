@@ -292,17 +292,24 @@ def outcome_of(
 def between_limits(
     law: FrictionLaw, draw: Draw, amplitude: si.MetreArray, known: PadFriction | None = None
 ) -> si.DimensionlessArray:
-    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it; one limit may be `known`."""
-    soft = draw.skin_compliance
-    weights: dict[Limit, float] = {"own": soft, "one-gap": 1 - soft}
-    found = np.zeros(amplitude.shape)
-    for limit, weight in weights.items():
-        if weight > 0:
-            if known is None or known.limit != limit:
-                found += weight * law.sharing(amplitude, limit).relative_friction
-            else:
-                found += weight * known.relative_friction
-    return found
+    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it; one limit may be `known`.
+
+    At a place what a stiff pad differs by from ridges that sink each by themselves is taken from an
+    even wave of the same amplitude: on the solved shape the one ridge that moves most would press
+    a pad at one mean gap through, and so refuse draws for what no real skin is.
+    """
+
+    def limit(of: FrictionLaw, name: Limit) -> si.DimensionlessArray:
+        if of is law and known is not None and known.limit == name:
+            return known.relative_friction
+        return of.sharing(amplitude, name).relative_friction
+
+    own, soft = limit(law, "own"), draw.skin_compliance
+    if soft == 1:
+        return own
+    even = law.on_even_wave
+    alike = own if even is law else limit(even, "own")
+    return np.clip(own + (1 - soft) * (limit(even, "one-gap") - alike), 0.0, 1.0)
 
 
 # How far the discs are from the described one that say how each number moves the amplitude.

@@ -180,8 +180,11 @@ def _felt_of(mixture: Mixture, draw: Draw, high: si.Metre, senses: Observer) -> 
     law = mixture.law(draw)
     knots = high * np.linspace(0.0, 1.0, _KNOTS) ** 2
     speeds = np.array(EXPLORING_SPEEDS)
-    own, tied = (law.over_speeds(knots, speeds, one) for one in ("own", "one-gap"))
-    friction = draw.skin_compliance * own + (1 - draw.skin_compliance) * tied
+    own, even = law.over_speeds(knots, speeds, "own"), law.on_even_wave
+    # As `between_limits` has it.
+    alike = own if even is law else even.over_speeds(knots, speeds, "own")
+    stiff = even.over_speeds(knots, speeds, "one-gap") - alike
+    friction = np.clip(own + (1 - draw.skin_compliance) * stiff, 0.0, 1.0)
     mode = mixture.mode(draw)
     tau = float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
     base = law.friction_coefficient * draw.normal_force

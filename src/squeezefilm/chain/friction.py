@@ -53,6 +53,11 @@ class FrictionLaw(PadLaw):
             return replace(self, model=model)
         return replace(self, model=model, position=0.0, place=None)
 
+    @property
+    def on_even_wave(self) -> FrictionLaw:
+        """The law over an even wave: itself unless it has a place."""
+        return self if self.place is None else replace(self, place=None)
+
     @si.checked_numbers
     def gap(self, amplitude: si.MetreLike) -> PaperGap:
         """The gap at an amplitude (m), antinode and groove at the centre of the contact."""

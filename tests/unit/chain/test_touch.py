@@ -19,7 +19,11 @@ from squeezefilm.plate.loaded_mode import LoadedMode
 
 F, Q = 30e3, 60.0
 LAW: Any = SimpleNamespace(
-    frequency=1.001 * F, model="partial-levitation", place=None, mean_square=0.5
+    frequency=1.001 * F,
+    model="partial-levitation",
+    place=None,
+    mean_square_even=0.7,
+    mean_square=0.5,
 )
 
 
