@@ -22,7 +22,7 @@ LAW: Any = SimpleNamespace(
     frequency=1.001 * F,
     model="partial-levitation",
     place=None,
-    mean_square_even=0.7,
+    mean_square_even=0.5,
     mean_square=0.5,
 )
 
