@@ -204,7 +204,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.ring.stator.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
     "plate.ring.stator.fit_stator": {"degree": 3},
     "chain.prediction.predict": {"theory": "timoshenko", "model": "paper2008", "place": None},
-    "chain.prediction.voltage_for_friction": {
+    "chain.wanted_voltage.voltage_for_friction": {
         "theory": "timoshenko",
         "model": "paper2008",
         "place": None,

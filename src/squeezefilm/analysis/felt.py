@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, outcome_of
+from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import Prediction
@@ -172,7 +172,7 @@ def _drawn(
 ) -> tuple[si.MetreArray | None, str]:
     """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
     none is, NaN where the draw is refused; None with the reason where too many are."""
-    mixture = Mixture(display, p, driven=p.voltage is not None)
+    mixture = mixture_of(display, p)
     scale = FreeAmplitude(display, p)
     found = np.full((count, len(speeds)), np.nan)
     points = sobol_points(mixture, count, seed)
@@ -180,7 +180,8 @@ def _drawn(
         if number % max(count // 20, 1) == 0:
             tell(f"what is felt of draw {number + 1} of {count}")
         try:
-            found[number] = _felt_of(mixture, draw, scale(draw.display), senses, speeds)
+            high = mixture.outcome(points[number], draw, scale).amplitude
+            found[number] = _felt_of(mixture, draw, high, senses, speeds)
         except SqueezefilmError:
             continue
     lost = float(np.mean(np.isnan(found[:, 0])))
@@ -192,14 +193,17 @@ def _drawn(
 def _felt_of(
     mixture: Mixture,
     draw: Draw,
-    free: si.Metre,
+    high: si.Metre,
     senses: Observer,
     speeds: tuple[si.MetrePerSecond, ...],
 ) -> list[si.Metre]:
-    law, high = mixture.law(draw), outcome_of(mixture, draw, free).amplitude
+    law, every = mixture.law(draw), np.array(speeds)
     knots = high * np.linspace(0.0, 1.0, _KNOTS) ** 2
-    own, tied = (law.over_speeds(knots, np.array(speeds), one) for one in ("own", "one-gap"))
-    friction = draw.skin_compliance * own + (1 - draw.skin_compliance) * tied
+    own, even = law.over_speeds(knots, every, "own"), law.on_even_wave
+    # As `between_limits` has it.
+    alike = own if even is law else even.over_speeds(knots, every, "own")
+    stiff = even.over_speeds(knots, every, "one-gap") - alike
+    friction = np.clip(own + (1 - draw.skin_compliance) * stiff, 0.0, 1.0)
     mode = mixture.mode(draw)
     tau = float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
     base = law.friction_coefficient * draw.normal_force

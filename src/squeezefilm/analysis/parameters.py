@@ -232,6 +232,8 @@ def _place(whole: Any, path: str) -> tuple[Any, str]:
 def _inside(owner: Any, part: str, path: str) -> Any:
     if part == "*" and isinstance(owner, tuple) and owner:
         return owner[0]
+    if part in getattr(owner, "__dataclass_fields__", ()):
+        return getattr(owner, part)
     known = (
         [str(number) for number in range(len(owner))]
         if isinstance(owner, tuple)

@@ -94,7 +94,7 @@ OnPlace = Annotated[
     typer.Option(
         "--place",
         help="The finger's centre on the face, like \"30 mm, 20 mm\" (x, y from a plate's corner, "
-        "a disc's middle, or along a stator's track); the best antinode if not given.",
+        "a disc's middle, or along a stator's track); the best of the active area if not given.",
     ),
 ]
 Model = Annotated[

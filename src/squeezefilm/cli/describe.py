@@ -165,8 +165,10 @@ class FrictionOptions:
     surface: OnSurface = None
     model: Model = None
     position: Annotated[
-        str, In("m"), typer.Option(help="The pad's centre from an antinode, along the wave.")
-    ] = "0 mm"
+        str | None,
+        In("m"),
+        typer.Option(help="The pad's centre from an antinode, along an even wave."),
+    ] = None
     speed: Speed = None
     place: OnPlace = None
     ambient_pressure: Annotated[

@@ -8,7 +8,8 @@ from tests.unit.plausibility.described import changed
 
 from squeezefilm import presets
 from squeezefilm.chain import chosen_mode
-from squeezefilm.chain.prediction import predict, voltage_for_friction
+from squeezefilm.chain.prediction import predict
+from squeezefilm.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError
 from squeezefilm.plate.layout import GlueLayer

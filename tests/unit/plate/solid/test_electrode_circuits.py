@@ -49,7 +49,8 @@ def value_with(one: CoarseModes, *columns: tuple[float, float]) -> float:
     """ω² with these combinations of electrodes open, found afresh by iteration."""
     slabs = one.solved.slabs
     solve = with_open_electrodes(slabs, one.factor.solve, np.array(columns).T)
-    return float(modes_near(slabs, solve, one.factor.shift, None, one.vectors, tolerance=1e-10).values[0])
+    shift = one.factor.shift
+    return float(modes_near(slabs, solve, shift, None, one.vectors, tolerance=1e-10).values[0])
 
 
 def shunted(one: CoarseModes) -> complex:
