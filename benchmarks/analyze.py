@@ -1,9 +1,10 @@
 """The whole verb `analyze` with its report: what an engineer waits for, and what takes the time.
 
 Peer: the same answer without report and interval, `predict` alone, in the same process. Times are
-those of the processor, one thread, what was compiled loaded from the cache; the verb is run once
-before it is measured. "asked again" finds the films that the run before it solved and kept on disk,
-"first" solves them. A step takes all until the next one is told.
+those of the processor, one thread, of the process that computes (another draws the figures
+meanwhile), what was compiled loaded from the cache; the verb is run once before it is measured.
+"asked again" finds the films that the run before it solved and kept on disk, "first" solves them.
+A step takes all until the next one is told.
 Run: python benchmarks/analyze.py [DISPLAY …]
 """
 
@@ -31,17 +32,20 @@ took, last = {}, ["imports", 0.0]
 def tell(text):
     name, began = last
     now = time.process_time()
-    name = "figures" if name.startswith("figure") else name
+    name = "what figures show" if name.startswith("figure") else name
     name = "solve" if name.startswith(("coarse", "fine", "reducing")) else name
     took[name] = took.get(name, 0.0) + now - began
     last[:] = [text, now]
 from pathlib import Path
 from squeezefilm.analysis.analyze import analyze
 from squeezefilm.display import load_display
+from squeezefilm.report.display.figures import drawing, prepare
 from squeezefilm.report.display.page import write_analysis
-found = analyze(load_display(sys.argv[1]), progress=tell)
-tell("summary")
-write_analysis(found, Path(sys.argv[2]), tell)
+from squeezefilm.report.kit.drawing_process import drawing_process
+with drawing_process(True, prepare, drawing) as aside:
+    found = analyze(load_display(sys.argv[1]), progress=tell)
+    tell("summary")
+    write_analysis(found, Path(sys.argv[2]), tell, aside)
 tell("end")
 print(json.dumps(took))
 """

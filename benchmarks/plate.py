@@ -103,7 +103,7 @@ def _working_modes() -> None:
     product, _, unit = best(lambda: float((matrix @ matrix)[0, 0]), 5)
     assert np.isfinite(product)
     for name in ("biet2008-plate", "basdogan2020-glass", "touchpad-glass", "large sheet"):
-        plate = _sheet() if name == "large sheet" else load_display(name).actuator
+        plate = large_sheet() if name == "large sheet" else load_display(name).actuator
         assert isinstance(plate, RectangularPlate)
         clock = time.process_time()
         # The last plates are kept; each is asked for once here.
@@ -116,7 +116,7 @@ def _working_modes() -> None:
         )
 
 
-def _sheet() -> RectangularPlate:
+def large_sheet() -> RectangularPlate:
     """120 x 80 x 0.7 mm of glass with the touch pad's strips along its long edges."""
     pad = load_display("touchpad-glass").actuator
     assert isinstance(pad, RectangularPlate)

@@ -1,6 +1,6 @@
 """# Friction over the whole plate
 
-The finger does not stay at the best antinode. Amplitude and friction at every place where its
+The finger does not stay at the best place. Amplitude and friction at every place where its
 contact lies on the plate, the best and the worst of them, and on which share of the area the
 friction falls below 0.7 of what it was.
 """

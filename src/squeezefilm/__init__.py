@@ -23,7 +23,7 @@ _NAMES = {
     "replaced": "analysis.parameters",
     # What a display does
     "predict": "chain.prediction",
-    "voltage_for_friction": "chain.prediction",
+    "voltage_for_friction": "chain.wanted_voltage",
     "analyze": "analysis.analyze",
     "analyze_friction": "analysis.friction.command",
     "solve_plate": "analysis.plate.command",

@@ -96,7 +96,7 @@ if TYPE_CHECKING:
         normal_force: Newton | str | None = ...,
         surface: str | None = ...,
         vibration_amplitude: Metre | str | None = ...,
-        position: Metre | str = ...,
+        position: Metre | str | None = ...,
         theory: PlateTheory | None = ...,
         model: FrictionModel | None = ...,
         speed: MetrePerSecond | str | None = ...,
@@ -116,6 +116,7 @@ if TYPE_CHECKING:
         model: FrictionModel | None = ...,
         speed: MetrePerSecond | str | None = ...,
         place: FacePlace | str | Path | None = ...,
+        position: Metre | str | None = ...,
     ) -> tuple[Volt, Metre]:
         """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m)."""
     def analyze(
@@ -147,7 +148,7 @@ if TYPE_CHECKING:
         normal_force: Newton | str | None = ...,
         surface: str | None = ...,
         model: FrictionModel | None = ...,
-        position: Metre | str = ...,
+        position: Metre | str | None = ...,
         speed: MetrePerSecond | str | None = ...,
         place: FacePlace | str | Path | None = ...,
         ambient_pressure: Pascal | str | None = ...,

@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 import warnings
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -245,6 +245,36 @@ class Piezoceramic:
                 ("charge_coefficient", self.charge_coefficient, full.charge_coefficient_31, " m/V"),
             ):
                 _require_agreement(name, own, derived, "the full constants, which give", unit)
+
+    @si.checked_numbers
+    def scaled(
+        self,
+        stiffness: Annotated[si.Dimensionless, si.Above(0.0)] = 1.0,
+        charge: Annotated[si.Dimensionless, si.Above(0.0)] = 1.0,
+    ) -> Piezoceramic:
+        """The ceramic of another batch: all its stiffnesses, and all its d, by a factor each.
+
+        What was stated of e and of free permittivities in the full constants belongs to the other
+        ceramic, and follows anew; an effective e31 goes with d. Clamped permittivities stay. Raises
+        `InputError` for a factor that is not above 0, and what the dataclasses raise.
+        """
+        if stiffness == charge == 1:
+            return self
+        full, e31 = self.constants, self.stress_coefficient
+        if full is not None:
+            pairs = {f"compliance_{pair}": 1 / stiffness for pair in (11, 12, 13, 33, 44, 66)}
+            pairs |= {f"charge_coefficient_{pair}": charge for pair in (31, 33, 15)}
+            changed: dict[str, Any] = {name: by * getattr(full, name) for name, by in pairs.items()}
+            changed |= {f"free_permittivity_{axis}": None for axis in (11, 33)}
+            changed |= {f"stress_coefficient_{pair}": None for pair in (31, 33, 15)}
+            full = dataclasses.replace(full, **changed)
+        return dataclasses.replace(
+            self,
+            in_plane_stiffness=stiffness * self.in_plane_stiffness,
+            charge_coefficient=charge * self.charge_coefficient,
+            stress_coefficient=None if e31 is None else charge * e31,
+            constants=full,
+        )
 
     @property
     def compliance_11(self) -> si.SquareMetrePerNewton:

@@ -11,7 +11,9 @@ from squeezefilm import presets
 
 SHARED_KEYS = {
     "display", "mode", "frequency_Hz", "frequency_error_Hz", "amplitude_m_per_V",
-    "centreline_amplitude_m_per_V", "half_wavelength_m", "quality_factor", "coupling", "modes",
+    "centreline_amplitude_m_per_V", "half_wavelength_m", "quality_factor", "modes",
+    "coupling_coefficient", "coupling_coefficient_error", "parallel_resonance_frequency_Hz",
+    "parallel_resonance_frequency_error_Hz",
     "voltage_V", "current_A", "apparent_power_VA", "input_power_W", "equivalent_circuit",
     "sound_pressure_level_dB", "sound_guidance", "model", "status", "provenance",
 }  # fmt: skip

@@ -15,10 +15,7 @@ if TYPE_CHECKING:
 # One worker: the page is made once.
 pytestmark = [pytest.mark.slow, pytest.mark.chromium]
 
-FIGURES = (
-    "layout", "mode", "response", "pressure", "friction", "films", "wavelength", "texture",
-    "fidelity",
-)  # fmt: skip
+FIGURES = ("layout", "mode", "area", "response", "band", "chain", "films", "texture", "fidelity")
 
 
 @pytest.fixture(

@@ -141,6 +141,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "charge_coefficient": -247e-12,
     },
     "plate.ring.modes.bending_mode": {"diameters": 0, "circles": 1},
+    "plate.ring.modes.bending_frequency": {"diameters": 2, "degree": 3},
     "plate.ring.modes.annular_modes": {"harmonic": 1, "degree": 3, "count": 1},
     "plate.ring.modes.annular_admittance": {"harmonics": (0,), "degree": 3, "modes": 2},
     "plate.ring.pair.pair_motion": {"split": 0.5, "axis": 0.3},
@@ -203,7 +204,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.ring.stator.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
     "plate.ring.stator.fit_stator": {"degree": 3},
     "chain.prediction.predict": {"theory": "timoshenko", "model": "paper2008", "place": None},
-    "chain.prediction.voltage_for_friction": {
+    "chain.wanted_voltage.voltage_for_friction": {
         "theory": "timoshenko",
         "model": "paper2008",
         "place": None,

@@ -36,7 +36,7 @@ NOT_CALLED = {
     "a record of what was computed, which only the package makes": """
     plate.circuit.DrivenResponse.current plate.circuit.DrivenResponse.apparent_power
     plate.circuit.DrivenResponse.input_power plate.electronics.Amplifier
-    plate.electronics.ElectricalLoad
+    plate.electronics.ElectricalLoad plate.electronics.RingAdmittance
     film.periodic.solution.Asked film.periodic.solution.Found
     contact.sharing.film_load.FilmLoad contact.sharing.pad.PadFriction
     contact.sharing.balance.LoadSharing
@@ -157,6 +157,7 @@ NOT_CALLED = {
     """,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
     quantities.require.require quantities.require.require_valid quantities.units.format_quantity
+    quantities.units.typed_quantity
     """,
 }
 """The public calls for which no good call is made here, by the reason. A new one must be named."""

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis.textures import (
-    compensated_grating,
     driven_envelope,
     texture_survival,
 )
@@ -30,21 +29,10 @@ def plate() -> Prediction:
     return predict(load_display("biet2008-plate"))
 
 
-def test_the_paper_plate_doubles_the_speed_of_its_finest_grating(plate: Prediction) -> None:
+def test_the_envelope_is_that_of_the_free_plate_at_its_voltage(plate: Prediction) -> None:
     envelope = driven_envelope(plate)
     assert envelope.rise_time_constant == pytest.approx(0.569e-3, abs=1e-6)
     assert envelope.amplitude_limit == pytest.approx(plate.touch.free_amplitude, rel=1e-6)
-    grating = compensated_grating(envelope)
-    bare, own, inverted = grating.swing_kept
-    # At twice the speed at which nine tenths were left without compensation.
-    assert grating.speed == pytest.approx(0.239, abs=1e-3)
-    assert inverted > 0.9
-    assert own < 0.8
-    assert bare == pytest.approx(math.tanh(math.atanh(0.9) / 2), abs=1e-3)
-    for drive in grating.drives:
-        volts = drive.voltage(plate.mode.amplitude_per_volt)
-        assert np.max(np.abs(volts)) <= 15.0 * (1 + 1e-12)
-    assert np.min(grating.drives[1].command) == 0.0
 
 
 @pytest.mark.parametrize("envelope", [PLATE, STATOR], ids=["plate", "stator"])
@@ -77,24 +65,6 @@ def test_without_a_voltage_there_is_no_envelope() -> None:
 def test_levels_outside_the_limits_are_refused(level: float) -> None:
     with pytest.raises(InputError, match="level"):
         texture_survival("tested", PLATE, level)
-    with pytest.raises(InputError, match="level"):
-        compensated_grating(PLATE, level=level)
-
-
-@pytest.mark.parametrize("speed", [0.1, 0.276, 2.0])
-def test_a_grating_is_played_until_it_has_settled(speed: float) -> None:
-    grating = compensated_grating(PLATE, 0.4e-3, speed)
-    period = grating.spatial_period / speed
-    step = grating.time[1] - grating.time[0]
-    per_period = round(period / step)
-    assert period / step == pytest.approx(per_period)
-    # Whole periods, and at least twenty time constants of them.
-    assert grating.time.size % per_period == 0
-    assert grating.time.size * step >= 20 * PLATE.fall_time_constant
-    for drive, kept in zip(grating.drives, grating.swing_kept, strict=True):
-        last, before = drive.amplitude[-per_period:], drive.amplitude[-2 * per_period : -per_period]
-        assert np.allclose(last, before, rtol=1e-6, atol=1e-9 * PLATE.amplitude_limit)
-        assert kept == pytest.approx(np.ptp(last) / (0.8 * PLATE.amplitude_limit), rel=1e-6)
 
 
 def test_drive_laws_do_what_their_names_say() -> None:

@@ -74,7 +74,7 @@ def test_fields_are_checked_by_name_and_none_is_left_alone() -> None:
         (
             "contact_length",
             '"1000000 cm"',
-            "10 km cannot be used: it must be at least 1 um and at most 1 m",
+            "10 km cannot be used: it must be at least 1 µm and at most 1 m",
         ),
         ("contact_length", '"99 cm"', "ridges under a contact = 2 828"),
         ("thickness", '"1e308 m"', "must be at least 10 nm and at most 1 m"),
@@ -112,7 +112,7 @@ def test_a_long_beam_has_its_mode_of_sixty_lines_and_not_another() -> None:
     "motion", [Stroke(1e-9, 0.04), Stroke(1e-6, 10.0, 1000), MinimumJerkStroke(0.04, 1e9, 10**6)]
 )
 def test_a_motion_without_an_end_says_how_long_it_may_be(motion: Stroke) -> None:
-    with pytest.raises(InputError, match=r"steps of a rendered stroke = .* from 104.2 us to") as e:
+    with pytest.raises(InputError, match=r"steps of a rendered stroke = .* from 104.2 µs to") as e:
         FingerMotion.of(motion, 19.2e3)
     assert "make it shorter or faster" in str(e.value)
 
@@ -164,5 +164,5 @@ def test_every_preset_design_has_no_more_trials_than_it_says() -> None:
 
 def test_limits_are_shown_with_units_and_counts_in_full() -> None:
     limit = HardLimit("a size", 1e-6, 2.0, "a reason", Unit("m"))
-    assert limit.range == "at least 1 um and at most 2 m"
+    assert limit.range == "at least 1 µm and at most 2 m"
     assert hard.RENDER_STEPS.range == "at least 2 and at most 3 000 000"

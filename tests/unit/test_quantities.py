@@ -94,7 +94,7 @@ def test_unit_is_found_in_annotations() -> None:
 
 
 def test_require_names_quantity_value_and_bound() -> None:
-    with pytest.raises(InputError, match=r"gap = -2 um cannot be used: .* above 0 m") as caught:
+    with pytest.raises(InputError, match=r"gap = -2 µm cannot be used: .* above 0 m") as caught:
         require("gap", -2e-6, M, above=0)
     assert caught.value.quantity == "gap"
     with pytest.raises(InputError, match="nan"):

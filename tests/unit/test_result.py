@@ -56,7 +56,7 @@ MEASURED = Measured("<a>", 2e-3, Part(5e-6), np.array([0.0, 1e-3]))
 def test_a_repr_has_units_and_goes_inside_and_leaves_out_what_is_not_there() -> None:
     assert (
         repr(MEASURED)
-        == "<Measured name=<a>, width=2 mm, part.depth=5 um, ends=0 m to 1 mm, twice=2>"
+        == "<Measured name=<a>, width=2 mm, part.depth=5 µm, ends=0 m to 1 mm, twice=2>"
     )
     assert "part" not in repr(dataclasses.replace(MEASURED, part=None))
 

@@ -25,6 +25,7 @@ from squeezefilm.plate.ring.materials import (
 from squeezefilm.plate.ring.modes import (
     annular_admittance,
     annular_modes,
+    bending_frequency,
     bending_mode,
     clamped_capacitance,
 )
@@ -215,6 +216,7 @@ def test_thin_piezoelectric_disc_in_its_radial_mode() -> None:
 def test_admittance_by_modes_is_the_direct_solution(stator: AnnularSection) -> None:
     drive, q = alternate_sectors(8, math.pi / 9), 200.0
     mode = bending_mode(stator, 9, degree=4)
+    assert bending_frequency(stator, 9, degree=4) == pytest.approx(mode.frequency, rel=1e-9)
     assert mode.quality_factor == pytest.approx(q, rel=1e-6)
     frequency = mode.frequency * np.array([0.9, 0.999, 1.0, 1.002, 1.1])
     got = annular_admittance(stator, drive, frequency, harmonics=[9], quality_factor=q, degree=4)
@@ -298,6 +300,7 @@ def test_bad_rings_are_refused() -> None:
 @pytest.mark.slow
 def test_stator_fitted_to_what_the_paper_gives() -> None:
     fit = fit_stator(degree=4)
+    assert fit.mode.frequency == pytest.approx(40.5e3, rel=1e-6)
     assert fit.mode.label == "B(0,9)"
     assert fit.mode.frequency == pytest.approx(40.5e3, rel=1e-6)
     assert fit.section.mean_diameter == pytest.approx(53.57e-3, rel=1e-4)

@@ -11,6 +11,7 @@ the first is judged there.
 """
 
 import functools
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -18,10 +19,10 @@ import pytest
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.elements.krylov import modes_near, prolonged
 from squeezefilm.plate.elements.slab_factor import SlabFactor
-from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.solid.coarse_modes import coarse_modes
+from squeezefilm.plate.solid.electrode_circuits import open_values
 from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.refined_modes import extrapolated, refined_modes
+from squeezefilm.plate.solid.refined_modes import effective_coupling, extrapolated, refined_modes
 from squeezefilm.plate.solid.symmetry import all_classes
 
 from .random_plates import (
@@ -39,10 +40,20 @@ PLATES = tuple((False, seed) for seed in range(1900, 1920)) + tuple(
 QUICK = ((False, 1801), (False, 1802), (True, 1801), (True, 1803))
 
 
+class Judged(NamedTuple):
+    """A value, its estimated error and the refined value, after so many refinements."""
+
+    level: int
+    of: str
+    value: float
+    error: float
+    refined: float
+
+
 @functools.cache
-def judged(glass: bool, seed: int, levels: int = 2) -> tuple[tuple[int, float, float, float], ...]:
-    """(level, frequency, estimated error, refined frequency) of two modes of one class of a plate,
-    for the first refinement and, of `levels` 2 and no sheet of glass, for the second."""
+def judged(glass: bool, seed: int, levels: int = 2) -> tuple[Judged, ...]:
+    """Frequency, parallel resonance and coupling of two modes of one class of a plate, for the
+    first refinement and, of `levels` 2 and no sheet of glass, for the second."""
     plate = affordable_glass(seed) if glass else affordable_plate(seed)
     classes = all_classes(plate)
     parity = classes[seed % len(classes)]
@@ -55,9 +66,8 @@ def judged(glass: bool, seed: int, levels: int = 2) -> tuple[tuple[int, float, f
             for t in (0.9, 1e-9)[: 1 if glass else levels]
         ]
         last = pieces[-1]
-        slabs = Slabs(
-            plate_model(plate, highest, REFINED_GLASS if glass else REFINED, parity).model
-        )
+        finest = plate_model(plate, highest, REFINED_GLASS if glass else REFINED, parity)
+        slabs = finest.slabs
         shift = float(np.mean(last.values)) * (1 - 2e-3)
 
         def wanted(values: np.ndarray) -> np.ndarray:
@@ -69,27 +79,34 @@ def judged(glass: bool, seed: int, levels: int = 2) -> tuple[tuple[int, float, f
                 )
             return np.array(picked)
 
+        factor = SlabFactor(slabs, shift)
         pairs = modes_near(
-            slabs, SlabFactor(slabs, shift).solve, shift, wanted,
+            slabs, factor.solve, shift, wanted,
             prolonged(last.solved.slabs, slabs, last.vectors), tolerance=1e-8,
         )  # fmt: skip
-    refined = np.sqrt(pairs.values) / (2 * np.pi)
+        opened = open_values(finest, factor, *pairs)
     rows = []
     for level, piece in enumerate(pieces):
         assert piece.level == level
-        frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
-        rows += [
-            (level, float(f), float(e), float(r))
-            for f, e, r in zip(frequency, error, refined, strict=True)
-        ]
+        short = extrapolated(piece.coarse_values, piece.values, piece.level)
+        parallel = extrapolated(piece.coarse_open_values, piece.open_values, piece.level)
+        for of, (value, error), refined in (
+            ("frequency", short, np.sqrt(pairs.values) / (2 * np.pi)),
+            ("parallel resonance", parallel, np.sqrt(opened) / (2 * np.pi)),
+            ("coupling", effective_coupling(piece), np.sqrt(1 - pairs.values / opened)),
+        ):
+            rows += [
+                Judged(level, of, float(v), float(e), float(r))
+                for v, e, r in zip(value, error, refined, strict=True)
+            ]
     return tuple(rows)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("glass", "seed"), QUICK)
 def test_estimates_of_quick_random_plates_hold(glass: bool, seed: int) -> None:
-    for _, frequency, error, refined in judged(glass, seed, levels=1):
-        assert abs(frequency - refined) <= error
+    for row in judged(glass, seed, levels=1):
+        assert abs(row.value - row.refined) <= row.error, row
 
 
 # Each of them apart, so that a slow one hides no other.
@@ -97,15 +114,16 @@ def test_estimates_of_quick_random_plates_hold(glass: bool, seed: int) -> None:
 @pytest.mark.parametrize(("glass", "seed"), PLATES)
 def test_the_estimate_of_a_random_plate_holds(glass: bool, seed: int) -> None:
     rows = judged(glass, seed)
-    assert len(rows) == (2 if glass else 4)
-    for _, frequency, error, refined in rows:
-        assert abs(frequency - refined) <= error
+    assert len(rows) == (6 if glass else 12)
+    for row in rows:
+        assert abs(row.value - row.refined) <= row.error, row
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("level", [0, 1])
 def test_the_estimate_is_sharp(level: int) -> None:
-    rows = [row for plate in PLATES for row in judged(*plate) if row[0] == level]
+    every = [row for plate in PLATES for row in judged(*plate) if row.level == level]
+    rows = [row for row in every if row.of == "frequency"]
     assert len(rows) == (60, 40)[level]
-    ratio = [error / max(abs(f - refined), 1e-9) for _, f, error, refined in rows]
+    ratio = [row.error / max(abs(row.value - row.refined), 1e-9) for row in rows]
     assert np.median(ratio) < 6

@@ -6,17 +6,21 @@ import dataclasses
 import pytest
 
 from squeezefilm.analysis.parameters import with_values
+from squeezefilm.analysis.plate.coarse_shift import CoarseShifts
 from squeezefilm.analysis.plate.sensitivity import (
     SensitivityTable,
     plate_sensitivity,
     usual_changes,
     with_ceramic_stiffness,
+    with_glue,
     working_point,
 )
 from squeezefilm.display import load_display
+from squeezefilm.errors import OutOfRangeError
 from squeezefilm.materials import ElasticMaterial
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.working_mode import working_mode
 
 
 def _paper() -> RectangularPlate:
@@ -120,3 +124,41 @@ def test_a_ceramic_with_all_constants_gets_softer_too() -> None:
     )
     names = {change.name for change in usual_changes(given)}
     assert "ceramic data set" not in names
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["biet2008-plate", "touchpad-glass"])
+def test_another_glue_on_the_coarse_mesh_is_another_glue_solved(name: str) -> None:
+    """What is solved on two meshes shifts alike, within what `CoarseShifts.to` states."""
+    plate = load_display(name).actuator
+    assert isinstance(plate, RectangularPlate)
+    if plate.glue is None:
+        plate = with_glue(plate, 20e-6, 3e9)
+    assert plate.glue is not None
+    mode = working_mode(plate)
+    shifts = CoarseShifts(plate, mode)
+    for path in ("glue.thickness", "glue.young_modulus"):
+        nominal = getattr(plate.glue, path.partition(".")[2])
+        for share in (0.55, 1.45):
+            changed = with_values(plate, {path: share * nominal})
+            there = working_mode(changed)
+            found = shifts.to(changed)
+            f = there.resonance_frequency / mode.resonance_frequency - 1
+            a = there.amplitude_per_volt / mode.amplitude_per_volt - 1
+            assert found.frequency == pytest.approx(f, rel=0.08), (path, share)
+            assert found.amplitude == pytest.approx(a, rel=0.03), (path, share)
+
+
+def test_the_same_glue_shifts_nothing_and_one_out_of_reach_is_refused() -> None:
+    aside = CeramicPatch(4e-3, 0.0, 16e-3, 20e-3, 0.5e-3)
+    plate = with_glue(dataclasses.replace(_small(), patches=(aside,)), 20e-6, 3e9)
+    mode = working_mode(plate)
+    shifts = CoarseShifts(plate, mode)
+    assert shifts.to(plate) == (0.0, 0.0)
+    # Without a bond to speak of the ceramic does not stiffen the plate.
+    with pytest.raises(OutOfRangeError, match="--sensitivities solved"):
+        shifts.to(with_glue(plate, 200e-6, 3e7))
+    # The ceramic in the middle does not drive a mode that the middle's mirror turns over.
+    still = with_glue(_small(), 20e-6, 3e9)
+    with pytest.raises(OutOfRangeError, match="does not move this mode"):
+        CoarseShifts(still, working_mode(still)).to(still)

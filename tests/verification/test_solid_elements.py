@@ -93,6 +93,20 @@ def test_patch_test_of_constant_strain(trunk: float) -> None:
     assert np.max(np.abs(force[np.concatenate(inside)])) < 1e-9 * np.max(np.abs(force))
 
 
+def test_operators_are_the_same_for_many_vectors_at_once_as_for_each() -> None:
+    x = LineMesh((0.0, 0.3, 0.35, 0.65, 1.0), (3, 2, 3, 3))
+    slabs = Slabs(solid(x, line(0.6, 2, 3), line(0.3, 1, 2), STEEL))
+    many = np.random.default_rng(2).standard_normal((slabs.unknowns, 70))
+    for times in (slabs.mass_times, slabs.stiffness_times):
+        together = times(many)
+        each = np.concatenate([times(many[:, k : k + 1]) for k in range(70)], axis=1)
+        assert together == pytest.approx(each, rel=1e-12, abs=1e-12 * np.max(np.abs(each)))
+        # Symmetric, as an operator assembled by parts must be.
+        assert many.T @ together == pytest.approx(
+            together.T @ many, rel=1e-9, abs=1e-12 * np.max(np.abs(together))
+        )
+
+
 def test_rigid_motion_costs_nothing_and_there_are_six_of_them() -> None:
     slabs = Slabs(solid(line(0.1, 3, 3), line(0.04, 1, 5), line(0.005, 1, 3), STEEL))
     scale = np.max(np.abs(slabs.stiffness_times(linear_field(slabs, np.eye(3)))))

@@ -15,13 +15,9 @@ from squeezefilm.analysis.curves import (
     FrequencyResponse,
     FrictionCurve,
     ModelCurve,
-    PressureProfile,
-    WavelengthCurve,
     frequency_response,
     friction_curve,
     model_curves,
-    pressure_profiles,
-    wavelength_curves,
 )
 from squeezefilm.analysis.ears import EarExposure, ear_exposure
 from squeezefilm.analysis.felt import DRAWS as FELT_DRAWS
@@ -36,10 +32,9 @@ from squeezefilm.analysis.sensitivities import (
     display_sensitivities,
 )
 from squeezefilm.analysis.textures import (
-    CompensatedGrating,
     TextureSurvival,
     along_a_stroke,
-    through_the_resonator,
+    survival_by_drive,
     what_survives,
 )
 from squeezefilm.analysis.uncertainty import (
@@ -175,19 +170,9 @@ class Analysis(Result):
         return load_of_mode(self.display.actuator, p.mode, p.voltage, p.frequency)
 
     @functools.cached_property
-    def pressure(self) -> tuple[PressureProfile, ...]:
-        """The mean pressure along the contact, by the paper's asymptote and solved."""
-        return pressure_profiles(self.prediction)
-
-    @functools.cached_property
     def model_curves(self) -> tuple[ModelCurve, ...]:
         """Friction against amplitude by every model."""
         return model_curves(self.prediction)
-
-    @functools.cached_property
-    def wavelength_curves(self) -> tuple[WavelengthCurve, ...]:
-        """Friction against amplitude at the paper's half wavelengths (its Fig 11)."""
-        return wavelength_curves(self.prediction)
 
     @functools.cached_property
     def film_models(self) -> FilmComparison | None:
@@ -212,18 +197,9 @@ class Analysis(Result):
         return along_a_stroke(self.prediction, self.envelope_time_constant)
 
     @functools.cached_property
-    def _compensation(self) -> tuple[CompensatedGrating | None, TextureSurvival | None]:
-        return through_the_resonator(self.display, self.prediction)
-
-    @property
-    def compensated(self) -> CompensatedGrating | None:
-        """A fine grating through the resonator; None where no voltage makes an amplitude."""
-        return self._compensation[0]
-
-    @property
     def survival(self) -> TextureSurvival | None:
         """Which grating survives at which speed; None where no voltage makes an amplitude."""
-        return self._compensation[1]
+        return survival_by_drive(self.display, self.prediction)
 
     def finest_period(self) -> dict[str, float]:
         """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""

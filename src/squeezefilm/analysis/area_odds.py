@@ -1,9 +1,8 @@
 """How probable a friction is at the best place of the active area, in its middle and at the worst.
 
-A draw of all that is uncertain is asked for the friction of one ridge against amplitude, and a pad
-meets its mean over what the ridges move at the place. Which place is which, and what a finger there
-leaves of the amplitude beside one at the best antinode, is taken from the display as described; so
-is what the ridges of a stiff pad take from each other, from the best antinode.
+Each draw of all that is uncertain has an amplitude with the finger where the prediction has it, and
+at the other places as much more or less as the display as described. What a stiff pad's friction
+differs by from that of ridges each at its own balance is taken to be the same at all of them.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import FreeAmplitude, Mixture, Outcome, as_drawn, outcome_of
+from squeezefilm.analysis.draws import FreeAmplitude, Outcome, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea
@@ -27,8 +26,6 @@ from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 
 DRAWS = 64
-# Of the largest that a ridge meets: dense where friction falls most.
-_AMPLITUDES = np.linspace(0.0, 1.0, 33) ** 1.5
 WHERE = ("best", "median", "worst")
 
 
@@ -82,31 +79,47 @@ def area_odds(
     p = prediction
     if p.touch.sharing is None or p.vibration_amplitude == 0 or not area.of_note:
         return None
-    there = dataclasses.replace(p, law=dataclasses.replace(p.law, place=None, position=0.0))
-    places = [pad_place(display.actuator, p.mode, p.frequency, one) for one, _ in area.of_note]
-    side = area.contact_side
-    swings = [
-        np.abs(one.ridges(display.finger, side)[1]) * (lobe / p.vibration_amplitude)
-        for one, (_, lobe) in zip(places, area.of_note, strict=True)
-        if one is not None
-    ]
-    mixture = Mixture(display, there, driven=p.voltage is not None)
-    free = FreeAmplitude(display, there)
-    samples = np.full((DRAWS, len(swings)), np.nan)
-    for row, draw in zip(samples, mixture.draws(sobol_points(mixture, DRAWS, seed)), strict=True):
+    over = _elsewhere(display, p, area)
+    mixture, free = mixture_of(display, p), FreeAmplitude(display, p)
+    points = sobol_points(mixture, DRAWS, seed)
+    samples = np.full((DRAWS, len(over)), np.nan)
+    for row, point, draw in zip(samples, points, mixture.draws(points), strict=True):
         with contextlib.suppress(SqueezefilmError), as_drawn():
-            found = outcome_of(mixture, draw, free(draw.display))
-            row[:] = _met(mixture.law(draw), found, swings)
+            row[:] = _met(mixture.law(draw), mixture.outcome(point, draw, free), over)
     return AreaOdds(samples)
 
 
-def _met(law: FrictionLaw, found: Outcome, swings: list[si.DimensionlessArray]) -> list[float]:
-    """The friction under pads whose ridges move by `swings`, over the amplitude that a draw has."""
-    asked = found.amplitude * max(float(np.max(one)) for one in swings) * _AMPLITUDES
-    ridge = law.ridge_friction(asked)
-    own = law.sharing(found.amplitude, "own").relative_friction
-    tied = found.friction - float(own[0])
-    means = (float(np.mean(np.interp(found.amplitude * one, asked, ridge))) for one in swings)
+class _Elsewhere(NamedTuple):
+    """What ridges meet at another place over the amplitude where the prediction is, and the shares
+    that meet it."""
+
+    swings: si.DimensionlessArray
+    shares: si.DimensionlessArray
+
+
+def _elsewhere(display: Display, p: Prediction, area: ActiveArea) -> list[_Elsewhere | None]:
+    """The places of note of an area; None for the one where the prediction is."""
+    here = p.law.place
+    over: list[_Elsewhere | None] = []
+    for place, lobe in area.of_note:
+        if here is not None and place == (here.x, here.y):
+            over.append(None)
+            continue
+        there = pad_place(display.actuator, p.mode, p.frequency, place)
+        swings, shares = dataclasses.replace(p.law, place=there, position=0.0).ridge_swings
+        over.append(_Elsewhere(swings * lobe / p.vibration_amplitude, shares))
+    return over
+
+
+def _met(law: FrictionLaw, found: Outcome, over: list[_Elsewhere | None]) -> list[float]:
+    """The friction of a draw at places; None stands for the prediction's own."""
+    tied = found.friction - float(law.sharing(found.amplitude, "own").relative_friction[0])
+    means = (
+        found.friction - tied
+        if one is None
+        else float(law.ridge_friction(found.amplitude * one.swings) @ one.shares)
+        for one in over
+    )
     return [min(max(mean + tied, 0.0), 1.0) for mean in means]
 
 

@@ -157,12 +157,21 @@ class Mixture:
         # Laws of contact are compared at what a plateau carries as described.
         self._pressure = display.finger.plateau_pressure()
         self.paths = tuple(one.path for one in self.inputs)
+        self._known: dict[bytes, Outcome] = {}
 
     def at(self, prediction: Prediction, display: Display) -> Mixture:
         """The same inputs around another working point, of a display with another actuator."""
         other = copy.copy(self)
-        other.prediction, other.display = prediction, display
+        other.prediction, other.display, other._known = prediction, display, {}
         return other
+
+    def outcome(self, point: si.DimensionlessArray, draw: Draw, free: FreeAmplitude) -> Outcome:
+        """What comes of the draw at a point of the unit cube, kept: whatever is asked of a display
+        is asked of the same points."""
+        key = point.tobytes()
+        if key not in self._known:
+            self._known[key] = outcome_of(self, draw, free(draw.display))
+        return self._known[key]
 
     def draws(self, points: si.DimensionlessArray) -> Iterator[Draw]:
         """The draws at points of the unit cube, shape (n, inputs)."""
@@ -245,6 +254,13 @@ class Mixture:
         )
 
 
+@functools.lru_cache(maxsize=4)
+def mixture_of(display: Display, prediction: Prediction) -> Mixture:
+    """All that a display may be where it was predicted, its actuator with it where a voltage drives
+    it; kept, with what comes of its draws, for the next question of an analysis."""
+    return Mixture(display, prediction, driven=prediction.voltage is not None)
+
+
 class Outcome(NamedTuple):
     """What comes of a draw, or of many: µ′/µ, the amplitude with the finger (m), and the power that
     plate and finger take, cold (W; NaN where the modal mass is not known)."""
@@ -276,17 +292,24 @@ def outcome_of(
 def between_limits(
     law: FrictionLaw, draw: Draw, amplitude: si.MetreArray, known: PadFriction | None = None
 ) -> si.DimensionlessArray:
-    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it; one limit may be `known`."""
-    soft = draw.skin_compliance
-    weights: dict[Limit, float] = {"own": soft, "one-gap": 1 - soft}
-    found = np.zeros(amplitude.shape)
-    for limit, weight in weights.items():
-        if weight > 0:
-            if known is None or known.limit != limit:
-                found += weight * law.sharing(amplitude, limit).relative_friction
-            else:
-                found += weight * known.relative_friction
-    return found
+    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it; one limit may be `known`.
+
+    At a place what a stiff pad differs by from ridges that sink each by themselves is taken from an
+    even wave of the same amplitude: on the solved shape the one ridge that moves most would press
+    a pad at one mean gap through, and so refuse draws for what no real skin is.
+    """
+
+    def limit(of: FrictionLaw, name: Limit) -> si.DimensionlessArray:
+        if of is law and known is not None and known.limit == name:
+            return known.relative_friction
+        return of.sharing(amplitude, name).relative_friction
+
+    own, soft = limit(law, "own"), draw.skin_compliance
+    if soft == 1:
+        return own
+    even = law.on_even_wave
+    alike = own if even is law else limit(even, "own")
+    return np.clip(own + (1 - soft) * (limit(even, "one-gap") - alike), 0.0, 1.0)
 
 
 # How far the discs are from the described one that say how each number moves the amplitude.
@@ -354,6 +377,8 @@ class FreeAmplitude:
         return math.exp(slope * off + bend * off**2)
 
     @staticmethod
+    # Every question of an analysis asks for the same discs.
+    @functools.lru_cache(maxsize=256)
     def _per_volt(actuator: Actuator) -> float:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, outcome_of
+from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import Prediction
@@ -55,38 +55,47 @@ class FeltAt:
 
 @dataclass(frozen=True)
 class FeltGratings:
-    """The finest square grating that is felt, by speed: friction switched between that without
-    vibration and that at the display's amplitude. `observer` felt it, with a d′ of `criterion`;
-    `why_no_interval` says why there is none."""
+    """The finest square grating that is felt, by speed, that of the prediction (`speed`) among
+    them: friction switched between that without vibration and that at the display's amplitude.
+    `observer` felt it, with a d′ of `criterion`; `why_no_interval` says why there is none."""
 
     observer: str
     criterion: si.Dimensionless
     at: tuple[FeltAt, ...]
+    speed: si.MetrePerSecond
     level: si.Dimensionless = LEVEL
     draws: int = 0
     why_no_interval: str = ""
     model: str = "steady strokes, first-order envelope, the pad's three constants; senses assumed"
 
+    @property
+    def here(self) -> FeltAt:
+        """What is felt at the prediction's speed."""
+        return next(one for one in self.at if one.speed == self.speed)
+
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``, with units in the keys."""
+        """The numbers for ``--json``, with units in the keys: those at the prediction's speed,
+        then at each."""
         return {
+            **_row(self.here),
             "observer": self.observer,
             "detection_criterion_d_prime": self.criterion,
             "interval_level": self.level,
             "draws": self.draws,
             "why_no_interval": self.why_no_interval,
             "model": self.model,
-            "by_speed": [
-                {
-                    "finger_speed_m_per_s": one.speed,
-                    "finest_period_survives_m": one.survives,
-                    "finest_period_felt_m": one.felt,
-                    "finest_period_felt_interval_m": one.interval and list(one.interval),
-                    "share_never_felt": one.never,
-                }
-                for one in self.at
-            ],
+            "by_speed": [_row(one) for one in self.at],
         }
+
+
+def _row(one: FeltAt) -> dict[str, Any]:
+    return {
+        "finger_speed_m_per_s": one.speed,
+        "finest_period_survives_m": one.survives,
+        "finest_period_felt_m": one.felt,
+        "finest_period_felt_interval_m": one.interval and list(one.interval),
+        "share_never_felt": one.never,
+    }
 
 
 def felt_gratings(
@@ -98,7 +107,8 @@ def felt_gratings(
     seed: int = 1,
     progress: SayProgress | None = None,
 ) -> FeltGratings | None:
-    """The finest gratings that are felt where a prediction was made, at `EXPLORING_SPEEDS`.
+    """The finest gratings that are felt where a prediction was made, at the prediction's finger
+    speed and at `EXPLORING_SPEEDS`.
 
     `draws` is a power of two (0: no interval); the observer is the preset "fingertip" if none is
     given. None where nothing vibrates. Raises what the friction's law raises at the amplitude.
@@ -115,15 +125,16 @@ def felt_gratings(
         return np.asarray(p.friction(amplitude, np.full(amplitude.shape, speed)))
 
     base, pad = p.friction_coefficient * p.normal_force, display.finger.fingerpad
-    nominal = []
-    for speed in EXPLORING_SPEEDS:
+    nominal, speeds = [], tuple(sorted({p.speed, *EXPLORING_SPEEDS}))
+    for speed in speeds:
         law = functools.partial(described, speed=speed)
         nominal.append(_finest(senses, tau, p.vibration_amplitude, law, Rubbed(base, pad, speed)))
     found, why = (None, "no draws were asked for")
     if draws and p.touch.sharing is not None:
-        found, why = _drawn(display, p, senses, draws, seed, progress or (lambda _: None))
+        tell = progress or (lambda _: None)
+        found, why = _drawn(display, p, senses, speeds, draws, seed, tell)
     rows = []
-    for k, speed in enumerate(EXPLORING_SPEEDS):
+    for k, speed in enumerate(speeds):
         column = None if found is None else found[:, k]
         low, _, high = (np.nan,) * 3 if column is None else ends(column)
         rows.append(
@@ -136,7 +147,9 @@ def felt_gratings(
             )
         )
     count = 0 if found is None else draws
-    return FeltGratings(senses.name, senses.detection_criterion, tuple(rows), LEVEL, count, why)
+    return FeltGratings(
+        senses.name, senses.detection_criterion, tuple(rows), p.speed, LEVEL, count, why
+    )
 
 
 def _finest(
@@ -152,21 +165,23 @@ def _drawn(
     display: Display,
     p: Prediction,
     senses: Observer,
+    speeds: tuple[si.MetrePerSecond, ...],
     count: int,
     seed: int,
     tell: SayProgress,
 ) -> tuple[si.MetreArray | None, str]:
     """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
     none is, NaN where the draw is refused; None with the reason where too many are."""
-    mixture = Mixture(display, p, driven=p.voltage is not None)
+    mixture = mixture_of(display, p)
     scale = FreeAmplitude(display, p)
-    found = np.full((count, len(EXPLORING_SPEEDS)), np.nan)
+    found = np.full((count, len(speeds)), np.nan)
     points = sobol_points(mixture, count, seed)
     for number, draw in enumerate(mixture.draws(points)):
         if number % max(count // 20, 1) == 0:
             tell(f"what is felt of draw {number + 1} of {count}")
         try:
-            found[number] = _felt_of(mixture, draw, scale(draw.display), senses)
+            high = mixture.outcome(points[number], draw, scale).amplitude
+            found[number] = _felt_of(mixture, draw, high, senses, speeds)
         except SqueezefilmError:
             continue
     lost = float(np.mean(np.isnan(found[:, 0])))
@@ -175,18 +190,26 @@ def _drawn(
     return found, ""
 
 
-def _felt_of(mixture: Mixture, draw: Draw, free: si.Metre, senses: Observer) -> list[si.Metre]:
-    law, high = mixture.law(draw), outcome_of(mixture, draw, free).amplitude
+def _felt_of(
+    mixture: Mixture,
+    draw: Draw,
+    high: si.Metre,
+    senses: Observer,
+    speeds: tuple[si.MetrePerSecond, ...],
+) -> list[si.Metre]:
+    law, every = mixture.law(draw), np.array(speeds)
     knots = high * np.linspace(0.0, 1.0, _KNOTS) ** 2
-    speeds = np.array(EXPLORING_SPEEDS)
-    own, tied = (law.over_speeds(knots, speeds, one) for one in ("own", "one-gap"))
-    friction = draw.skin_compliance * own + (1 - draw.skin_compliance) * tied
+    own, even = law.over_speeds(knots, every, "own"), law.on_even_wave
+    # As `between_limits` has it.
+    alike = own if even is law else even.over_speeds(knots, every, "own")
+    stiff = even.over_speeds(knots, every, "one-gap") - alike
+    friction = np.clip(own + (1 - draw.skin_compliance) * stiff, 0.0, 1.0)
     mode = mixture.mode(draw)
     tau = float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
     base = law.friction_coefficient * draw.normal_force
     pad = draw.display.finger.fingerpad
     found = []
-    for speed, row in zip(EXPLORING_SPEEDS, friction, strict=True):
+    for speed, row in zip(speeds, friction, strict=True):
         known = functools.partial(_tabulated, knots=knots, row=row)
         found.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
     return found

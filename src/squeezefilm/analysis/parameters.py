@@ -16,6 +16,7 @@ from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.distributions import Distribution, Uniform
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
+from squeezefilm.materials import Piezoceramic
 
 _Whole = TypeVar("_Whole")
 Origin = Literal["given", "assumed"]
@@ -231,6 +232,8 @@ def _place(whole: Any, path: str) -> tuple[Any, str]:
 def _inside(owner: Any, part: str, path: str) -> Any:
     if part == "*" and isinstance(owner, tuple) and owner:
         return owner[0]
+    if part in getattr(owner, "__dataclass_fields__", ()):
+        return getattr(owner, part)
     known = (
         [str(number) for number in range(len(owner))]
         if isinstance(owner, tuple)
@@ -258,7 +261,9 @@ def replaced(display: NamedDisplay, values: Mapping[str, float | str]) -> Displa
 def with_values(whole: _Whole, values: Mapping[str, float | str]) -> _Whole:
     """A display, or a part of one such as its plate, with other values at dotted paths.
 
-    ``*`` in a path stands for every one of a list: ``patches.*.thickness``. Raises as `replaced`.
+    ``*`` in a path stands for every one of a list: ``patches.*.thickness``. Of a ceramic with full
+    constants another ``in_plane_stiffness`` or ``charge_coefficient`` takes all stiffnesses or all
+    d along in proportion, see `Piezoceramic.scaled`. Raises as `replaced`.
     """
     tree: dict[str, Any] = {}
     for path, given in values.items():
@@ -282,4 +287,17 @@ def _with(owner: Any, tree: Mapping[str, Any]) -> Any:
         of_all = tree.get("*", {})
         return tuple(_with(item, tree.get(str(at), of_all)) for at, item in enumerate(owner))
     changes = {name: _with(getattr(owner, name), below) for name, below in tree.items()}
+    if isinstance(owner, Piezoceramic) and owner.constants is not None:
+        owner = _of_one_batch(owner, changes)
     return dataclasses.replace(owner, **changes)
+
+
+def _of_one_batch(ceramic: Piezoceramic, changes: Mapping[str, Any]) -> Piezoceramic:
+    """A ceramic whose full constants go along with another in-plane stiffness or another d31; what
+    is not of the same sign, or changed beside its constants, stays to be refused."""
+    shares = {}
+    for argument, name in (("stiffness", "in_plane_stiffness"), ("charge", "charge_coefficient")):
+        own = getattr(ceramic, name)
+        if name in changes and "constants" not in changes and own * changes[name] > 0:
+            shares[argument] = changes[name] / own
+    return ceramic.scaled(**shares)

@@ -1,4 +1,4 @@
-"""What compensation does to the gratings of a display, and to the speeds that they survive."""
+"""What a display's resonator leaves of gratings, and what compensation does for them."""
 
 from __future__ import annotations
 
@@ -16,9 +16,7 @@ from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
 from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.compensation import (
-    CompensatedDrive,
     DrivenEnvelope,
-    compensated_drive,
 )
 from squeezefilm.render.resonator.square_swing import (
     Compensating,
@@ -28,9 +26,6 @@ from squeezefilm.render.resonator.square_swing import (
 )
 from squeezefilm.render.texture.levels import Amplitude
 from squeezefilm.render.texture.shapes import SquareWave
-
-_STEPS_PER_PERIOD = 1000
-_PERIODS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,97 +136,12 @@ def texture_survival(
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CompensatedGrating:
-    """One square grating at one speed by each drive, settled.
-
-    Attributes:
-        envelope: its limits (braking as each law says).
-        spatial_period: of the grating (m).
-        speed: of the finger (m/s).
-        level: upper amplitude over the limit (1).
-        laws: the drives, shape (d,).
-        time: of each sample (s), shape (n,).
-        drives: wanted, command and amplitude by each law.
-        swing_kept: peak to peak in the last two periods, by each law (1), shape (d,).
-        fundamental_kept: of the wave of the grating's own period, likewise (1), shape (d,).
-    """
-
-    envelope: DrivenEnvelope
-    spatial_period: si.Metre
-    speed: si.MetrePerSecond
-    level: si.Dimensionless
-    laws: tuple[DriveLaw, ...]
-    time: si.SecondArray
-    drives: tuple[CompensatedDrive, ...]
-    swing_kept: si.DimensionlessArray
-    fundamental_kept: si.DimensionlessArray
-
-
-def compensated_grating(
-    envelope: DrivenEnvelope,
-    spatial_period: si.Metre = 0.4e-3,
-    speed: si.MetrePerSecond | None = None,
-    level: si.Dimensionless = 0.8,
-) -> CompensatedGrating:
-    """A square grating from 0 to `level` of full amplitude under each of `DRIVE_LAWS`, simulated.
-
-    Without a `speed`, twice the one at which it keeps 90 % without compensation.
-
-    Raises:
-        InputError: a period or speed not above 0, or a level not above 0 or above 1.
-    """
-    si.require("level", level, above=0.0, at_most=1.0)
-    si.require("spatial_period", spatial_period, si.Unit("m"), above=0.0)
-    high = level * envelope.amplitude_limit
-    bare = fastest_compensated_speed(spatial_period, envelope, 0.0, high, "none")
-    at = 2 * bare if speed is None else speed
-    si.require("speed", at, si.Unit("m/s"), above=0.0)
-    step = spatial_period / at / _STEPS_PER_PERIOD
-    # Enough periods to settle from rest, whatever the ratio of period to time constant.
-    settling = 20 * max(envelope.rise_time_constant, envelope.fall_time_constant)
-    periods = _PERIODS + int(np.ceil(settling / (_STEPS_PER_PERIOD * step)))
-    phase = np.arange(periods * _STEPS_PER_PERIOD) % _STEPS_PER_PERIOD
-    wanted = np.where(phase < _STEPS_PER_PERIOD // 2, high, 0.0)
-    drives = tuple(
-        compensated_drive(
-            wanted,
-            step,
-            dataclasses.replace(envelope, braking=law.braking),
-            "inverse" if law.compensated else "none",
-            initial=0.0,
-        )
-        for law in DRIVE_LAWS
-    )
-    last = slice(-2 * _STEPS_PER_PERIOD, None)
-    return CompensatedGrating(
-        envelope=envelope,
-        spatial_period=spatial_period,
-        speed=at,
-        level=level,
-        laws=DRIVE_LAWS,
-        time=np.arange(wanted.size, dtype=np.float64) * step,
-        drives=drives,
-        swing_kept=np.array([np.ptp(drive.amplitude[last]) / high for drive in drives]),
-        fundamental_kept=np.array([_wave(drive.amplitude[last]) for drive in drives])
-        / _wave(wanted[last]),
-    )
-
-
-def _wave(two_periods: si.MetreArray) -> si.Metre:
-    """The amplitude of the wave of the period in two whole periods (m)."""
-    return float(2 * np.abs(np.fft.rfft(two_periods)[2]) / two_periods.size)
-
-
-def through_the_resonator(
-    display: Display, prediction: Prediction
-) -> tuple[CompensatedGrating | None, TextureSurvival | None]:
-    """A fine grating through the resonator, and which survives; none where no voltage makes an
+def survival_by_drive(display: Display, prediction: Prediction) -> TextureSurvival | None:
+    """Which square gratings survive at which speeds, by drive; None where no voltage makes an
     amplitude."""
     if not prediction.voltage or prediction.vibration_amplitude == 0:
-        return None, None
-    envelope = driven_envelope(prediction)
-    return compensated_grating(envelope), texture_survival(display.name, envelope)
+        return None
+    return texture_survival(display.name, driven_envelope(prediction))
 
 
 def along_a_stroke(prediction: Prediction, tau: si.Second) -> FrictionTrace | None:

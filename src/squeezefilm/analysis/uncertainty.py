@@ -18,7 +18,7 @@ from squeezefilm.analysis.draws import (
     Tally,
     as_drawn,
     between_limits,
-    outcome_of,
+    mixture_of,
 )
 from squeezefilm.analysis.influences import (
     GroupInfluence,
@@ -152,7 +152,7 @@ def uncertain_friction(
         raise InputError(
             f"samples = {samples} cannot be used: take a power of two from 8 to 65536, like 128"
         )
-    mixture = Mixture(display, prediction, driven=prediction.voltage is not None)
+    mixture = mixture_of(display, prediction)
     count = POINTS * samples
     design = _design(mixture, samples, seed)
     rows, columns, _ = design.shape
@@ -258,7 +258,7 @@ def evaluate(
         if number % every == 0:
             tell(f"friction of draw {number + 1} of {len(points)}")
         try:
-            found[number] = outcome_of(mixture, draw, scale(draw.display))
+            found[number] = mixture.outcome(points[number], draw, scale)
         except SqueezefilmError as error:
             tally.refuse(draw.heights, error)
     return Outcome(*found.T), tally.found(len(points))

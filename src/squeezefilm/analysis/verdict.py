@@ -167,22 +167,24 @@ def _odds(area: JudgedArea) -> str:
 
 def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
     """Of the place that the prediction is of."""
-    amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
-    if p.law.place is not None:
-        amplitude += " of the best antinode"
+    where = p.place_said
+    if p.law.place is None:
+        where += f", at {p.vibration_amplitude * 1e6:.3g} µm"
+    elif abs(p.law.place.at_centre - 1) > 0.005:
+        where += f" and the best antinode {p.vibration_amplitude * 1e6:.3g} µm"
     asked = f"{PAPER_CRITERION:.2f}, as the paper asks"
     if unsure is None:
         because = why_not or "no interval was computed"
         return Finding(
             "doubt",
-            f"µ′/µ is {p.relative_friction:.2f} as described {p.place_said}, at {amplitude} by the "
+            f"µ′/µ is {p.relative_friction:.2f} as described {where} by the "
             f"model '{p.model}'. How probable it is that it lies below {asked}, is not known: "
             f"{because}.",
         )
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE
     text = (
-        f"µ′/µ is {unsure.nominal:.2f} as described {p.place_said}, at {amplitude}. With all that "
+        f"µ′/µ is {unsure.nominal:.2f} as described {where}. With all that "
         f"is uncertain drawn, its median is {unsure.median:.2f} ({si.percent(unsure.level)} "
         f"interval {low:.2f}–{high:.2f}); it is below {asked}, with probability "
         f"{_probability(unsure.probability_below(PAPER_CRITERION))}, and below {noticed:.2f}, "

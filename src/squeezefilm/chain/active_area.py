@@ -1,10 +1,4 @@
-"""The active area of a display: what a finger meets at every place of it, not at the best alone.
-
-The finger lies at one place after another. It takes from the vibration what it takes there (less
-beside the antinodes), the best antinode is left with an amplitude, the solved shape says what each
-ridge of the pad meets of it, and the pad's friction is the mean over its ridges, each at its own
-balance.
-"""
+"""The active area of a display: what a finger meets at every place of it, in numbers and words."""
 
 from __future__ import annotations
 
@@ -15,25 +9,16 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.pad_place import met_by_pads, place_words
+from squeezefilm.chain.area_map import area_map, lowest
+from squeezefilm.chain.pad_place import place_words
 from squeezefilm.chain.prediction import Prediction
-from squeezefilm.chain.touch import touched_amplitudes
-from squeezefilm.contact.sharing.pad import pad_points
-from squeezefilm.display import ActiveRegion, Display
-from squeezefilm.errors import GeometryError, OutOfRangeError, SqueezefilmError
-from squeezefilm.plate.surface_shape import SurfaceShape, TrackSurface, surface_shape
+from squeezefilm.display import Display
 
 CRITERIA: tuple[si.Dimensionless, ...] = (0.70, 0.80)
 """The paper asks for µ′/µ of 0.70; from 0.80 on, a drop of 0.2, people notice it."""
 
-# Places to a half wavelength, and to a side at the least and the most.
-_TO_A_HALF_WAVE = 12
-_LEAST_PLACES, _MOST_PLACES = 49, 96
 # Between places, for shares and the median: linear.
 _BETWEEN = 8
-_KNOTS = 257
-# Places times points of the pad at a time, some 100 MB.
-_AT_A_TIME = 2_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +101,7 @@ class ActiveArea:
         """Where µ′/µ is lowest (m); of places alike the first."""
         if self.relative_friction is None:
             return None
-        return self._place(int(np.nanargmin(np.round(self.relative_friction, 9))))
+        return self._place(lowest(self.relative_friction))
 
     @property
     def worst_place(self) -> tuple[si.Metre, si.Metre] | None:
@@ -212,139 +197,23 @@ def active_area(
     has no shape over a face.
     """
     p = prediction
-    try:
-        shape = surface_shape(display.actuator, p.mode, p.frequency)
-    except OutOfRangeError:
+    found = area_map(display, p.mode, p.law, p.drive, refinement=refinement)
+    if found is None:
         return None
-    side = p.law.contact_side
-    x, y, rule = _places(display.active_area, shape, side, refinement)
-    points = pad_points(p.law.finger, side)
-    at_centre = shape.grid(x, y)
-    at = np.argwhere(_inside(shape, side, x, y, display.active_area))
-    parts = np.array_split(at, -(-at.shape[0] * points[0].size // _AT_A_TIME))
-    met = [met_by_pads(shape, x[one[:, 0]], y[one[:, 1]], points) for one in parts]
-    swings = np.concatenate([swings for swings, _ in met])
-    # Points beside the face carry nothing, the others in their stead.
-    weights = np.concatenate([there for _, there in met]).astype(float)
-    weights /= np.sum(weights, axis=1, keepdims=True)
-    mean_square = np.sum(weights * swings**2, axis=1)
-    lobe = np.full(mean_square.shape, p.vibration_amplitude)
-    if p.voltage is not None:
-        lobe = touched_amplitudes(p.mode, p.law, p.touch.free_amplitude, mean_square)
-
-    def over(values: si.FloatArray) -> si.FloatArray:
-        """Values of the places there are, where they belong."""
-        grid = np.full(at_centre.shape, np.nan)
-        grid[at[:, 0], at[:, 1]] = values
-        return grid
-
-    friction, why_not = None, ""
-    try:
-        friction = over(_friction(p, lobe[:, None] * swings, weights))
-    except SqueezefilmError as error:
-        why_not = str(error)
+    lobe = found.lobe_amplitude
     return ActiveArea(
-        x=x,
-        y=y,
-        amplitude=over(lobe) * at_centre,
-        lobe_amplitude=over(lobe),
-        amplitude_under_pad=over(lobe * np.sqrt(mean_square)),
-        relative_friction=friction,
-        contact_side=side,
-        rule=rule,
-        shape_model=shape.model,
-        shape_words=shape.words,
-        why_not=why_not,
+        x=found.x,
+        y=found.y,
+        amplitude=lobe * found.at_centre,
+        lobe_amplitude=lobe,
+        amplitude_under_pad=lobe * np.sqrt(found.mean_square),
+        relative_friction=found.relative_friction,
+        contact_side=found.contact_side,
+        rule=found.rule,
+        shape_model=found.shape.model,
+        shape_words=found.shape.words,
+        why_not=found.why_not,
     )
-
-
-def _friction(
-    p: Prediction, met: si.MetreArray, weights: si.DimensionlessArray
-) -> si.DimensionlessArray:
-    """µ′/µ of pads whose points meet amplitudes (m) and carry shares of the load, both of shape
-    (places, points)."""
-    kind = p.law.kind
-    if kind.film != "shared" or kind.limit != "own":
-        raise OutOfRangeError(
-            f"the model '{p.model}' does not give each ridge a balance of its own, and so no "
-            "friction beside the antinodes"
-        )
-    highest = float(np.max(met))
-    if highest == 0:
-        return np.ones(met.shape[0])
-    # Denser at small amplitudes, where the law bends within the roughness.
-    knots = highest * np.linspace(0, 1, _KNOTS) ** 2
-    each = np.interp(met, knots, p.law.ridge_friction(knots))
-    return np.asarray(np.sum(weights * each, axis=1))
-
-
-def _places(
-    region: ActiveRegion | None, shape: SurfaceShape, side: si.Metre, refinement: int
-) -> tuple[si.MetreArray, si.MetreArray, str]:
-    """The places along x and y (m), and by what rule they are the active area."""
-    left, right, front, back = shape.bounds
-    if region is not None:
-        if not (
-            left <= region.x_from <= region.x_to <= right
-            and front <= region.y_from <= region.y_to <= back
-        ):
-            raise GeometryError(
-                f"active_area goes from {place_words((region.x_from, region.y_from))} to "
-                f"{place_words((region.x_to, region.y_to))}, and the face from "
-                f"{place_words((left, front))} to {place_words((right, back))}; keep to the face",
-                quantity="active_area",
-            )
-        spans = (region.x_from, region.x_to), (region.y_from, region.y_to)
-        rule = "as the display's description has it"
-    elif isinstance(shape, TrackSurface):
-        spans = (0.0, 2 * shape.half_wavelength), _inset(front, back, side)
-        rule = "one wave of the track, all others are alike"
-    else:
-        spans = _inset(left, right, side), _inset(front, back, side)
-        rule = f"the face less half the contact's {1e3 * side:.3g} mm at every edge"
-    step = shape.half_wavelength / (_TO_A_HALF_WAVE * refinement)
-    x, y = (
-        _along(span, step, at, _MOST_PLACES * refinement)
-        for span, at in zip(spans, shape.lobe, strict=True)
-    )
-    return x, y, rule
-
-
-def _along(
-    span: tuple[si.Metre, si.Metre], step: si.Metre, lobe: si.Metre, most: int
-) -> si.MetreArray:
-    """Places along a side, evenly but for the best antinode, where friction is at its sharpest."""
-    low, high = span
-    if high <= low:
-        return np.array([low])
-    count = int(np.clip(np.ceil((high - low) / step), _LEAST_PLACES - 1, most))
-    places = np.linspace(low, high, count + 1)
-    nearest = int(np.argmin(np.abs(places - lobe)))
-    if low <= lobe <= high and abs(places[nearest] - lobe) > 1e-6 * (high - low):
-        places = np.sort(np.append(places, lobe))
-    return places
-
-
-def _inset(low: si.Metre, high: si.Metre, side: si.Metre) -> tuple[si.Metre, si.Metre]:
-    """A side less half the contact at both ends, its middle where the contact is wider."""
-    if high - low <= side:
-        return (low + high) / 2, (low + high) / 2
-    return low + side / 2, high - side / 2
-
-
-def _inside(
-    shape: SurfaceShape,
-    side: si.Metre,
-    x: si.MetreArray,
-    y: si.MetreArray,
-    region: ActiveRegion | None,
-) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
-    """Whether places are in the area: near a round rim only those half a contact from it."""
-    left, right, _, _ = shape.bounds
-    if region is not None or left >= 0:
-        return np.ones((x.size, y.size), dtype=bool)
-    reach = max(right - side / 2, 1e-9)
-    return np.asarray(np.hypot(x[:, None], y[None, :]) <= reach * (1 + 1e-9))
 
 
 def _halfway(values: si.FloatArray) -> si.FloatArray:

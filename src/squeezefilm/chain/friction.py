@@ -7,8 +7,7 @@ curves, textures. Each law names its model.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Annotated, cast
 
 import numpy as np
@@ -18,44 +17,24 @@ from squeezefilm.chain.amplitude_search import least_amplitude
 from squeezefilm.chain.friction_models import (
     DEFAULT_MODEL,
     MODEL_KINDS,
-    FrictionLimits,
     FrictionModel,
-    ModelKind,
 )
 from squeezefilm.chain.friction_table import FrictionTable, tabulated
+from squeezefilm.chain.pad_law import PadLaw
 from squeezefilm.chain.pad_place import PadPlace
-from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED, Finger
-from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.rough_contact import ContactLaw
 from squeezefilm.contact.sharing import paper
 from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
-from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.contact.sharing.pad import (
-    FrictionRipple,
-    Limit,
-    PadFriction,
-    PadPosture,
-    friction_ripple,
-    pad_friction,
-    ridge_points,
-)
-from squeezefilm.contact.sharing.shear import AsperityShear
+from squeezefilm.contact.sharing.pad import Limit
 from squeezefilm.display import Display, Surface
-from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure
 from squeezefilm.film.gap import PaperGap
-from squeezefilm.hard_limits import FINGER_SPEED
-from squeezefilm.materials import Gas
-from squeezefilm.plate.loaded_mode import mean_square_wave
 
 TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 47))
 """Where a law that depends on the speed is tabulated: toward rest, and from creeping to faster than
 fingers explore. Linear between; held beyond."""
 
 
-@si.checked_numbers
-@dataclass(frozen=True)
-class FrictionLaw:
+class FrictionLaw(PadLaw):
     """µ′/µ as a function of amplitude and speed, at one frequency and force, by one model.
 
     "paper2008" and the "film-" models hold the gap and differ in the film; the "partial-levitation"
@@ -65,44 +44,19 @@ class FrictionLaw:
     "partial-levitation-shear", takes friction to be in proportion to the real contact area, where
     the finger's law of asperities knows it, and what touches within a period to be elastic until
     it slips: it alone depends on `speed`, that of sliding, at which `at` and `curve` answer.
-    `position` is the pad's centre from an antinode, along a wave whose antinodes are all alike; a
-    `place` on the face, with what the ridges meet there, stands in its stead, and amplitudes are
-    still the best antinode's. `slip` is the gas's law of slip where the load is shared.
+    Where the pad is, `PadLaw` says.
     """
-
-    surface: Surface
-    finger: Finger
-    gas: Gas
-    half_wavelength: Annotated[si.Metre, si.Above(0)]
-    frequency: Annotated[si.Hertz, si.Above(0)]
-    normal_force: Annotated[si.Newton, si.Above(0)]
-    model: FrictionModel
-    position: si.Metre = 0.0
-    speed: Annotated[si.MetrePerSecond, FINGER_SPEED] = EXPLORING_SPEED
-    slip: str = "first"
-    place: PadPlace | None = None
-
-    def __post_init__(self) -> None:
-        elsewhere = self.position != 0 or self.place is not None
-        if elsewhere and self.kind.film != "shared":
-            raise InputError(
-                f"the model '{self.model}' knows the finger over an antinode only; ask a "
-                "partial-levitation model, or leave position and place out",
-                quantity="place" if self.place is not None else "position",
-            )
-        if self.position and self.place is not None:
-            raise InputError("give a position along the wave or a place on the face, not both")
-
-    @property
-    def kind(self) -> ModelKind:
-        """What the model makes of film and skin."""
-        return MODEL_KINDS[self.model]
 
     def by(self, model: FrictionModel) -> FrictionLaw:
         """The law by another model, over an antinode where that model knows no other place."""
         if MODEL_KINDS[model].film == "shared":
             return replace(self, model=model)
         return replace(self, model=model, position=0.0, place=None)
+
+    @property
+    def on_even_wave(self) -> FrictionLaw:
+        """The law over an even wave: itself unless it has a place."""
+        return self if self.place is None else replace(self, place=None)
 
     @si.checked_numbers
     def gap(self, amplitude: si.MetreLike) -> PaperGap:
@@ -127,137 +81,6 @@ class FrictionLaw:
         gap, model = self.gap(amplitude), cast(FilmModel, self.model)
         width = self.finger.plateau_width
         return film_load(gap, self.frequency, self.gas, model, plateau_width=width)
-
-    @si.checked_numbers
-    def sharing(
-        self,
-        amplitude: si.MetreLike,
-        limit: Limit | None = None,
-        *,
-        posture: PadPosture | None = None,
-        yielding: bool = False,
-    ) -> PadFriction:
-        """How film and asperities share the load at amplitudes (m), in the model's limit or in
-        the one named; how the pad lies (None: at `position`, level); and whether the
-        finger's skin yields at the ultrasonic frequency. Raises `InputError` for a model that does
-        not share the load."""
-        if limit is None:
-            if self.kind.film != "shared":
-                raise InputError(
-                    f"the model '{self.model}' holds the gap and shares no load; ask a "
-                    "partial-levitation model, or name a limit"
-                )
-            limit = self.kind.limit
-        skin = self.finger.skin if yielding else None
-        return self._pad(amplitude, self.speed, limit=limit, posture=posture, skin=skin)
-
-    @si.checked_numbers
-    def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
-        """µ′/µ in both limits of the skin at amplitudes (m); with shear where the model has it."""
-        a = np.atleast_1d(np.asarray(amplitude, dtype=float))
-        own, tied = (self.sharing(a, one).relative_friction for one in ("own", "one-gap"))
-        return FrictionLimits(a, own, tied)
-
-    def ripple(self, amplitude: si.Metre) -> FrictionRipple:
-        """µ′/µ along the wave by partial levitation at an amplitude (m), each ridge at its own
-        balance, whatever the model. See `friction_ripple`."""
-        return friction_ripple(
-            self._films,
-            self.asperities,
-            amplitude,
-            self.half_wavelength,
-            self.finger,
-            normal_force=self.normal_force,
-            shear=self._shear(self.speed),
-        )
-
-    @property
-    def _films(self) -> FilmTable:
-        return film_table(self.frequency, self.finger.plateau_width, self.gas, self.slip)
-
-    @cached_property
-    def asperities(self) -> ContactLaw:
-        """What skin and surface carry between them."""
-        return self.finger.asperity_law(self.surface.roughness)
-
-    @property
-    def contact_side(self) -> si.Metre:
-        """The side of the square contact at this force (m)."""
-        return float(np.sqrt(self.finger.contact_area(self.normal_force)))
-
-    @property
-    def mean_square(self) -> si.Dimensionless:
-        """The mean square over the contact of the amplitude over the best antinode's."""
-        if self.place is None:
-            return mean_square_wave(self.half_wavelength, self.contact_side, self.position)
-        return float(np.mean(self.place.ridges(self.finger, self.contact_side)[1] ** 2))
-
-    @cached_property
-    def _ridges(self) -> tuple[si.MetreArray, PadPosture]:
-        """The points of the ridges and how the pad lies on the vibration."""
-        if self.place is None:
-            points = ridge_points(self.finger, self.contact_side)
-            return points, PadPosture(position=self.position)
-        points, swings = self.place.ridges(self.finger, self.contact_side)
-        return points, PadPosture(swings=swings)
-
-    @si.checked_numbers
-    def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,): the pad's in the limit
-        "own" is the mean over its ridges."""
-        posture, at = PadPosture(swings=np.ones(1)), np.zeros(1)
-        found = self._pad(amplitude, self.speed, limit="own", points=at, posture=posture)
-        return found.relative_friction
-
-    @cached_property
-    def friction_coefficient(self) -> si.Dimensionless:
-        """µ without vibration, at this force. See `Finger.friction_coefficient`."""
-        return self.finger.friction_coefficient(
-            self.surface.friction_coefficient, self.surface.roughness, self.normal_force
-        )
-
-    def _pad(
-        self,
-        amplitude: si.MetreLike,
-        speed: si.MetrePerSecondLike,
-        *,
-        limit: Limit,
-        points: si.MetreArray | None = None,
-        posture: PadPosture | None = None,
-        skin: Skin | None = None,
-    ) -> PadFriction:
-        ridges, level = self._ridges if points is None else (points, posture)
-        try:
-            return pad_friction(
-                self._films,
-                self.asperities,
-                amplitude,
-                self.half_wavelength,
-                ridges,
-                self.finger.plateau_pressure(self.normal_force),
-                limit=limit,
-                posture=posture or level,
-                skin=skin,
-                shear=self._shear(speed),
-            )
-        except OutOfRangeError as error:
-            shown = si.format_quantity(self.normal_force, si.Unit("N"))
-            raise OutOfRangeError(f"under a normal force of {shown}: {error}") from error
-
-    def _shear(self, speed: si.MetrePerSecondLike) -> AsperityShear | None:
-        if not self.kind.shear:
-            return None
-        finger = self.finger
-        return AsperityShear(
-            speed, self.friction_coefficient, finger.tangential_stiffness, finger.tangential_ratio
-        )
-
-    def ridge_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-        """The amplitudes that ridges meet over an antinode's, and the shares that meet them."""
-        points, level = self._ridges
-        wave = level.over_the_antinode(points, self.half_wavelength)
-        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
-        return np.asarray(kinds, dtype=float), counts / points.size
 
     def _shared_load(self, amplitude: si.Metre) -> FilmLoad:
         shared = self.sharing(amplitude)
@@ -286,7 +109,7 @@ class FrictionLaw:
         if not self.kind.shear:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
         # A pad of thousands of ridges takes them in parts, within some 100 MB.
-        parts = min(math.ceil(a.size * speeds.size * self._ridges[0].size / 1e7), a.size)
+        parts = min(math.ceil(a.size * speeds.size * self.ridge_swings[0].size / 1e7), a.size)
         asked, kind = np.array_split(a, parts), limit or self.kind.limit
         return np.hstack([self._pad(one, speeds, limit=kind).relative_friction for one in asked])
 

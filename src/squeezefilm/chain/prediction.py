@@ -15,16 +15,16 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.area_map import at_best_place
 from squeezefilm.chain.chosen_mode import beam_objection, chosen_mode
-from squeezefilm.chain.free_vibration import FreeVibration, amplitude_per_volt, free_vibration
+from squeezefilm.chain.free_vibration import FreeVibration, free_vibration
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.pad_place import FacePlace, pad_place, place_words
-from squeezefilm.chain.touch import Touch, kept_at, touch
-from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
+from squeezefilm.chain.touch import Touch, touch
 from squeezefilm.display import Display, NamedDisplay, Surface
-from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning, UnreachableError
+from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.film.validity import FilmValidity, film_validity
 from squeezefilm.from_text import reads_text
@@ -42,8 +42,9 @@ from squeezefilm.results import Result, to_json
 class Prediction(Result):
     """What a display does at one voltage, frequency and force on one surface.
 
-    The pad is at the best antinode, of a wave whose antinodes are taken to be all alike, or, where
-    the law has a place, there; `place` is its centre. `amplitude_model` made the vibration
+    The pad is at the best place of the active area, or where it was asked for, on the solved shape
+    of the vibration; where no shape is solved it is over an antinode of a wave whose antinodes are
+    taken to be all alike. `place` is its centre. `amplitude_model` made the vibration
     amplitude (zero-to-peak, at the best antinode wherever the finger is, with it on), `touch` says
     what the finger took from it, `model` made pressure and friction. `mean_pressure` is the film's,
     averaged over contact and period, divided by ambient, `mean_pressure_error` the solver's
@@ -101,17 +102,29 @@ class Prediction(Result):
         return self.friction.inverse(self.law.over_speeds, self.vibration_amplitude)
 
     @property
+    def drive(self) -> FreeVibration:
+        """The vibration without a finger."""
+        free = self.touch.free_amplitude
+        return FreeVibration(self.frequency, self.voltage, free, self.amplitude_model)
+
+    @property
     def place(self) -> tuple[si.Metre, si.Metre]:
-        """Where the pad's centre is (m): at the best antinode, unless a place was asked for."""
+        """Where the pad's centre is (m)."""
         at = self.law.place
         return self.mode.lobe if at is None else (at.x, at.y)
+
+    @property
+    def place_was_asked(self) -> bool:
+        """Whether the pad is at a place on the face that somebody asked for."""
+        return self.law.place is not None and not self.law.place.is_best_of_area
 
     @property
     def place_said(self) -> str:
         """The same for people, with the amplitude there where it is not the best antinode's."""
         at, where = self.law.place, place_words(self.place)
         if at is not None:
-            return f"at {where}, where the face moves {1e6 * self.amplitude_at_place:.3g} µm"
+            which = "the best place of the active area, " if at.is_best_of_area else ""
+            return f"at {which}{where}, where the face moves {1e6 * self.amplitude_at_place:.3g} µm"
         if self.law.position:
             return (
                 f"{1e3 * self.law.position:.4g} mm along the wave from the best antinode, {where}"
@@ -130,7 +143,8 @@ class Prediction(Result):
         return {
             "x_m": self.place[0],
             "y_m": self.place[1],
-            "is_best_antinode": self.law.place is None and not self.law.position,
+            "is_best_of_area": self.law.place is not None and not self.place_was_asked,
+            "is_on_even_wave": self.law.place is None,
             "amplitude_m": self.amplitude_at_place,
             "said": self.place_said,
         }
@@ -170,6 +184,7 @@ class Prediction(Result):
             "model": self.model,
             "quality_factor": self.mode.quality_factor,
             "envelope_time_constant_s": self.envelope_time_constant,
+            "neighbour": to_json(self.mode.neighbour),
             "validity": to_json(self.validity),
             "heat": to_json(self.heat),
             "warnings": list(self.warnings),
@@ -187,7 +202,7 @@ def predict(
     normal_force: si.Newton | None = None,
     surface: str | None = None,
     vibration_amplitude: si.Metre | None = None,
-    position: si.Metre = 0.0,
+    position: si.Metre | None = None,
     theory: PlateTheory | None = None,
     model: FrictionModel | None = None,
     speed: si.MetrePerSecond | None = None,
@@ -200,9 +215,11 @@ def predict(
     The frequency defaults to the resonance without a finger; voltage, force, surface and the
     finger's `speed` of sliding (m/s) to the display's own. A `vibration_amplitude` (m,
     zero-to-peak, with the finger on it) given directly takes the place of voltage and plate.
-    `position` is the pad's centre from an antinode, along a wave whose antinodes are all alike;
-    `place` (x, y in m, from a plate's corner, a disc's middle or along a stator's track) puts it
-    where the solved shape of the vibration says what each of its ridges meets.
+    The pad is at the best place of the active area, where the solved shape of the vibration says
+    what each of its ridges meets; `place` (x, y in m, from a plate's corner, a disc's middle or
+    along a stator's track) puts it elsewhere on that shape, and `position` that far from an
+    antinode along a wave whose antinodes are all alike. Such a wave's antinode it is also over
+    where no shape is solved (a beam, a measured stator), or by a model that knows no other place.
     `theory` says how a plate is computed; without one it is solved in three dimensions, and taken
     as a beam, with a warning, where its working mode cannot be found so.
     Without a `model`, film and asperities share the load of each ridge (partial levitation), and
@@ -236,10 +253,12 @@ def predict(
             surface=where,
             normal_force=force,
             model=model or DEFAULT_MODEL,
-            position=position,
+            position=position or 0.0,
             speed=speed,
             place=pad_place(display.actuator, mode, drive.frequency, place),
         )
+        if place is None and position is None:
+            law = at_best_place(display, mode, law, drive)
         asked_for_asymptote = model is not None and law.kind.film == "asymptote"
         found = _felt(display, mode, drive, law, strict=strict and asked_for_asymptote)
     rough = () if drive.voltage is None else beam_objection(display.actuator, mode, strict=strict)
@@ -309,6 +328,8 @@ def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
         for item in caught
         if film == "asymptote" or not issubclass(item.category, OutOfRangeWarning)
     ]
+    if (company := p.mode.company) is not None:
+        messages.append(company)
     if film == "held":
         inertia = p.validity.check("inertia")
         messages += [] if inertia.holds else [inertia.sentence]
@@ -337,51 +358,3 @@ def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
             f"interval of squeezefilm friction. {spread}"
         )
     return messages if p.heat is None else [*messages, *p.heat.doubts]
-
-
-@reads_text
-@si.checked_numbers
-def voltage_for_friction(
-    display: NamedDisplay,
-    relative_friction: si.Dimensionless,
-    *,
-    frequency: si.Hertz | None = None,
-    normal_force: si.Newton | None = None,
-    surface: str | None = None,
-    theory: PlateTheory | None = None,
-    model: FrictionModel | None = None,
-    speed: si.MetrePerSecond | None = None,
-    place: FacePlace | None = None,
-) -> tuple[si.Volt, si.Metre]:
-    """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
-
-    The inverse of `predict`, the finger's damping and detuning included; linear in the voltage up
-    to there. The amplitude is the best antinode's, wherever the `place` is. Raises
-    `UnreachableError` where no amplitude does, or where the voltage would be more than the 2 kV
-    that a `Drive` may have.
-    """
-    require_plausible(display)
-    mode, _ = chosen_mode(display.actuator, theory)
-    drive_frequency = mode.resonance_frequency if frequency is None else frequency
-    si.require("frequency", drive_frequency, si.Unit("Hz"), above=0)
-    law = friction_law(
-        display,
-        mode.half_wavelength,
-        drive_frequency,
-        surface=display.surface(surface),
-        normal_force=normal_force,
-        model=model or DEFAULT_MODEL,
-        speed=speed,
-        place=pad_place(display.actuator, mode, drive_frequency, place),
-    )
-    amplitude = law.amplitude_for(relative_friction)
-    if amplitude == 0:
-        return 0.0, 0.0
-    volts = amplitude / (amplitude_per_volt(mode, drive_frequency) * kept_at(mode, law, amplitude))
-    if volts > HIGHEST_VOLTAGE:
-        raise UnreachableError(
-            f"relative_friction = {relative_friction:.4g} needs {amplitude * 1e6:.3g} µm and so "
-            f"{volts:.4g} V; a drive may have {HIGHEST_VOLTAGE:.4g} V. Drive at the resonance, ask "
-            "for less, or take a plate with more amplitude per volt"
-        )
-    return float(volts), amplitude

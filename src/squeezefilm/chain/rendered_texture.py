@@ -233,7 +233,14 @@ class RenderRequest:
     def prediction(self) -> Prediction:
         """What the display does at its largest amplitude; refused where it changes no friction."""
         if self.place is not None and self.wave != "ignored":
-            raise InputError("a place keeps the finger there; leave --place or --wave out")
+            raise InputError(
+                f"--place keeps the finger at one place of the plate, and with --wave {self.wave} "
+                "it crosses a wave that is even across and has an antinode at the texture's x = 0: "
+                "both say where the nodes are. For the friction of the place leave --wave out. For "
+                "the wave leave --place out and begin the stroke at the place's distance from the "
+                'antinode: --stroke "60 mm/s over 4 cm, from 5 mm"',
+                quantity="place",
+            )
         p = predict(
             self.display,
             voltage=self.voltage,

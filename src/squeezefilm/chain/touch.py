@@ -77,11 +77,11 @@ def touch(
     """
     if free_amplitude < _LEAST_AMPLITUDE:
         return Touch(free_amplitude, free_amplitude, None, None)
-    found = _touch(mode, _Pad.of(law), free_amplitude, tolerance)
-    if law.place is None:
-        return found
+    left = _touched(mode, _Pad.of(law), free_amplitude, tolerance)
     # How the load is shared is asked of the ridges where they are.
-    return dataclasses.replace(found, sharing=law.sharing(found.amplitude, law.kind.limit))
+    sharing = law.sharing(left.amplitude, law.kind.limit)
+    impedance = left.felt.impedance(law.frequency)
+    return Touch(free_amplitude, left.amplitude, left.mode, sharing, impedance)
 
 
 @si.checked_numbers
@@ -101,17 +101,17 @@ def touched_amplitudes(
         return np.full(mean_square.shape, free_amplitude)
     low, high = float(np.min(mean_square)), float(np.max(mean_square))
     knots = np.linspace(low, high, _KNOTS) if high > low else np.array([low])
-    over = _Pad.of(dataclasses.replace(law, place=None, position=0.0))
+    over = dataclasses.replace(law, place=None, position=0.0)
     left = [
-        _touch(mode, over.moved_to(float(one)), free_amplitude, TOLERANCE).amplitude
+        _touched(mode, _Pad.at(over, float(one)), free_amplitude, TOLERANCE).amplitude
         for one in knots
     ]
     return np.asarray(np.interp(mean_square, knots, left))
 
 
 class _Pad(NamedTuple):
-    """A pad by how much of the mode it lies on: the law over an antinode, the mean square of the
-    mode there, and what an antinode of a wave with that mean square moves over the best one."""
+    """A pad by how much of the mode it lies on: its law, the mean square of the mode there, and
+    what an antinode of an even wave with that mean square moves over the best one."""
 
     law: FrictionLaw
     mean_square: float
@@ -120,37 +120,34 @@ class _Pad(NamedTuple):
     @classmethod
     def of(cls, law: FrictionLaw) -> _Pad:
         """As a law has its pad."""
-        if law.place is None:
-            return cls(law, law.mean_square, 1.0)
-        over = dataclasses.replace(law, place=None)
-        return cls(over, over.mean_square, 1.0).moved_to(law.mean_square)
+        return cls.at(law, law.mean_square)
 
-    def moved_to(self, mean_square: float) -> _Pad:
-        """The same pad where the mode has another mean square."""
-        return _Pad(self.law, mean_square, (mean_square / self.mean_square) ** 0.5)
+    @classmethod
+    def at(cls, law: FrictionLaw, mean_square: float) -> _Pad:
+        """Where the mode has a mean square."""
+        return cls(law, mean_square, (mean_square / law.mean_square_even) ** 0.5)
 
 
-def _touch(mode: WorkingMode, pad: _Pad, free_amplitude: si.Metre, tolerance: float) -> Touch:
+def _touched(mode: WorkingMode, pad: _Pad, free_amplitude: si.Metre, tolerance: float) -> _Left:
     """The vibration with a pad on it."""
     modal_mass, frequency = mode.modal_mass, pad.law.frequency
     if modal_mass is None:
-        sharing, felt = _carried(pad, free_amplitude)
-        return Touch(free_amplitude, free_amplitude, None, sharing, felt.impedance(frequency))
+        return _Left(free_amplitude, None, _carried(pad, free_amplitude))
     alone = _alone(mode, pad.law)
 
-    def made(amplitude: float) -> Touch:
+    def made(amplitude: float) -> _Left:
         """Under a finger that lies on the mode as it does at an amplitude."""
-        sharing, felt = _carried(pad, amplitude)
+        felt = _carried(pad, amplitude)
         loaded = _loaded(mode, modal_mass, felt)
         new = free_amplitude * loaded.amplitude_ratio(frequency) / alone
-        return Touch(free_amplitude, new, loaded, sharing, felt.impedance(frequency))
+        return _Left(new, loaded, felt)
 
     return _settled(made, free_amplitude, tolerance) or _searched(
         made, free_amplitude, free_amplitude / alone, tolerance
     )
 
 
-def _settled(made: Callable[[float], Touch], free: float, tolerance: float) -> Touch | None:
+def _settled(made: Callable[[float], _Left], free: float, tolerance: float) -> _Left | None:
     """The vibration that makes itself, by secants from the free one; None if it takes too long."""
     amplitude, slope, before = free, 0.0, None
     for _ in range(_MOST_STEPS):
@@ -168,7 +165,7 @@ def _settled(made: Callable[[float], Touch], free: float, tolerance: float) -> T
     return None
 
 
-def _searched(made: Callable[[float], Touch], free: float, most: float, tolerance: float) -> Touch:
+def _searched(made: Callable[[float], _Left], free: float, most: float, tolerance: float) -> _Left:
     """The vibration that makes itself nearest to the free one, below `most` (m, the mode's free
     amplitude at its resonance): where two such are about to become one and vanish, secants crawl.
     """
@@ -205,8 +202,7 @@ def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: si.Metre) -> si.Dime
     """The amplitude with the finger over the one without, where the former is known (m)."""
     if mode.modal_mass is None or amplitude < _LEAST_AMPLITUDE:
         return 1.0
-    _, felt = _carried(_Pad.of(law), amplitude)
-    loaded = _loaded(mode, mode.modal_mass, felt)
+    loaded = _loaded(mode, mode.modal_mass, _carried(_Pad.of(law), amplitude))
     return loaded.amplitude_ratio(law.frequency) / _alone(mode, law)
 
 
@@ -218,22 +214,16 @@ def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: si.MetreArray) -
     if mode.modal_mass is None:
         return found
     pad = _Pad.of(law)
-    gaps = _sharing(pad, amplitude).mean_gap
+    gaps = pad.law.mean_gap(pad.scale * amplitude)
     for i, (one, gap) in enumerate(zip(amplitude, gaps, strict=True)):
         felt = _felt(pad, float(one), float(gap))
         found[i] = _loaded(mode, mode.modal_mass, felt).load_ratio
     return found
 
 
-def _sharing(pad: _Pad, amplitude: si.MetreLike) -> PadFriction:
-    # Whatever the law: a model that holds the gap says nothing of what the finger takes.
-    return pad.law.sharing(pad.scale * np.asarray(amplitude), pad.law.kind.limit)
-
-
-def _carried(pad: _Pad, amplitude: si.Metre) -> tuple[PadFriction, _Felt]:
-    """How the load is shared at an amplitude of the best antinode, and what the plate feels."""
-    sharing = _sharing(pad, amplitude)
-    return sharing, _felt(pad, amplitude, float(sharing.mean_gap[0]))
+def _carried(pad: _Pad, amplitude: si.Metre) -> _Felt:
+    """What the plate feels at an amplitude of the best antinode."""
+    return _felt(pad, amplitude, float(pad.law.mean_gap(pad.scale * amplitude)[0]))
 
 
 class _Felt(NamedTuple):
@@ -247,6 +237,14 @@ class _Felt(NamedTuple):
     def impedance(self, frequency: float) -> complex:
         """Of the whole finger, at the antinode (N·s/m)."""
         return finger_impedance(self.stiffness_per_area, self.area, frequency, self.mean_square)
+
+
+class _Left(NamedTuple):
+    """What is left of a vibration: its amplitude (m), the mode and what the plate feels then."""
+
+    amplitude: float
+    mode: LoadedMode | None
+    felt: _Felt
 
 
 def _felt(pad: _Pad, amplitude: si.Metre, mean_gap: si.Metre) -> _Felt:

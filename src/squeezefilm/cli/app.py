@@ -78,7 +78,8 @@ Budget = Annotated[
     str | None,
     In("s"),
     typer.Option(
-        help='Time after which the best answer so far comes, with its larger error: "60 s".'
+        help="Wall-clock time for the solve and what follows, without the start of the program: "
+        'like "60 s". What has no time is left coarser, with its larger error, or out.'
     ),
 ]
 Force = Annotated[str | None, In("N"), typer.Option("--force", help='Normal force, like "0.5 N".')]
@@ -93,7 +94,7 @@ OnPlace = Annotated[
     typer.Option(
         "--place",
         help="The finger's centre on the face, like \"30 mm, 20 mm\" (x, y from a plate's corner, "
-        "a disc's middle, or along a stator's track); the best antinode if not given.",
+        "a disc's middle, or along a stator's track); the best of the active area if not given.",
     ),
 ]
 Model = Annotated[

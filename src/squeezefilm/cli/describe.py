@@ -128,7 +128,9 @@ class AnalyzeOptions:
 def analyze(asked: AnalyzeOptions) -> None:
     """From the display's description to resonance, amplitude, friction and textures."""
     from squeezefilm.analysis.analyze import analyze as run
+    from squeezefilm.report.display.figures import drawing, prepare
     from squeezefilm.report.display.terminal import show_analysis
+    from squeezefilm.report.kit.drawing_process import drawing_process
 
     display = to_be_solved(
         asked.target,
@@ -137,13 +139,14 @@ def analyze(asked: AnalyzeOptions) -> None:
         theory=asked.theory,
         quiet=asked.as_json,
     )
-    with working(asked.as_json) as step:
+    drawer = drawing_process(asked.out is not None, prepare, drawing)
+    with drawer as aside, working(asked.as_json) as step:
         result = run(display, **given(asked, leave="target out as_json whole"), progress=step)
         written = None
         if asked.out is not None:
             from squeezefilm.report.display.page import write_analysis
 
-            written = write_analysis(result, asked.out, progress=step)
+            written = write_analysis(result, asked.out, progress=step, aside=aside)
     show = partial(show_analysis, whole=asked.whole)
     answer(asked.as_json, result, show, report=written)
     if written is None and not asked.as_json:
@@ -162,8 +165,10 @@ class FrictionOptions:
     surface: OnSurface = None
     model: Model = None
     position: Annotated[
-        str, In("m"), typer.Option(help="The pad's centre from an antinode, along the wave.")
-    ] = "0 mm"
+        str | None,
+        In("m"),
+        typer.Option(help="The pad's centre from an antinode, along an even wave."),
+    ] = None
     speed: Speed = None
     place: OnPlace = None
     ambient_pressure: Annotated[

@@ -122,7 +122,7 @@ def _quantity(value: float, unit: si.Unit) -> str:
     # The shortest digits that mean this float mean it in any decimal multiple of its unit too;
     # but a unit that is not scaled is rounded from the float itself, which may round elsewhere.
     digits = len(Decimal(repr(value)).as_tuple().digits)
-    text = si.format_quantity(value, unit, digits=digits)
+    text = si.typed_quantity(value, unit, digits=digits)
     if si.parse_quantity(text, unit) != value:
         text = f"{value!r} {unit.symbol}"
     return f'"{text}"'

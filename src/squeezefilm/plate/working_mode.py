@@ -23,6 +23,7 @@ from squeezefilm.plate.ring.body import (
 )
 from squeezefilm.plate.ring.modes import AnnularMode
 from squeezefilm.plate.solid.modes import zero_crossings
+from squeezefilm.plate.solid.resonances import Neighbour
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.progress import NO_HURRY, Pace
 
@@ -43,6 +44,10 @@ def resonance_factor(
 
 PlateTheory = Literal["solid", "timoshenko", "euler_bernoulli"]
 PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
+
+
+TAKES_PART: si.Dimensionless = 0.1
+"""The share of a mode's amplitude from which on it is said that a neighbour adds it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +87,26 @@ class WorkingMode:
     solid: SolidMode | None = None
     beam: BeamResponse | None = None
     disc: AnnularMode | None = None
+
+    @property
+    def neighbour(self) -> Neighbour | None:
+        """The driven mode that adds most at this one's resonance, where the plate was solved."""
+        return None if self.solid is None else self.solid.neighbour
+
+    @property
+    def company(self) -> str | None:
+        """What is to be said of a neighbour that takes part in this mode; None where none does."""
+        beside = self.neighbour
+        if beside is None or beside.share < TAKES_PART:
+            return None
+        return (
+            f"{self.label} is crowded: the mode {beside.name} at "
+            f"{si.format_quantity(beside.frequency, si.Unit('Hz'))} lies {beside.distance:.2g} "
+            f"half-bandwidths away and adds {100 * beside.share:.0f} % of the amplitude at "
+            "resonance. Where two modes cross they share the motion, so that the amplitude has a "
+            "dip there; small changes of the plate move it, and nodal lines and amplitude then "
+            "differ from what is computed"
+        )
 
     @si.checked_numbers
     def amplitude_per_volt_at(self, frequency: si.HertzLike) -> si.MetrePerVoltLike:

@@ -281,12 +281,12 @@ def _example(unit: Unit) -> str:
     return "0.5" if unit.symbol == "1" else f"2 {_usual(unit)}"
 
 
-_READABLE = [("G", 9), ("M", 6), ("k", 3), ("", 0), ("m", -3), ("u", -6), ("n", -9), ("p", -12)]
+_READABLE = [("G", 9), ("M", 6), ("k", 3), ("", 0), ("m", -3), ("µ", -6), ("n", -9), ("p", -12)]
 _SCALED = {"m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "m/V", "m/s", "N/m", "H"}
 
 
 def format_quantity(value: float, unit: Unit, digits: int = 4) -> str:
-    """A readable quantity text, e.g. ``"2 um"``, which `parse_quantity` reads back.
+    """A readable quantity text, e.g. ``"2 µm"``, which `parse_quantity` reads back.
 
     `digits` significant digits are kept (17 keep every float).
     """
@@ -303,6 +303,11 @@ def format_quantity(value: float, unit: Unit, digits: int = 4) -> str:
         number = rounded.scaleb(-power).normalize()
     text = f"{number:f}" if -4 < number.adjusted() < 7 else f"{number:e}"
     return f"{text} {prefix}{unit.symbol}"
+
+
+def typed_quantity(value: float, unit: Unit, digits: int = 4) -> str:
+    """The text of `format_quantity` as any keyboard has it, for a file or a form: ``"2 um"``."""
+    return format_quantity(value, unit, digits).replace("µ", "u")
 
 
 def percent(share: float, decimals: int = 0) -> str:

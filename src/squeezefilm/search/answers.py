@@ -51,10 +51,12 @@ class Asked:
     @property
     def draws(self) -> bool:
         """Whether it is part of an interval, for which the verb draws samples."""
-        return self.key.startswith(_DRAWN)
+        return _DRAWN.search(self.key) is not None
 
 
-_DRAWN = ("relative_friction_interval", "relative_friction_median", "interval_level", "uncertainty")
+_DRAWN = re.compile(
+    r"interval|^uncertainty|^power_W|_median|^active_area\.odds|share_(never|beyond_drive)"
+)
 
 
 def _units() -> dict[str, si.Unit]:

@@ -1,13 +1,16 @@
 """Points in, answers out: the one way by which anything that searches asks its questions.
 
-`answered` takes points and yields an answer for each as it comes, from this process or several. A
-sweep knows its points beforehand; a search would make them of the answers before, and another
-computer would answer behind the same function.
+`answered` takes points and yields an answer for each as it comes, from this process or several.
+Points of one plate follow each other in one process, which keeps the plate it has solved: a sweep
+over voltage, force or finger solves it once. A sweep knows its points beforehand; a search would
+make them of the answers before, and another computer would answer behind the same function.
 """
 
 from __future__ import annotations
 
+import collections
 import contextlib
+import itertools
 import multiprocessing
 import os
 import signal
@@ -21,6 +24,7 @@ from typing import Any
 
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.plate.layout import Actuator
 from squeezefilm.search.answers import numbers_of
 from squeezefilm.search.verbs import VERBS
 
@@ -83,67 +87,99 @@ def answered(
 ) -> Iterator[tuple[int, Answer]]:
     """Each point's number and its answer, as they come, from `jobs` processes.
 
-    One process: this one, in order. `answer` must be a function of a module where there are more. A
-    process that dies takes along what the others were at: each of these is tried again by itself.
-    If the iteration is stopped or interrupted, processes end at once.
+    Points of equal plates are answered one after the other. One process: this one. `answer` must be
+    a function of a module where there are more. A process that dies costs the point it was at,
+    which is tried again when no other runs. If the iteration is stopped or interrupted, processes
+    end at once.
     """
+    groups = of_one_plate(points)
     if jobs <= 1 or len(points) <= 1:
-        for number, point in enumerate(points):
-            yield number, answer(point)
+        for number in itertools.chain.from_iterable(groups):
+            yield number, answer(points[number])
         return
-    left, alone = list(range(len(points))), []
-    while left:
-        seen: set[int] = set()
-        for number, found in _pooled(points, left, min(jobs, len(left)), answer):
-            seen.add(number)
-            if found is None:
-                alone.append(number)
-            else:
-                yield number, found
-        # All, unless a process died: then those that nobody has begun.
-        left = [number for number in left if number not in seen]
+    alone = []
+    for number, found in _pooled(points, Shares(groups), min(jobs, len(points)), answer):
+        if found is None:
+            alone.append(number)
+        else:
+            yield number, found
     for number in alone:
-        for _, found in _pooled(points, [number], 1, answer):
+        for _, found in _pooled(points, Shares([[number]]), 1, answer):
             yield number, found or Answer({}, reason=_ENDED, lasting=False)
 
 
+def of_one_plate(points: Sequence[Point]) -> list[list[int]]:
+    """The numbers of points in groups of equal actuators, in the order of the first of each."""
+    groups: dict[Actuator, list[int]] = {}
+    for number, point in enumerate(points):
+        groups.setdefault(point.display.actuator, []).append(number)
+    return list(groups.values())
+
+
+class Shares:
+    """Which point a process takes next: of the plate that it has solved; then of one that nobody
+    has begun; then half of what another process has most left of, which solves that plate twice."""
+
+    def __init__(self, groups: Sequence[Sequence[int]]) -> None:
+        self._waiting = collections.deque(collections.deque(one) for one in groups)
+        self._own: dict[int, collections.deque[int]] = {}
+
+    def next(self, process: int) -> int | None:
+        """The number of the point for a process; None where none is left."""
+        own = self._own.get(process)
+        if not own:
+            own = self._waiting.popleft() if self._waiting else self._half()
+            self._own[process] = own
+        return own.popleft() if own else None
+
+    def _half(self) -> collections.deque[int]:
+        most = max(self._own.values(), key=len, default=collections.deque[int]())
+        return collections.deque(reversed([most.pop() for _ in range((len(most) + 1) // 2)]))
+
+
 def _pooled(
-    points: Sequence[Point], numbers: Sequence[int], jobs: int, answer: Callable[[Point], Answer]
+    points: Sequence[Point], shares: Shares, jobs: int, answer: Callable[[Point], Answer]
 ) -> Iterator[tuple[int, Answer | None]]:
-    """Answers of a pool of processes; None for those that were lost with a process, and no more
-    after them."""
+    """Answers of processes that take one point at a time; None for one that a process died of."""
     before = set(multiprocessing.active_children())
-    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _prepare)
-    todo = iter(numbers)
-    running: dict[Future[Answer], int] = {}
+    # Each its own executor: only so a point goes to the process that has its plate.
+    executors = [_executor() for _ in range(jobs)]
+    running: dict[Future[Answer], tuple[int, int]] = {}
+
+    def begin(process: int) -> None:
+        number = shares.next(process)
+        if number is not None:
+            running[executors[process].submit(answer, points[number])] = process, number
+
     try:
-        # A few more than processes: a pool that breaks takes along no more than these.
-        for number in todo:
-            running[pool.submit(answer, points[number])] = number
-            if len(running) >= jobs + 1:
-                break
+        for process in range(jobs):
+            begin(process)
         while running:
             done, _ = wait(running, return_when=FIRST_COMPLETED)
             for future in done:
-                number = running.pop(future)
+                process, number = running.pop(future)
+                found = None
                 try:
-                    yield number, future.result()
-                    following = next(todo, None)
-                    if following is not None:
-                        running[pool.submit(answer, points[following])] = following
+                    found = future.result()
                 except BrokenProcessPool:
-                    for lost in (number, *running.values()):
-                        yield lost, None
-                    return
+                    executors[process].shutdown(wait=False)
+                    executors[process] = _executor()
+                yield number, found
+                begin(process)
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+        for executor in executors:
+            executor.shutdown(wait=False, cancel_futures=True)
         left = set(multiprocessing.active_children()) - before
-        for process in left:
-            process.terminate()
-        for process in left:
-            process.join(2.0)
-            if process.is_alive():
-                process.kill()
+        for child in left:
+            child.terminate()
+        for child in left:
+            child.join(2.0)
+            if child.is_alive():
+                child.kill()
+
+
+def _executor() -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _prepare)
 
 
 def _prepare() -> None:

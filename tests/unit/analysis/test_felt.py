@@ -7,6 +7,7 @@ import pytest
 from squeezefilm.analysis.felt import FeltGratings, felt_gratings
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
+from squeezefilm.render.fidelity.survival import EXPLORING_SPEEDS
 from squeezefilm.render.resonator.envelope import finest_period
 
 
@@ -34,6 +35,21 @@ def test_each_speed_has_what_survives_what_is_felt_and_between_what(found: FeltG
     said = found.summary()
     assert said["draws"] == 8
     assert said["by_speed"][0]["finest_period_survives_m"] == found.at[0].survives
+
+
+def test_the_speed_that_was_asked_for_stands_by_itself() -> None:
+    display = load_display("biet2008-stator")
+    found = felt_gratings(display, predict(display, speed=0.15), draws=0)
+    assert found is not None
+    assert found.here.speed == 0.15
+    assert [one.speed for one in found.at] == [*EXPLORING_SPEEDS[:-1], 0.15, EXPLORING_SPEEDS[-1]]
+    said = found.summary()
+    assert said["finger_speed_m_per_s"] == 0.15
+    assert said["finest_period_felt_m"] == found.here.felt
+    # Of speeds that are asked for anyway one is the prediction's.
+    same = felt_gratings(display, predict(display, speed=EXPLORING_SPEEDS[1]), draws=0)
+    assert same is not None
+    assert len(same.at) == len(EXPLORING_SPEEDS)
 
 
 def test_without_draws_or_vibration() -> None:

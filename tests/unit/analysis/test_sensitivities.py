@@ -104,12 +104,42 @@ def test_a_beam_stands_in_for_a_plate_where_that_is_quick() -> None:
     assert np.sign([one.high.frequency_shift or 0.0 for one in both]).tolist() == [1.0, -1.0]
 
 
-def test_glue_of_a_plate_is_not_known_to_its_beam() -> None:
+@pytest.mark.slow
+def test_quick_rows_know_the_glue_of_a_plate() -> None:
+    """Theory knows the sign; the display predicted with the other glue has the same friction."""
+    display = load_display("basdogan2020-glass")
+    p = predict(display)
+    found = display_sensitivities(display, p)
+    assert "coarse mesh" in found.plate_model
+    stiff = _row(found, "actuator.glue.young_modulus")
+    assert stiff.low.frequency_shift < 0 < stiff.high.frequency_shift  # type: ignore[operator]
+    for end in (stiff.low, stiff.high):
+        there = predict(replaced(display, {stiff.path: end.value}))
+        assert end.relative_friction == pytest.approx(there.relative_friction, abs=3e-3)
+
+
+def test_what_is_not_known_stands_last() -> None:
+    """Who asks for the beam gets no rows of the glue, which it does not know."""
     display = load_display("basdogan2020-glass")
     found = display_sensitivities(display, predict(display, theory="timoshenko"))
     row = _row(found, "actuator.glue.thickness")
     assert (row.low.frequency_shift, row.low.relative_friction) == (None, None)
-    assert "ask for the solved plate" in row.low.why_not
+    assert "leave the theory out" in row.low.why_not
+    known = [one.known for one in found.rows]
+    assert known == sorted(known, reverse=True)
+    assert not all(known)
+
+
+def test_ceramics_with_full_constants_have_rows_of_both_their_kinds() -> None:
+    """Amplitude ∝ d31, and a stiffer ceramic raises the frequency."""
+    display = load_display("touchpad-glass")
+    found = display_sensitivities(display, predict(display, theory="timoshenko"))
+    charge = _row(found, "actuator.ceramic.charge_coefficient")
+    for end in (charge.low, charge.high):
+        assert end.amplitude_shift == pytest.approx(end.value / charge.nominal - 1, rel=1e-6)
+    assert "APC International" in charge.source
+    stiff = _row(found, "actuator.ceramic.in_plane_stiffness")
+    assert stiff.low.frequency_shift < 0 < stiff.high.frequency_shift  # type: ignore[operator]
 
 
 def test_an_amplitude_that_is_given_leaves_the_plate_out() -> None:

@@ -11,8 +11,9 @@ import pytest
 
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea, active_area, percent
 from squeezefilm.chain.pad_place import PadPlace, met_by_pads, pad_place, place_words, read_place
-from squeezefilm.chain.prediction import Prediction, predict, voltage_for_friction
+from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.touch import touch, touched_amplitudes
+from squeezefilm.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.contact.sharing.pad import pad_points, ridge_points
 from squeezefilm.display import ActiveRegion, Display, load_display
 from squeezefilm.errors import GeometryError, InputError, OutOfRangeError, QuantityError
@@ -63,8 +64,9 @@ def test_over_equal_antinodes_a_place_has_the_friction_of_the_law(position: floa
     here = dataclasses.replace(p.law, place=at)
     even = dataclasses.replace(p.law, position=position)
     amplitude = np.array([0.0, 0.3e-6, 1e-6, 2e-6])
-    assert here.curve(amplitude) == pytest.approx(even.curve(amplitude), abs=1e-9)
-    assert here.limits(1e-6).one_gap == pytest.approx(even.limits(1e-6).one_gap, abs=1e-9)
+    # Few nodes stand for all ridges at a place.
+    assert here.curve(amplitude) == pytest.approx(even.curve(amplitude), abs=1e-7)
+    assert here.limits(1e-6).one_gap == pytest.approx(even.limits(1e-6).one_gap, abs=1e-7)
     # Over the ridges, which leave a part of a period free at the ends; over the whole contact.
     assert here.mean_square == pytest.approx(even.mean_square, rel=0.025)
 
@@ -255,7 +257,8 @@ def test_a_place_names_itself_and_its_amplitude() -> None:
     assert p.place == pytest.approx((30e-3, 20e-3))
     assert "x 30 mm, y 20 mm" in p.place_said
     assert p.amplitude_at_place < p.vibration_amplitude
-    assert p.place_summary()["is_best_antinode"] is False
+    where = p.place_summary()
+    assert (where["is_best_of_area"], where["is_on_even_wave"]) == (False, False)
     best = predicted("plate")
     assert best.place == best.mode.lobe
     assert "best antinode" in best.place_said

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.chain.friction import FrictionLaw, friction_law
-from squeezefilm.chain.prediction import predict, voltage_for_friction
+from squeezefilm.chain.prediction import predict
+from squeezefilm.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import (

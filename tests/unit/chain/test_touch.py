@@ -19,7 +19,13 @@ from squeezefilm.plate.loaded_mode import LoadedMode
 
 F, Q = 30e3, 60.0
 LAW: Any = SimpleNamespace(
-    frequency=1.001 * F, model="partial-levitation", place=None, mean_square=0.5
+    frequency=1.001 * F,
+    model="partial-levitation",
+    place=None,
+    mean_square_even=0.5,
+    mean_square=0.5,
+    kind=SimpleNamespace(limit="own"),
+    sharing=lambda amplitude, limit: (amplitude, limit),
 )
 
 
@@ -32,8 +38,8 @@ def loads(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """Takes the finger's modal load over the mode's own, as a function of the amplitude."""
 
     def take(ratio: Callable[[float], complex]) -> None:
-        def sharing(law: object, amplitude: Any) -> SimpleNamespace:
-            return SimpleNamespace(mean_gap=2 * np.atleast_1d(amplitude))
+        def mean_gap(amplitude: Any) -> np.ndarray:
+            return np.asarray(2 * np.atleast_1d(amplitude))
 
         def felt(law: object, amplitude: float, gap: float) -> SimpleNamespace:
             assert gap == 2 * amplitude
@@ -44,7 +50,7 @@ def loads(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
             assert mass == 4e-3
             return LoadedMode(F, Q, felt.load)
 
-        monkeypatch.setattr(module, "_sharing", sharing)
+        monkeypatch.setattr(LAW, "mean_gap", mean_gap, raising=False)
         monkeypatch.setattr(module, "_felt", felt)
         monkeypatch.setattr(module, "_loaded", loaded)
 

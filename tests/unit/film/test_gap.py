@@ -57,7 +57,7 @@ def test_amplitude_broadcasts_through_the_properties() -> None:
     ("field", "value", "message"),
     [
         ("roughness", 0.0, "roughness = 0 m"),
-        ("vibration_amplitude", -1e-6, "vibration_amplitude = -1 um"),
+        ("vibration_amplitude", -1e-6, "vibration_amplitude = -1 µm"),
         ("vibration_amplitude", np.array([1e-6, np.nan]), "nan"),
         ("vibration_amplitude", np.ones((2, 2)) * 1e-6, "2 dimensions"),
         ("wavelength", float("inf"), "wavelength = inf"),

@@ -53,7 +53,7 @@ def test_another_program_reads_the_same_samples(tmp_path: Path) -> None:
 
 
 def test_nothing_is_clipped() -> None:
-    with pytest.raises(InputError, match=r"samples = 2\.1 um"):
+    with pytest.raises(InputError, match=r"samples = 2\.1 µm"):
         Waveform(np.array([2.1e-6]), 19_200.0, "m", 2e-6)
     with pytest.raises(InputError, match="whole number of samples"):
         Waveform(np.array([0.0]), 19_200.5, "m", 2e-6)

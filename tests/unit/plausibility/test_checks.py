@@ -8,7 +8,8 @@ from tests.unit.plausibility.described import changed
 
 from squeezefilm import presets
 from squeezefilm.chain import chosen_mode
-from squeezefilm.chain.prediction import predict, voltage_for_friction
+from squeezefilm.chain.prediction import predict
+from squeezefilm.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError
 from squeezefilm.plate.layout import GlueLayer
@@ -31,7 +32,7 @@ def with_value(path: str, value: float, name: str = PLATE) -> Display:
         ("actuator.substrate.density", 2.7, "2700 kg/m3"),
         ("actuator.substrate.density", 8.25, "8250 kg/m3"),
         ("actuator.substrate.young_modulus", 70e6, "70 GPa"),
-        ("actuator.thickness", 0.9, "900 um"),
+        ("actuator.thickness", 0.9, "900 µm"),
         ("actuator.ceramic.density", 7.7, "7700 kg/m3"),
         ("actuator.ceramic.in_plane_stiffness", 67.9e6, "67.9 GPa"),
         ("finger.contact_length", 10e-6, "10 mm"),
@@ -51,7 +52,7 @@ def test_thick_glue_is_refused_before_any_solve(monkeypatch: pytest.MonkeyPatch)
     plate = dataclasses.replace(base.actuator, glue=GlueLayer(30e-3, 3e9))  # type: ignore[arg-type]
     display = dataclasses.replace(base, actuator=plate)
     for ask in (predict, lambda one: voltage_for_friction(one, 0.5)):
-        with pytest.raises(ConfigError, match=r"actuator\.glue\.thickness.*Did you mean 30 um"):
+        with pytest.raises(ConfigError, match=r"actuator\.glue\.thickness.*Did you mean 30 µm"):
             ask(display)
 
 

@@ -393,7 +393,7 @@ class Bounded:
         ({"share": math.nan}, "share = nan cannot be used: .* and above 0 and below 1"),
         ({"way": -1e-9}, "way = -1 nm cannot be used: .*at least 0 m and at most 2 m"),
         ({"way": 2.5}, "way = 2.5 m cannot be used"),
-        ({"side": 1e-7}, "side = 100 nm cannot be used: it must be at least 1 um and at most 10 m"),
+        ({"side": 1e-7}, "side = 100 nm cannot be used: it must be at least 1 µm and at most 10 m"),
         ({"side": 11}, r"side = 11 m cannot be used: .* \(a side or a diameter: "),
         ({"times": 0}, "times = 0 .* a whole number at least 1 and at most 10000$"),
         ({"times": 10_001}, "times = 10001 cannot be used"),

@@ -19,6 +19,7 @@ from squeezefilm.quantities.units import (
     format_quantity,
     parse_quantity,
     parse_unit,
+    typed_quantity,
     unit_of,
 )
 
@@ -159,9 +160,9 @@ def test_texts_are_read_to_the_nearest_float() -> None:
 @pytest.mark.parametrize(
     ("value", "unit", "text"),
     [
-        (2e-6, M, "2 um"),
-        (1e-6, M, "1 um"),
-        (9.9999e-7, M, "1 um"),
+        (2e-6, M, "2 µm"),
+        (1e-6, M, "1 µm"),
+        (9.9999e-7, M, "1 µm"),
         (9.99e-7, M, "999 nm"),
         (1.0, M, "1 m"),
         (999.9, M, "999.9 m"),
@@ -185,6 +186,12 @@ def test_texts_are_read_to_the_nearest_float() -> None:
 )
 def test_a_value_is_written_as_a_person_reads_it(value: float, unit: Unit, text: str) -> None:
     assert format_quantity(value, unit) == text
+
+
+def test_what_is_written_into_a_file_can_be_typed() -> None:
+    assert typed_quantity(2.5e-6, M) == "2.5 um"
+    assert typed_quantity(2.345678e-6, M, 7) == "2.345678 um"
+    assert parse_quantity(format_quantity(2.5e-6, M), M) == parse_quantity("2.5 um", M) == 2.5e-6
 
 
 def test_the_digits_asked_for_are_kept() -> None:

@@ -170,7 +170,7 @@ def test_gates_of_speed_and_time() -> None:
         (lambda: Band.disc(0, 0, 0.0), "radius = 0 m"),
         (lambda: Bump(0.0, 0.0), "width = 0 m"),
         (lambda: Bump(0.0, 1e-3, "dent"), "Allowed: bump, hole"),
-        (lambda: Noise(1e-9, 1), "at least 1 um"),
+        (lambda: Noise(1e-9, 1), "at least 1 µm"),
         (lambda: Noise(1e-3, -1), "seed = -1"),
         (lambda: Noise(1e-3, 2**32), "seed = 4294967296"),
         (lambda: Noise(1e-3, 1.0), "seed = 1.0"),

@@ -68,10 +68,6 @@ def analysis_named(name: str) -> Analysis:
         return analyze(plate(base, nodal_lines=30, length=0.4, patches=patches[:1]))
     if name == "square":
         return analyze(plate(base, width=0.083))
-    if name == "smooth-finger":
-        return analyze(
-            dataclasses.replace(base, finger=dataclasses.replace(base.finger, ridge_amplitude=0.0))
-        )
     if name == "five-surfaces":
         surfaces = tuple(
             dataclasses.replace(base.surfaces[0], name=f"surface {n}", roughness=n * 0.2e-6)
@@ -111,3 +107,21 @@ def hostile_analysis() -> Analysis:
 def folder(tmp_path: Path) -> Path:
     """A folder that does not exist yet."""
     return tmp_path / "deep" / "report"
+
+
+@pytest.fixture
+def printed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[[], str]:
+    """The function that gives what was printed, where nobody looks and lines have 80 columns."""
+    for name in ("FORCE_COLOR", "COLUMNS", "TTY_COMPATIBLE", "TTY_INTERACTIVE"):
+        monkeypatch.delenv(name, raising=False)
+
+    def read() -> str:
+        captured = capsys.readouterr()
+        assert captured.err == ""
+        assert "\x1b" not in captured.out
+        assert all(len(line) <= 80 for line in captured.out.splitlines())
+        return captured.out
+
+    return read

@@ -23,6 +23,7 @@ sys.path.append(str(Path(__file__).parents[3] / "tools"))
         ("current", [("plate", "current_A")]),
         ("plate.modes.3.frequency", [("plate", "modes.3.frequency_Hz")]),
         ("lag_m", [("render", "lag_m")]),
+        ("felt.finest_period_felt", [("analyze", "felt.finest_period_felt_m")]),
         ("wanted.voltage", [("friction", "wanted.voltage_V")]),
         ("finest_period.100 mm/s", [("analyze", "finest_period_m.100 mm/s")]),
         ("sound_pressure_level.0.3 m", [("plate", "sound_pressure_level_dB.0.3 m")]),
@@ -45,8 +46,8 @@ def test_the_quickest_verb_that_knows_a_name_is_asked(
 
 
 def test_commas_part_names_and_none_is_asked_twice() -> None:
-    found = asked_for(["relative_friction, coupling", "relative_friction,"])
-    assert [one.column for one in found] == ["relative_friction", "coupling"]
+    found = asked_for(["relative_friction, coupling_coefficient", "relative_friction,"])
+    assert [one.column for one in found] == ["relative_friction", "coupling_coefficient"]
     other = asked_for(["analyze.relative_friction"])[0]
     assert (other.column, other.unit.symbol) == ("analyze.relative_friction", "1")
 
@@ -69,6 +70,25 @@ def test_commas_part_names_and_none_is_asked_twice() -> None:
 def test_the_unit_stands_in_the_key(key: str, unit: str) -> None:
     assert Asked("predict", key).unit.symbol == unit
     assert unit == "1" or without_units(key) != key
+
+
+@pytest.mark.parametrize(
+    ("name", "draws"),
+    [
+        ("relative_friction_median", True),
+        ("friction.relative_friction_interval", True),
+        ("wanted.voltage_median", True),
+        ("wanted.share_beyond_drive", True),
+        ("power_W", True),
+        ("felt.share_never_felt", True),
+        ("felt.finest_period_felt", False),
+        ("relative_friction", False),
+        ("heat.cold_power", False),
+        ("active_area.relative_friction.median", False),
+    ],
+)
+def test_what_is_part_of_an_interval_has_draws(name: str, draws: bool) -> None:
+    assert {one.draws for one in asked_for([name])} == {draws}
 
 
 @pytest.mark.parametrize(

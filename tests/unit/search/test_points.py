@@ -1,5 +1,6 @@
 """Points in, answers out: refusals and faults are answers; a process that dies costs one point."""
 
+import dataclasses
 import os
 from types import SimpleNamespace
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 import pytest
 
 from squeezefilm.display import load_display
-from squeezefilm.search.points import Answer, Point, answer_of, answered
+from squeezefilm.search.points import Answer, Point, Shares, answer_of, answered, of_one_plate
 from squeezefilm.search.verbs import VERBS
 
 STATOR = load_display("biet2008-stator")
@@ -57,6 +58,39 @@ def test_one_process_answers_in_order() -> None:
     found = list(answered(asked, answer=volts))
     assert [number for number, _ in found] == list(range(5))
     assert list(answered([], answer=volts)) == []
+
+
+def test_points_of_one_plate_follow_each_other() -> None:
+    wide, narrow = (
+        dataclasses.replace(STATOR, actuator=dataclasses.replace(STATOR.actuator, radial_width=w))
+        for w in (9e-3, 8e-3)
+    )
+    asked = [
+        Point(one, {"voltage": v}, "predict") for v in (1.0, 2.0, 3.0) for one in (wide, narrow)
+    ]
+    assert of_one_plate(asked) == [[0, 2, 4], [1, 3, 5]]
+    found = list(answered(asked, answer=volts))
+    assert [number for number, _ in found] == [0, 2, 4, 1, 3, 5]
+    assert [answer.numbers["voltage_V"] for _, answer in found] == [1.0, 2.0, 3.0] * 2
+
+
+def test_a_process_keeps_to_its_plate_and_helps_where_no_plate_is_left() -> None:
+    shares = Shares([[0, 1, 2, 3, 4, 5], [6, 7]])
+    assert [shares.next(0), shares.next(1), shares.next(1)] == [0, 6, 7]
+    # The second has done its plate: it takes the later half of what the first has left.
+    assert [shares.next(1) for _ in range(3)] == [3, 4, 5]
+    assert [shares.next(0), shares.next(0)] == [1, 2]
+    assert [shares.next(0), shares.next(1), shares.next(2)] == [None, None, None]
+
+
+def test_every_point_is_taken_once_whoever_asks() -> None:
+    groups = [[0, 1, 2], [3], [4, 5, 6, 7, 8, 9, 10]]
+    for turn in ([0, 1, 2], [0, 0, 1], [2, 1, 1, 0]):
+        shares = Shares(groups)
+        taken = []
+        for _ in range(11):
+            taken += [n for process in turn if (n := shares.next(process)) is not None]
+        assert sorted(taken) == list(range(11)), turn
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """Sweeps as a whole, mostly of a stator, whose points take milliseconds."""
 
 import dataclasses
+import functools
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,8 @@ import pytest
 
 import squeezefilm as sf
 from squeezefilm.errors import InputError
+from squeezefilm.plate.solid import working
+from squeezefilm.plate.solid.solve import solve_for_response
 from squeezefilm.search import sweep as sweeps
 from squeezefilm.search.points import Answer, answered
 from squeezefilm.search.sweep import Run, SweepRequest, sweep, sweep_until_stopped
@@ -175,3 +178,31 @@ def test_an_answer_that_lacks_a_number_has_none(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(sweeps, "answered", nothing)
     found = sweep(STATOR, vary=VOLTS, ask="relative_friction")
     assert np.isnan(found.column("relative_friction")).all()
+
+
+@pytest.mark.slow
+def test_a_plate_is_solved_once_for_its_voltages_and_forces(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two plates, each at four points that need no other solve; voltages vary slowest."""
+    solves: list[Any] = []
+
+    def counted_solve(plate: Any, *rest: Any) -> Any:
+        solves.append(plate)
+        return solve_for_response(plate, *rest)
+
+    # As if so many plates were kept as a sweep has: one.
+    kept = functools.lru_cache(maxsize=1)(working._solid_mode.__wrapped__)
+    monkeypatch.setattr(working, "_solid_mode", kept)
+    monkeypatch.setattr(working, "solve_for_response", counted_solve)
+    found = sweep(
+        "biet2008-plate",
+        vary={
+            "voltage": "8 V, 12 V",
+            "finger.normal_force": "0.4 N, 0.5 N",
+            "actuator.thickness": "1.9 mm, 2 mm",
+        },
+        ask="relative_friction",
+    )
+    assert found.answered == 8
+    assert len(solves) == 2

@@ -152,7 +152,7 @@ class FrictionRequest:
     normal_force: si.Newton | None = None
     surface: str | None = None
     model: FrictionModel | None = None
-    position: si.Metre = 0.0
+    position: si.Metre | None = None
     speed: si.MetrePerSecond | None = None
     place: FacePlace | None = None
     ambient_pressure: si.Pascal | None = None
@@ -246,7 +246,7 @@ def without_gas(law: FrictionLaw, amplitude: si.Metre) -> si.Dimensionless:
     """
     pressure = law.finger.plateau_pressure(law.normal_force)
     decay = law.finger.asperity_law(law.surface.roughness).decay_length
-    swings, weights = law.ridge_swings()
+    swings, weights = law.ridge_swings
     each = [
         tapping_friction(
             float(amplitude * swing),
@@ -295,6 +295,6 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
 
 
 def _ripple(p: Prediction) -> FrictionRipple | None:
-    if p.touch.sharing is None or p.law.place is not None:
+    if p.touch.sharing is None or p.place_was_asked:
         return None
     return p.law.ripple(p.vibration_amplitude)

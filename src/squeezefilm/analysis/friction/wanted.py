@@ -23,8 +23,9 @@ from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, refusal_words, sobol_points
 from squeezefilm.chain.amplitude_search import HIGHEST_AMPLITUDE
 from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.prediction import Prediction, voltage_for_friction
+from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.touch import kept_at
+from squeezefilm.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.display import Display
 from squeezefilm.errors import OutOfRangeError, SqueezefilmError, UnreachableError
 from squeezefilm.progress import SayProgress
@@ -151,6 +152,8 @@ def wanted_friction(
             surface=p.surface.name,
             model=p.model,
             speed=p.speed,
+            place=None if p.law.place is None else p.place,
+            position=p.law.position if p.law.place is None else None,
         )
     except UnreachableError as error:
         if strict:

@@ -14,6 +14,9 @@ from squeezefilm.plate.solid.size import SolveSize, band_seconds, solve_size
 from squeezefilm.plausibility.expected import expectation
 from squeezefilm.progress import Deadline, Pace
 
+ALONE = "the budget left no time for the other modes of the band"
+"""What is said where only the working mode was solved."""
+
 
 @dataclass(frozen=True)
 class Hurry:
@@ -69,7 +72,7 @@ class Hurry:
         """What the budget left out of the working mode and the band's modes, in sentences."""
         said = [alone.coarseness] if alone.coarseness else []
         if self.whole is not None and modes is alone:
-            said.append("the budget left no time for the other modes of the band")
+            said.append(ALONE)
         return tuple(said)
 
     def response_mesh(self, alone: PlateModes) -> Resolution:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from squeezefilm import quantities as si
 from squeezefilm.plate.layout import Actuator, RectangularPlate
-from squeezefilm.plate.solid.resonances import DrivenMode
+from squeezefilm.plate.solid.resonances import DrivenMode, Moving, strongest_neighbour
 from squeezefilm.plate.solid.screening import symmetry_in_words
 
 _HZ, _PER_VOLT = si.Unit("Hz"), si.Unit("m/V")
@@ -106,33 +106,28 @@ def _choice(label: tuple[int, int] | None) -> str | None:
 
 
 def with_neighbours(modes: Sequence[ListedMode]) -> tuple[ListedMode, ...]:
-    """Modes with what each has for its neighbour, and whether its label is its own.
-
-    A mode of amplitude A' and half-bandwidth b' adds A'/√(1 + n²) at a distance of n b'.
-    """
+    """Modes with what each has for its neighbour, and whether its label is its own."""
     return tuple(_beside(mode, [other for other in modes if other is not mode]) for mode in modes)
 
 
-def _beside(mode: ListedMode, others: Iterable[ListedMode]) -> ListedMode:
-    best: tuple[float, float, str] | None = None
-    unique = True
-    for other in others:
-        distance = abs(other.frequency - mode.frequency) / other.half_bandwidth
-        share = other.amplitude_per_volt / (1 + distance**2) ** 0.5 / mode.amplitude_per_volt
-        if best is None or share > best[0]:
-            best = share, distance, other.label
-        same = other.label == mode.label and mode.label not in ("in plane",)
-        if same and other.amplitude_per_volt >= SAME_LABEL * mode.amplitude_per_volt:
-            unique = False
-    if best is None:
+def _beside(mode: ListedMode, others: Sequence[ListedMode]) -> ListedMode:
+    found = strongest_neighbour(_moving(mode), map(_moving, others))
+    if found is None:
         return mode
+    same = [other for other in others if other.label == mode.label != "in plane"]
     return dataclasses.replace(
         mode,
-        neighbour=best[2],
-        neighbour_distance=best[1],
-        neighbour_share=best[0],
-        unique=unique,
+        neighbour=found.name,
+        neighbour_distance=found.distance,
+        neighbour_share=found.share,
+        unique=all(
+            other.amplitude_per_volt < SAME_LABEL * mode.amplitude_per_volt for other in same
+        ),
     )
+
+
+def _moving(mode: ListedMode) -> Moving:
+    return Moving(mode.label, mode.frequency, mode.half_bandwidth, mode.amplitude_per_volt)
 
 
 def shown_frequency(mode: ListedMode) -> str:
@@ -155,9 +150,11 @@ def wanted_frequency(actuator: Actuator) -> si.Hertz | None:
     return actuator.working_frequency if isinstance(actuator, RectangularPlate) else None
 
 
-def suggested(modes: Sequence[ListedMode]) -> Suggestion:
+def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) -> Suggestion:
     """The mode to work in: of those that can be asked for, are inaudible and have straight nodal
-    lines, the one that moves most when what its neighbours take part with is held against it."""
+    lines, the one that moves most when what its neighbours take part with is held against it.
+
+    `described` is the mode that the display's file asks for: then there is nothing to write."""
     able = [
         mode
         for mode in modes
@@ -179,11 +176,15 @@ def suggested(modes: Sequence[ListedMode]) -> Suggestion:
         if len(able) > 1
         else ", the only such mode here"
     )
+    if best is described:
+        write = f"Keep {best.choice}, as described"
+    else:
+        alone = "" if best.unique else f', working_frequency = "{shown_frequency(best)}"'
+        write = f"Write {best.choice}{alone}"
     said = (
-        f"Write {best.choice}"
-        + ("" if best.unique else f', working_frequency = "{shown_frequency(best)}"')
-        + f": at {shown_frequency(best)} {best.label} is above the hearing range{straight}{others} "
-        f"({si.format_quantity(best.amplitude_per_volt, _PER_VOLT, 3)} at an antinode"
+        f"{write}: at {shown_frequency(best)} {best.label} is above the hearing range"
+        f"{straight}{others} ({si.format_quantity(best.amplitude_per_volt, _PER_VOLT, 3)} at an "
+        "antinode"
     )
     if best.neighbour is not None and best.neighbour_distance is not None:
         said += (

@@ -106,10 +106,12 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
             f"The mode taken, nearest to the working_frequency, {lines} and not {mode.label}: "
             "nodal lines and half wavelength below are those of its dominant part.",
         )
+    if (company := mode.company) is not None:
+        yield ModeDoubt("crowded", company)
     own = chosen(modes, mode.label, mode.resonance_frequency)
     if own is None:
         return
-    if own.crowded and own.neighbour_distance is not None:
+    if solid is None and own.crowded and own.neighbour_distance is not None:
         yield ModeDoubt(
             "crowded",
             f"{mode.label} is crowded: {own.neighbour} lies {own.neighbour_distance:.2g} "

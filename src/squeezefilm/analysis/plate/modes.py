@@ -27,7 +27,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.plate.ring.body import ring_body
-from squeezefilm.plate.ring.modes import clamped_capacitance
+from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, clamped_capacitance
 from squeezefilm.plate.solid.resonances import DrivenMode
 from squeezefilm.plate.solid.screening import SCREENING_ERROR, forbidden_by, screened_modes
 from squeezefilm.plate.solid.symmetry import drive_classes
@@ -130,14 +130,15 @@ def _of_plate(
     found = [mode for mode in found if mode.antinode_per_volt >= LISTED * strongest]
     listed = with_neighbours([listed_mode(mode) for mode in found])
     label = plate.working_label
+    working = f"({label[0]},{label[1]})"
     return ModeList(
         display=display,
         band=band,
         modes=listed,
-        working=f"({label[0]},{label[1]})",
+        working=working,
         forbidden=forbidden_by(plate, label),
         rules=_rules(plate),
-        suggestion=suggested(listed),
+        suggestion=suggested(listed, chosen(listed, working, wanted_frequency(plate))),
         model="piezoelectric_solid_3d, light mesh",
         frequency_error=SCREENING_ERROR,
         screened=tuple(found),
@@ -168,7 +169,8 @@ def _of_ring(
     tell("section")
     body = ring_body(display.actuator)
     working = body.mode()
-    found = modes_in_band(body, band, tell)
+    # To choose a mode by, elements of one degree less will do.
+    found = modes_in_band(body, band, tell, degree=DEFAULT_DEGREE - 1)
     capacitance = clamped_capacitance(body.section, body.drive)
     rows = [mode_row(body, mode, capacitance) for mode in found]
     strongest = max(row.amplitude_per_volt for row in rows)
@@ -207,7 +209,7 @@ def _of_ring(
         if driven
         else f"the channel's sectors do not drive {working.label}: over them its waves cancel",
         rules=(),
-        suggestion=suggested(listed)
+        suggestion=suggested(listed, chosen(listed, working.label))
         if not isinstance(display.actuator, AnnularStator)
         else Suggestion(None, "A stator works in the mode that was measured of it."),
         model=working.model + (", fitted stator" if body.fit is not None else ""),

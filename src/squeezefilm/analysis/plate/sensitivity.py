@@ -11,7 +11,7 @@ import functools
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeVar
+from typing import Literal, TypeVar
 
 import numpy as np
 
@@ -228,23 +228,12 @@ def _both(name: str, path: str, unit: str, low: float, high: float) -> Iterator[
 def _text(value: float, unit: str) -> str:
     if unit == "1":
         return f"{value:.3g}"
-    return si.format_quantity(value, si.Unit(unit), 4).replace(" um", " µm").replace("m3", "m³")
+    return si.format_quantity(value, si.Unit(unit), 4).replace("m3", "m³")
 
 
 def with_ceramic_stiffness(plate: _Plate, share: si.Dimensionless) -> _Plate:
     """The plate or disc with all stiffnesses of its ceramic multiplied, d31 (or e31) kept."""
-    ceramic = plate.ceramic
-    constants = ceramic.constants
-    if constants is not None:
-        names = [f"compliance_{pair}" for pair in (11, 12, 13, 33, 44, 66)]
-        changed: dict[str, Any] = {name: getattr(constants, name) / share for name in names}
-        # What was stated of e and free ε belongs to the other stiffness.
-        changed |= {f"free_permittivity_{axis}": None for axis in (11, 33)}
-        changed |= {f"stress_coefficient_{pair}": None for pair in (31, 33, 15)}
-        constants = dataclasses.replace(constants, **changed)
-    stiffness = ceramic.in_plane_stiffness * share
-    softer = dataclasses.replace(ceramic, in_plane_stiffness=stiffness, constants=constants)
-    return dataclasses.replace(plate, ceramic=softer)
+    return dataclasses.replace(plate, ceramic=plate.ceramic.scaled(stiffness=share))
 
 
 def with_other_data_set(plate: RectangularPlate) -> RectangularPlate:

@@ -20,16 +20,20 @@ from squeezefilm.results import Result, stamp, to_json
 class ModeRow:
     """One mode of the table: label by nodal lines across length and width, extrapolated frequency
     with its estimated error, Q, amplitude per volt at the largest point of the face if it stood
-    alone, effective coupling, modal force (N/V for unit modal mass)."""
+    alone, effective coupling √(1 − f²/f_p²) with the parallel resonance f_p (terminals open, no
+    losses), modal force (N/V for unit modal mass). Errors are None where nobody estimates them."""
 
     label: str
     frequency: si.Hertz
     frequency_error: si.Hertz
     quality_factor: si.Dimensionless
     amplitude_per_volt: si.MetrePerVolt
-    coupling: si.Dimensionless
+    coupling_coefficient: si.Dimensionless
     modal_force: float
     half_wavelength: si.Metre | None
+    parallel_resonance_frequency: si.Hertz | None = None
+    parallel_resonance_frequency_error: si.Hertz | None = None
+    coupling_coefficient_error: si.Dimensionless | None = None
 
 
 @dataclass(frozen=True)
@@ -98,7 +102,12 @@ class SolvedBody(Result):
             "centreline_amplitude_m_per_V": self.centreline_per_volt,
             "half_wavelength_m": self.working.half_wavelength,
             "quality_factor": self.working.quality_factor,
-            "coupling": self.working.coupling,
+            "coupling_coefficient": self.working.coupling_coefficient,
+            "coupling_coefficient_error": self.working.coupling_coefficient_error,
+            "parallel_resonance_frequency_Hz": self.working.parallel_resonance_frequency,
+            "parallel_resonance_frequency_error_Hz": (
+                self.working.parallel_resonance_frequency_error
+            ),
             "modes": to_json(self.rows),
             "voltage_V": volts,
             "current_A": float(self.response.current(volts)[at]),

@@ -101,13 +101,15 @@ def share_load_tied(
     plateau_pressure: Annotated[si.Pascal, si.Above(0.0)],
     *,
     offset: si.MetreArray | None = None,
+    shares: Annotated[si.DimensionlessArray, si.AtLeast(0.0)] | None = None,
     skin: Skin | None = None,
 ) -> LoadSharing:
     """Plateaus tied to one mean gap u (ridge i at u + offset[i]) that carry a mean pressure (Pa).
 
-    `amplitude` (m) is one-dimensional, one value for each ridge; all else that is given back is of
-    shape (): pressures are means over all plateaus and the period, `gap_amplitude` and
-    `skin_amplitude` those of the last ridge. Raises as `share_load` does.
+    `amplitude` (m) is one-dimensional, one value for each ridge, and so are `shares`, of all the
+    ridges that each stands for (None: alike); all else that is given back is of shape ():
+    pressures are means over all plateaus and the period, `gap_amplitude` and `skin_amplitude`
+    those of the last ridge. Raises as `share_load` does.
     """
     from squeezefilm.contact.sharing import kernel
 
@@ -115,11 +117,13 @@ def share_load_tied(
     a = np.ascontiguousarray(np.ravel(amplitude), dtype=float)
     shift = np.zeros_like(a) if offset is None else np.ascontiguousarray(offset, dtype=float)
     si.require("offset", shift, si.Unit("m"), at_least=-1e-4, at_most=1e-4)
+    part = np.full(a.size, 1 / a.size) if shares is None else np.ascontiguousarray(shares)
+    ridges = kernel.CompiledRidges(a, shift, part)
     row = np.zeros(kernel.COLUMNS)
     solve: Any = kernel.balance
     law, impedance = asperities.compiled(), _impedance(skin, table)
     while True:
-        solve(a, shift, plateau_pressure, impedance, law, table.compiled, row)
+        solve(ridges, plateau_pressure, impedance, law, table.compiled, row)
         if int(row[kernel.STATUS]) != kernel.NEEDS_PANEL:
             break
         table.build(int(row[kernel.PANEL]))

@@ -36,6 +36,15 @@ class CompiledFilms(NamedTuple):
     panels: si.FloatArray
 
 
+class CompiledRidges(NamedTuple):
+    """Ridges tied together: what they meet (m), how far they stand off the mean gap (m), and which
+    share of them all each stands for; the shares sum to 1."""
+
+    amplitudes: si.FloatArray
+    offsets: si.FloatArray
+    shares: si.FloatArray
+
+
 @compiled(error_model="numpy")
 def _panel_value(c: si.FloatArray, xi: float, eta: float) -> float:
     """A two-dimensional Chebyshev sum by Clenshaw's recurrence, along η for each row, then ξ."""
@@ -140,14 +149,14 @@ def _swing(
 @compiled(error_model="numpy")
 def _carried(
     u: float,
-    amplitudes: si.FloatArray,
-    offsets: si.FloatArray,
+    ridges: CompiledRidges,
     impedance: si.FloatArray,
     asperities: CompiledAsperities,
     films: CompiledFilms,
 ) -> tuple[float, float, float, float, int]:
     """Mean gas and asperity pressure (Pa) of ridges at gaps u + offsets; swing and skin amplitude
     of the last; the panel lacking."""
+    amplitudes, offsets, shares = ridges
     gas, solid, b, moved = 0.0, 0.0, 0.0, 0.0
     for i in range(len(amplitudes)):
         gap, b = u + offsets[i], amplitudes[i]
@@ -158,16 +167,14 @@ def _carried(
         over, lack = film_value(0, gap, b, films)
         if lack != -1:
             return 0.0, 0.0, b, moved, lack
-        gas += over
-        solid += asperity_mean(asperities, gap, b)[0]
-    count = len(amplitudes)
-    return gas / count, solid / count, b, moved, -1
+        gas += shares[i] * over
+        solid += shares[i] * asperity_mean(asperities, gap, b)[0]
+    return gas, solid, b, moved, -1
 
 
 @compiled(error_model="numpy")
 def balance(
-    amplitudes: si.FloatArray,
-    offsets: si.FloatArray,
+    ridges: CompiledRidges,
     pressure: float,
     impedance: si.FloatArray,
     asperities: CompiledAsperities,
@@ -180,6 +187,7 @@ def balance(
     steadily with u; ln of it is nearly linear, hence a false position in logarithms, with the
     factor of Anderson and Björck where an end stays.
     """
+    amplitudes, offsets, _ = ridges
     out[:] = 0.0
     out[PANEL] = -1.0
     law = asperities.constants
@@ -198,7 +206,7 @@ def balance(
     alone = law[1] + swing - step * math.log(pressure / (law[0] * bessel(0, swing / step)))
     guess = max(low + 0.5 * step, alone)
     u, at, spent = guess, math.nan, 0
-    gas, solid, b, moved, lack = _carried(u, amplitudes, offsets, impedance, asperities, films)
+    gas, solid, b, moved, lack = _carried(u, ridges, impedance, asperities, films)
     if lack == -1:
         at = math.log((gas + solid) / pressure)
     left, right, f_left, f_right = math.nan, math.nan, math.nan, math.nan
@@ -218,7 +226,7 @@ def balance(
             u = max(right - step, 0.5 * (low + right)) if right - step <= low else right - step
             if u - low < 1e-6 * low:
                 u = low
-        gas, solid, b, moved, lack = _carried(u, amplitudes, offsets, impedance, asperities, films)
+        gas, solid, b, moved, lack = _carried(u, ridges, impedance, asperities, films)
         if lack != -1:
             break
         at = math.log((gas + solid) / pressure)
@@ -233,7 +241,7 @@ def balance(
         u = (left * f_right - right * f_left) / (f_right - f_left)
         if not left < u < right or right - left < 1e-15 * u:
             u = 0.5 * (left + right)
-        gas, solid, b, moved, lack = _carried(u, amplitudes, offsets, impedance, asperities, films)
+        gas, solid, b, moved, lack = _carried(u, ridges, impedance, asperities, films)
         if lack != -1:
             break
         at = math.log((gas + solid) / pressure)
@@ -275,12 +283,12 @@ def balance_rows(
     Rows that are balanced already (their status says so and they have taken steps) are kept.
     """
     lacking = -1
-    none = np.zeros(1)
+    none, whole = np.zeros(1), np.ones(1)
     for i in range(len(amplitude)):
         if out[i, STEPS] > 0.0 and out[i, STATUS] != NEEDS_PANEL:
             continue
-        one = amplitude[i : i + 1]
-        balance(one, none, pressure[i], impedance, asperities, films, out[i])
+        one = CompiledRidges(amplitude[i : i + 1], none, whole)
+        balance(one, pressure[i], impedance, asperities, films, out[i])
         if out[i, STATUS] == NEEDS_PANEL and lacking < 0:
             lacking = int(out[i, PANEL])
     return lacking

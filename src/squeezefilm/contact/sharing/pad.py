@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
@@ -39,13 +39,27 @@ class PadPosture:
     the pressure p(1 + τ x/(l0/2)) across the pad, −1 < τ < 1 (limit "own"); `gap_tilt` is the
     angle (rad) by which the pad as a whole leans against the surface (limit "one-gap"). `swings`
     are the amplitudes that the points meet over the antinode's, one for each, where the wave is no
-    |cos|: then `position` means nothing.
+    |cos|: then `position` means nothing. `shares` are those of the pad that the points stand for,
+    where they are not alike.
     """
 
     position: si.Metre = 0.0
     pressure_tilt: Annotated[si.Dimensionless, si.Above(-1), si.Below(1)] = 0.0
     gap_tilt: Annotated[si.Radian, si.AtLeast(-0.01), si.AtMost(0.01)] = 0.0
     swings: Annotated[si.DimensionlessArray, si.AtLeast(0.0)] | None = None
+    shares: Annotated[si.DimensionlessArray, si.AtLeast(0.0)] | None = None
+
+    def weights(self, points: si.MetreArray) -> si.DimensionlessArray:
+        """The share of the pad that each of its points stands for; they sum to 1."""
+        if self.shares is None:
+            return np.full(points.shape, 1 / points.size)
+        whole = float(np.sum(self.shares))
+        if self.shares.shape != points.shape or whole <= 0:
+            raise InputError(
+                f"{self.shares.size} shares for {points.size} points; give one for each, not all 0",
+                quantity="shares",
+            )
+        return self.shares / whole
 
     def over_the_antinode(
         self, points: si.MetreArray, half_wavelength: si.Metre
@@ -173,26 +187,27 @@ def pad_friction(
     """
     posture = posture or PadPosture()
     a = np.atleast_1d(np.asarray(amplitude, dtype=float))
-    wave = posture.over_the_antinode(points, half_wavelength)
+    wave, shares = posture.over_the_antinode(points, half_wavelength), posture.weights(points)
     if limit == "one-gap":
         offset = np.tan(posture.gap_tilt) * points
-        swings = np.outer(a, wave)
-        tied = _tied(table, asperities, swings, plateau_pressure, offset, skin, shear)
-        return dataclasses.replace(tied, amplitude=a)
+        if posture.gap_tilt == 0:
+            (wave,), shares = _kinds(shares, np.round(wave, 9))
+            offset = np.zeros(wave.shape)
+        ridges = _Tied(np.outer(a, wave), offset, shares)
+        tied = _tied(table, asperities, ridges, plateau_pressure, skin, shear)
+        return dataclasses.replace(tied, amplitude=a, ridge_points=points.size)
     # Ridges on the two sides of an antinode do the same: each kind is balanced once.
     if points.size > _KINDS:
         wave = np.round(_KINDS * wave) / _KINDS
     if posture.pressure_tilt == 0:
-        wave, counts = np.unique(np.round(wave, 9), return_counts=True)
+        (wave,), weight = _kinds(shares, np.round(wave, 9))
         lean = np.ones_like(wave)
     else:
         reach = max(float(np.max(np.abs(points))), 1e-300)
         lean = 1 + posture.pressure_tilt * points / reach
         if points.size > _KINDS:
             lean = np.round(_KINDS * lean) / _KINDS
-        kinds = np.round([wave, lean], 9)
-        (wave, lean), counts = np.unique(kinds, axis=1, return_counts=True)
-    weight = counts / points.size
+        (wave, lean), weight = _kinds(shares, np.round(wave, 9), np.round(lean, 9))
     own = share_load(table, asperities, np.outer(a, wave), plateau_pressure * lean, skin=skin)
     share = own.relative_friction
     kept = share if shear is None else sheared_friction(own, shear, table.frequency)
@@ -213,19 +228,38 @@ def pad_friction(
     )
 
 
+def _kinds(
+    shares: si.DimensionlessArray, *columns: si.FloatArray
+) -> tuple[si.FloatArray, si.DimensionlessArray]:
+    """What differs among points, shape (columns, kinds), and the share of the pad of each kind."""
+    kinds, at = np.unique(np.stack(columns), axis=1, return_inverse=True)
+    return kinds, np.bincount(at.ravel(), weights=shares).astype(float)
+
+
+class _Tied(NamedTuple):
+    """Ridges at one mean gap: what they meet (m), shape (amplitudes, ridges), how far they stand
+    off it (m), and their shares of the pad."""
+
+    swings: si.MetreArray
+    offset: si.MetreArray
+    shares: si.DimensionlessArray
+
+
 def _tied(
     table: FilmTable,
     asperities: ContactLaw,
-    swings: si.MetreArray,
+    tied_ridges: _Tied,
     plateau_pressure: si.Pascal,
-    offset: si.MetreArray,
     skin: Skin | None,
     shear: AsperityShear | None,
 ) -> PadFriction:
-    """All plateaus at one mean gap, for rows of swings (m), shape (amplitudes, ridges)."""
+    """All plateaus at one mean gap, each of its amplitudes."""
+    swings, offset, shares = tied_ridges
     # Each balance is already the mean over all ridges.
     tied = [
-        share_load_tied(table, asperities, one, plateau_pressure, offset=offset, skin=skin)
+        share_load_tied(
+            table, asperities, one, plateau_pressure, offset=offset, shares=shares, skin=skin
+        )
         for one in swings
     ]
     share = np.array([one.relative_friction for one in tied])
@@ -239,7 +273,7 @@ def _tied(
             gap_amplitude=swings,
             plateau_pressure=np.full(swings.shape, plateau_pressure),
         )
-        kept = sheared_friction(ridges, shear, table.frequency).mean(axis=-1)
+        kept = np.minimum(sheared_friction(ridges, shear, table.frequency) @ shares, 1.0)
     return PadFriction(
         amplitude=swings.max(axis=1),
         relative_friction=kept,

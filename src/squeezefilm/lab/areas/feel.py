@@ -124,7 +124,7 @@ class FeelArea:
         rows, columns = await self._quick.do(None, feel.pixels_of, data, asked.name)
         pixel = si.parse_quantity(asked.pixel, si.Unit("m"))
         if not 1e-6 <= pixel <= 0.1:
-            raise InputError(f"a pixel of {asked.pixel}: it may have 1 um to 10 cm")
+            raise InputError(f"a pixel of {asked.pixel}: it may have 1 µm to 10 cm")
         self._folder.mkdir(exist_ok=True)
         file.write_bytes(data)
         text = (

@@ -226,7 +226,7 @@ def _text(value: Any, unit: si.Unit | None) -> str:
         return "true" if value else "false"
     if unit is not None and isinstance(value, int | float):
         return (
-            repr(value) if unit.symbol == "1" else si.format_quantity(float(value), unit, digits=6)
+            repr(value) if unit.symbol == "1" else si.typed_quantity(float(value), unit, digits=6)
         )
     return str(value)
 

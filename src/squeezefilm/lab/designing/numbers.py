@@ -90,6 +90,10 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
     span = max(2.0 * p.vibration_amplitude, _LEAST_SPAN)
     amplitude = np.linspace(0.0, span, _POINTS)
     frequency = response_frequencies(mode.resonance_frequency, mode.quality_factor, 121)
+    # Fitting a stator takes seconds: not while a value is dragged.
+    load = None
+    if quality == "solved":
+        load = load_of_mode(display.actuator, mode, p.voltage, p.frequency)
     return {
         **p.summary(),
         "text": text,
@@ -112,7 +116,7 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
         "active_area": _area(display, p),
         "line": _line(p, display.actuator),
         "shape": _shape(p),
-        "drive_electronics": to_json(load_of_mode(display.actuator, mode, p.voltage, p.frequency)),
+        "drive_electronics": to_json(load),
         "provenance": stamp(display),
     }
 

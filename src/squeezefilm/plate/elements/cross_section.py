@@ -8,10 +8,12 @@ elements along x.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 
 from squeezefilm import quantities as si
 from squeezefilm.plate.elements.box_model import (
@@ -54,6 +56,18 @@ class CrossSection:
     g0: si.FloatArray
     g1: si.FloatArray
     c0: si.FloatArray
+
+    # The bases are nearly orthogonal: a few hundredths of these entries are not 0.
+
+    @functools.cached_property
+    def stiffnesses(self) -> tuple[sparse.csr_array, sparse.csr_array, sparse.csr_array]:
+        """P2, P1 and P0 as sparse matrices, to be applied by."""
+        return sparse.csr_array(self.P2), sparse.csr_array(self.P1), sparse.csr_array(self.P0)
+
+    @functools.cached_property
+    def inertia(self) -> sparse.csr_array:
+        """R as a sparse matrix, to be applied by."""
+        return sparse.csr_array(self.R)
 
 
 def potential_base(model: BoxModel) -> int:

@@ -76,7 +76,7 @@ def _reference_matrices(
     stiffness = slopes.T @ (weights[:, None] * slopes)
     if hierarchic:
         E = hierarchic_values(order)
-        mass, slope, stiffness = (E.T @ part @ E for part in (mass, slope, stiffness))
+        mass, slope, stiffness = (_exact_zeros(E.T @ part @ E) for part in (mass, slope, stiffness))
     for array in (mass, slope, stiffness):
         array.setflags(write=False)
     return mass, slope, stiffness
@@ -89,6 +89,11 @@ def line_matrices(
     basis; shape (order + 1)² each."""
     mass, slope, stiffness = _reference_matrices(order, hierarchic)
     return mass * (length / 2), slope, stiffness * (2 / length)
+
+
+def _exact_zeros(matrix: si.FloatArray) -> si.FloatArray:
+    """The same with what rounding leaves of integrals of orthogonal functions set to 0."""
+    return np.where(np.abs(matrix) > 1e-14 * np.max(np.abs(matrix)), matrix, 0.0)
 
 
 @functools.lru_cache(maxsize=64)

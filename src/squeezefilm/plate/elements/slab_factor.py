@@ -75,7 +75,7 @@ class SlabFactor:
     """
 
     def __init__(self, slabs: Slabs, shift: float, *, count: bool = False) -> None:
-        self._slabs, self._shift, self._count = slabs, shift, count
+        self._slabs, self.shift, self._count = slabs, shift, count
         self._dynamic: dict[int, Matrix] = {}
         self._bubbles: dict[Any, MirroredElement] = {}
         # Reflection along x turns u and nothing else.
@@ -137,7 +137,7 @@ class SlabFactor:
         if key in self._bubbles:
             return self._bubbles[key]
         if id(section) not in self._dynamic:
-            self._dynamic[id(section)] = section.P0 - self._shift * section.R
+            self._dynamic[id(section)] = section.P0 - self.shift * section.R
         made = SliceMatrices(
             section.P2,
             section.P1,

@@ -10,6 +10,7 @@ import dataclasses
 import functools
 
 import numpy as np
+from scipy import sparse
 
 from squeezefilm import quantities as si
 from squeezefilm.plate.elements.box_model import BoxModel, held_components
@@ -22,6 +23,9 @@ from squeezefilm.plate.elements.cross_section import (
     potential_base,
 )
 from squeezefilm.plate.elements.lobatto import line_matrices
+
+# Vectors that operators are applied to at once: of more, what lies between outgrows the caches.
+_TOGETHER = 32
 
 
 class Slabs:
@@ -136,23 +140,46 @@ class Slabs:
         return out
 
     def _apply(self, U: si.FloatArray, sections: list[CrossSection], mass: bool) -> si.FloatArray:
+        if U.shape[1] > _TOGETHER:
+            some = [U[:, k : k + _TOGETHER] for k in range(0, U.shape[1], _TOGETHER)]
+            return np.concatenate([self._apply(part, sections, mass) for part in some], axis=1)
         U = np.where(self.held[:, None], 0, U)
         out = np.zeros_like(U)
+        groups: dict[tuple[int, int], list[int]] = {}
         for e, section in enumerate(sections):
-            M, D, S = self._lines(e)
-            n, nodes, vectors = section.codes.size, M.shape[0], U.shape[1]
-            places = self._element_places[e]
-            local = np.stack([U[at] for at in places], axis=1)
-            flat = local.reshape(n, nodes * vectors)
-
-            terms = [(S, section.P2), (D, section.P1), (D.T, section.P1.T), (M, section.P0)]
-            result = np.zeros_like(local)
-            for line, slice_matrix in [(M, section.R)] if mass else terms:
-                result += np.matmul(line, (slice_matrix @ flat).reshape(local.shape))
-            for a, at in enumerate(places):
-                out[at] += result[:, a]
+            groups.setdefault((id(section), self.model.x.orders[e]), []).append(e)
+        for elements in groups.values():
+            # All elements that share a slice and an order at once.
+            local = U[np.stack([np.stack(self._element_places[e]) for e in elements])]
+            part = self._group_times(elements, sections[elements[0]], local, mass)
+            for number, e in enumerate(elements):
+                for a, at in enumerate(self._element_places[e]):
+                    out[at] += part[:, number, a]
         out[self.held] = 0
         return out
+
+    def _group_times(
+        self, elements: list[int], section: CrossSection, local: si.FloatArray, mass: bool
+    ) -> si.FloatArray:
+        """The mass or stiffness of elements of one slice and order times their own unknowns, which
+        come as (elements, nodes, unknowns of the slice, vectors) and go with the third first."""
+        M, D, S = (np.stack(some) for some in zip(*map(self._lines, elements), strict=True))
+        count, nodes, n, vectors = local.shape
+        flat = local.reshape(count, nodes, n * vectors)
+
+        def term(line: si.FloatArray, matrix: sparse.csr_array | sparse.csc_array) -> si.FloatArray:
+            along = (line @ flat).reshape(count * nodes, n, vectors).transpose(1, 0, 2)
+            return np.asarray(matrix @ along.reshape(n, -1))
+
+        if mass:
+            out = term(M, section.inertia)
+        else:
+            P2, P1, P0 = section.stiffnesses
+            out = term(S, P2)
+            out += term(D, P1)
+            out += term(D.transpose(0, 2, 1), P1.T)
+            out += term(M, P0)
+        return out.reshape(n, count, nodes, vectors)
 
     def grid(self, vector: si.FloatArray) -> si.FloatArray:
         """A vector's displacements: values at the x nodes, hierarchic coefficients along y and z;

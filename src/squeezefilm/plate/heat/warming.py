@@ -335,18 +335,17 @@ def _doubts(found: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
     if abs(drift) > 0.5 * found.half_bandwidth:
         kept = found.fixed.amplitude / found.cold_amplitude if found.cold_amplitude > 0 else 1.0
         said.append(
-            f"the plate loses {found.cold_power:.3g} W and warms: its resonance drifts by "
-            f"{drift:+.0f} Hz ({rise:.0f} K) where the drive follows it, against a half-bandwidth "
-            f"of {found.half_bandwidth:.0f} Hz; a drive that stays at its frequency is left with "
-            f"{si.percent(kept)} of the amplitude, {found.fixed.temperature_rise:.0f} K warm. "
-            "Track the resonance, or drive in bursts; resistance and coefficient are computed or "
-            "assumed"
+            f"the plate warms by {rise:.0f} K where the drive follows its resonance, which then "
+            f"drifts by {drift:+.0f} Hz; its half-bandwidth is {found.half_bandwidth:.0f} Hz. A "
+            f"drive that stays at its frequency is left with {si.percent(kept)} of the amplitude, "
+            f"{found.fixed.temperature_rise:.0f} K warm. Track the resonance, or drive in bursts. "
+            "Thermal resistance and temperature coefficient are computed or assumed"
         )
     if found.other_fixed:
-        others = ", ".join(f"{1e6 * one.amplitude:.3g} um" for one in found.other_fixed)
+        others = ", ".join(f"{1e6 * one.amplitude:.3g} µm" for one in found.other_fixed)
         said.append(
             f"at a fixed {found.frequency:.0f} Hz the warm plate has several states: "
-            f"{1e6 * found.fixed.amplitude:.3g} um is reached from cold, {others} by coming down "
+            f"{1e6 * found.fixed.amplitude:.3g} µm is reached from cold, {others} by coming down "
             "from a higher frequency or a warmer plate"
         )
     if rise >= _END:

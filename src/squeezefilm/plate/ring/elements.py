@@ -175,7 +175,8 @@ def harmonic_system(
         layer = section.layers[mesh.layer[i, j]]
         N, B, area = _element(harmonic, degree, mesh.r_edges[i : i + 2], mesh.z_edges[j : j + 2])
         law = _constitutive(layer)
-        stiff = angular * np.einsum("gsi,st,gtj,g->ij", B, law, B, area, optimize=True)
+        stress = (law @ B) * (angular * area)[:, None, None]
+        stiff = B.reshape(-1, B.shape[2]).T @ stress.reshape(-1, B.shape[2])
         inertia = angular * layer.solid.density * (N.T * area) @ N
         grid = (i * degree + local)[:, None] * z.size + (j * degree + local)[None, :]
         rows = unknown[grid.ravel()].T.ravel()
@@ -189,8 +190,8 @@ def harmonic_system(
         if layer.solid.piezoelectric:
             # One volt between the faces: E_z = ∓1/h, uniform, so that no charge is left inside.
             field = (1.0 if layer.driven_face == "lower" else -1.0) / layer.thickness
-            stress = law[:6, 8] * field  # law[:6, 6:] is −eᵀ: T = c S − eᵀ E
-            pull = np.einsum("gsi,s,g->i", B[:, :6], stress, area) * signs
+            # law[:6, 6:] is −eᵀ: T = c S − eᵀ E.
+            pull = (law[:6, 8] * field) @ np.tensordot(area, B[:, :6], axes=1) * signs
             np.add.at(force, np.where(rows < count, rows, total), -pull)
             capacitance += -law[8, 8] * field**2 * area.sum()
     matrix = gathered(triples, total)

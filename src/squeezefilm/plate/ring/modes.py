@@ -141,11 +141,34 @@ def bending_mode(
     modes = annular_modes(
         section, diameters, count=6 + 2 * circles, degree=degree, quality_factor=quality_factor
     )
+    return _labelled(section, modes, label)
+
+
+@si.checked_numbers
+def bending_frequency(
+    section: AnnularSection,
+    diameters: Annotated[int, si.AtLeast(0)],
+    *,
+    degree: Annotated[int, si.AtLeast(3), si.AtMost(12)] = DEFAULT_DEGREE,
+) -> si.Hertz:
+    """The frequency of B(0, `diameters`) (Hz), as `bending_mode` has it, without an estimate of its
+    error: at half the cost. Raises what `bending_mode` raises."""
+    system = harmonic_system(section, diameters, degree)
+    squares, vectors = _eigenpairs(system, 0.0, 6)
+    modes = [
+        _mode(section, system, float(square), vector, 1.0)
+        for square, vector in zip(squares, vectors.T, strict=True)
+    ]
+    return _labelled(section, modes, f"B(0,{diameters})").frequency
+
+
+def _labelled(section: AnnularSection, modes: Sequence[AnnularMode], label: str) -> AnnularMode:
+    """The lowest of some modes with a label that moves the surface."""
     for mode in modes:
         if mode.label == label and mode.modal_mass <= section.mass:
             return mode
     raise InputError(
-        f"no mode {label} among the lowest {len(modes)} with {diameters} nodal diameters "
+        f"no mode {label} among the lowest {len(modes)} with {modes[0].harmonic} nodal diameters "
         f"({', '.join(mode.label for mode in modes)}); ask annular_modes near its frequency"
     )
 

@@ -83,15 +83,14 @@ def ring_response(
     return RingResponse(frequencies, radius, motion, admittance, tuple(harmonics), len(near))
 
 
-def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> EquivalentCircuit:
-    """Butterworth-Van Dyke around the mode: the motional branch from modal mass and force, the
-    static capacitance from what the sweep's admittance has beside it.
+def modal_circuit(body: RingBody, mode: AnnularMode) -> EquivalentCircuit:
+    """The motional branch of a mode from its modal mass and force, without a static capacitance.
 
     L1 = M/F², C1 = F²/(ω² M), R1 = ω M/(Q F²). Raises `ZeroDivisionError` for a mode that the
     channel does not drive.
     """
     omega0, force = 2 * math.pi * mode.frequency, mode.modal_force(body.drive)
-    bare = EquivalentCircuit(
+    return EquivalentCircuit(
         frequency=mode.frequency,
         quality_factor=mode.quality_factor,
         static_capacitance=0.0,
@@ -99,9 +98,21 @@ def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> E
         motional_inductance=mode.modal_mass / force**2,
         motional_capacitance=force**2 / (omega0**2 * mode.modal_mass),
     )
+
+
+def with_static_capacitance(bare: EquivalentCircuit, response: DrivenResponse) -> EquivalentCircuit:
+    """A motional branch with the static capacitance (F) that a response's admittance has beside it,
+    in the median."""
     omega = 2 * np.pi * response.frequencies
     rest = (response.admittance - bare.admittance(response.frequencies)) / (1j * omega)
     return replace(bare, static_capacitance=float(np.median(rest.real)))
+
+
+def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> EquivalentCircuit:
+    """Butterworth-Van Dyke around the mode: the motional branch of `modal_circuit`, the static
+    capacitance from what the sweep's admittance has beside it. Raises as `modal_circuit`."""
+    bare = modal_circuit(body, mode)
+    return with_static_capacitance(bare, response)
 
 
 def static_capacitance(body: RingBody, circuit: EquivalentCircuit | None) -> si.Farad:

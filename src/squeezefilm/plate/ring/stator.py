@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from scipy.optimize import brentq
+from scipy.optimize import brentq, root_scalar
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, UnreachableError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.elements.box_model import isotropic_solid, piezoceramic_solid
 from squeezefilm.plate.ring.materials import soft_teeth, stiff_teeth
-from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, AnnularMode, bending_mode
+from squeezefilm.plate.ring.modes import (
+    DEFAULT_DEGREE,
+    AnnularMode,
+    bending_frequency,
+    bending_mode,
+)
 from squeezefilm.plate.ring.section import (
     AnnularSection,
     RingLayer,
@@ -22,6 +28,8 @@ from squeezefilm.plate.ring.section import (
 )
 
 ToothModel = Literal["soft", "stiff"]
+# Elements to begin a fit with, and how near it comes to the thickness (m).
+_ROUGH, _NEAR = 3, 1e-9
 _M, _HZ = si.Unit("m"), si.Unit("Hz")
 PHOSPHOR_BRONZE = ElasticMaterial("phosphor bronze", 112e9, 0.33, 8800.0)
 """What motor stators are commonly made of; handbook values (C51900), assumed for the USR60."""
@@ -69,19 +77,46 @@ class StatorFit:
     """A stator whose `ring_thickness` (metal between ceramic and teeth) was fitted.
 
     `assumptions` name what was assumed, in SI units; the section's mean diameter follows from the
-    given wavelength. `frequency_bounds` are the frequencies that this thickness
-    would have with the teeth soft (no hoop stiffness) and stiff (fill × E): how far the tooth
-    layer is uncertain; `thickness_bounds` the thicknesses that each bound would have been fitted
-    to (the thinnest allowed where the stiff bound is too high even so).
+    given wavelength. How far the tooth layer is uncertain, `frequency_bounds` and
+    `thickness_bounds` say; they are computed when they are first asked for.
     """
 
     section: AnnularSection
     mode: AnnularMode
     drive: SectorDrive
     ring_thickness: si.Metre
-    frequency_bounds: tuple[si.Hertz, si.Hertz]
-    thickness_bounds: tuple[si.Metre, si.Metre]
     assumptions: StatorAssumptions
+    _ring: _Ring = field(repr=False)
+
+    @functools.cached_property
+    def frequency_bounds(self) -> tuple[si.Hertz, si.Hertz]:
+        """The frequencies (Hz) that this thickness would have with the teeth soft (no hoop
+        stiffness) and stiff (fill × E)."""
+
+        def of(teeth: ToothModel) -> si.Hertz:
+            if teeth == self.assumptions.tooth_model:
+                return self.mode.frequency
+            return self._ring.frequency_of(self.ring_thickness, teeth)
+
+        return of("soft"), of("stiff")
+
+    @functools.cached_property
+    def thickness_bounds(self) -> tuple[si.Metre, si.Metre]:
+        """The thicknesses (m) that would have been fitted with the teeth stiff and soft: the
+        thinnest allowed where the stiff teeth's frequency is too high even so, the thickest where
+        the soft teeth's is too low."""
+        toothless = self.assumptions.tooth_height == 0
+
+        def of(teeth: ToothModel, without: si.Metre) -> si.Metre:
+            if toothless or teeth == self.assumptions.tooth_model:
+                return self.ring_thickness
+            try:
+                return self._ring.thickness(teeth)
+            except UnreachableError:
+                return without
+
+        thinnest, thickest = self._ring.ends
+        return of("stiff", thinnest), of("soft", thickest)
 
     @si.checked_numbers
     def amplitude(self, voltage: si.Volt) -> si.Metre:
@@ -152,24 +187,14 @@ def fit_stator(
     si.require("thickest", thickest, _M, above=start)
     mean_diameter = waves * wavelength / math.pi
     ring = _Ring(frequency, waves, mean_diameter, (start, thickest), degree, a)
-    soft = ring.thickness("soft")
-    # The stiff bound may be out of reach with any metal at all; it bounds the fit, it is not it.
-    try:
-        stiff = ring.thickness("stiff") if a.tooth_height > 0 else soft
-    except UnreachableError:
-        if a.tooth_model == "stiff":
-            raise
-        stiff = start
-    thickness = soft if a.tooth_model == "soft" else stiff
-    bounds = (ring.mode(thickness, "soft").frequency, ring.mode(thickness, "stiff").frequency)
+    thickness = ring.thickness(a.tooth_model if a.tooth_height > 0 else "soft")
     return StatorFit(
         section=stator_section(mean_diameter, thickness, a, a.tooth_model),
         mode=ring.mode(thickness, a.tooth_model),
         drive=alternate_sectors(a.driven_sectors, math.pi / waves),
         ring_thickness=thickness,
-        frequency_bounds=bounds,
-        thickness_bounds=(stiff, soft),
         assumptions=a,
+        _ring=ring,
     )
 
 
@@ -191,12 +216,44 @@ class _Ring:
         quality = self.assumptions.quality_factor
         return bending_mode(section, self.waves, degree=self.degree, quality_factor=quality)
 
-    def _above(self, thickness: float, teeth: ToothModel) -> float:
-        return self.mode(thickness, teeth).frequency - self.frequency
+    def frequency_of(self, thickness: float, teeth: ToothModel, degree: int | None = None) -> float:
+        """Its frequency (Hz), by elements of this degree or another."""
+        section = stator_section(self.mean_diameter, thickness, self.assumptions, teeth)
+        return bending_frequency(section, self.waves, degree=degree or self.degree)
 
     def thickness(self, teeth: ToothModel) -> float:
-        """The thickness (m) that has the frequency; raises `UnreachableError` where none does."""
-        ends = [self._above(t, teeth) for t in self.ends]
+        """The thickness (m) that has the frequency; raises `UnreachableError` where none does.
+
+        Sought with elements of a low degree, and from there with those of this one.
+        """
+        if self.degree <= _ROUGH:
+            return self._crossing(teeth, self.degree, _NEAR)
+        try:
+            first = self._crossing(teeth, _ROUGH, 1e3 * _NEAR)
+        except UnreachableError:
+            # At the ends the two degrees may differ.
+            return self._crossing(teeth, self.degree, _NEAR)
+        found = root_scalar(
+            lambda t: self.frequency_of(t, teeth) - self.frequency,
+            method="secant",
+            x0=first,
+            # Towards the inside, whichever end is near.
+            x1=first + 1e-3 * (sum(self.ends) / 2 - first),
+            xtol=_NEAR,
+            maxiter=8,
+        )
+        inside = self.ends[0] <= found.root <= self.ends[1]
+        if found.converged and inside:
+            return float(found.root)
+        return self._crossing(teeth, self.degree, _NEAR)
+
+    def _crossing(self, teeth: ToothModel, degree: int, near: float) -> float:
+        """The same with elements of one degree, between the ends and to so many metres."""
+
+        def above(thickness: float) -> float:
+            return self.frequency_of(thickness, teeth, degree) - self.frequency
+
+        ends = [above(t) for t in self.ends]
         if ends[0] * ends[1] > 0:
             raise UnreachableError(
                 f"no ring thickness from {si.format_quantity(self.ends[0], _M)} to "
@@ -206,4 +263,4 @@ class _Ring:
                 f"{si.format_quantity(ends[1] + self.frequency, _HZ)}; change the assumptions",
                 quantity="frequency",
             )
-        return float(brentq(self._above, *self.ends, args=(teeth,), xtol=1e-9))
+        return float(brentq(above, *self.ends, xtol=near))

@@ -30,7 +30,6 @@ class CoarseModes:
     vectors: si.FloatArray
     labels: list[Label | None]
     factor: SlabFactor
-    shift: float
 
 
 def class_fits(parity: Symmetry, label: Label) -> bool:
@@ -91,7 +90,7 @@ def coarse_modes(
         values, vectors = pairs.values, pairs.vectors
     x, y, surface = surface_shapes(solved, vectors)
     labels = [label_of(one, x, y) for one in surface]
-    return CoarseModes(parity, solved, values, vectors, labels, factor, shift)
+    return CoarseModes(parity, solved, values, vectors, labels, factor)
 
 
 def chosen_modes(

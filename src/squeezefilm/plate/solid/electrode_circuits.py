@@ -10,11 +10,14 @@ from scipy.linalg import eig
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
-from squeezefilm.plate.elements.krylov import with_open_electrodes
+from squeezefilm.plate.elements.krylov import modes_near, with_open_electrodes
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.reduced import plate_circuit
 from squeezefilm.plate.solid.symmetry import drive_signs
+
+_HARDLY = 1e-9
+_OPEN_TOLERANCE = 1e-6
 
 
 def inverse_with_open(solved: PlateModel, factor: SlabFactor) -> Callable[..., si.FloatArray]:
@@ -53,37 +56,33 @@ def tied_electrodes(solved: PlateModel, groups: list[list[tuple[int, float]]]) -
 
 
 def open_values(
-    solved: PlateModel,
-    factor: SlabFactor,
-    shift: float,
-    values: si.FloatArray,
-    vectors: si.FloatArray,
+    solved: PlateModel, factor: SlabFactor, values: si.FloatArray, vectors: si.FloatArray
 ) -> si.FloatArray:
-    """ω² of the same modes with the drive's terminals open; `factor` is K − `shift` M."""
+    """ω² of the same modes with the drive's terminals open, to the accuracy of the mesh; `values`
+    and `vectors` are those with the terminals short, `factor` that of a shift near them.
+
+    Modes that the drive does not move keep their value. Raises `ConvergenceError` where a mode is
+    not found again among those with open terminals.
+    """
     slabs = solved.slabs
     signs = drive_signs(solved.plate)
     port = tied_electrodes(solved, [[(i, s) for i, s in enumerate(signs) if s]])
-    opened = _floating(solved)
-    columns = np.concatenate([port, opened], axis=1)
-    G, _ = slabs.electrode_columns
-    force = G @ port
-    if values.size == 0 or not port.size or np.max(np.abs(force.T @ vectors)) < 1e-9:
-        return values.copy()
+    out = values.copy()
+    if values.size == 0 or not port.size:
+        return out
+    G, C = slabs.electrode_columns
+    force, held = port.T @ G.T @ vectors, np.abs(np.diag(port.T @ C @ port))
+    # The first order of the rise, F²/(C ω²): where it is rounding there is nothing to solve.
+    moved = np.flatnonzero(np.sum(force**2 / held[:, None], axis=0) > _HARDLY * values)
+    if not moved.size:
+        return out
+    columns = np.concatenate([port, _floating(solved)], axis=1)
     solve = with_open_electrodes(slabs, factor.solve, columns)
-    # Rayleigh–Ritz over the modes and one step of the open inverse: open modes are near.
-    X = np.concatenate([vectors, solve(slabs.mass_times(vectors))], axis=1)
-    X = np.concatenate([X, solve(slabs.mass_times(X[:, vectors.shape[1] :]))], axis=1)
-    MX = slabs.mass_times(X)
-    lifted = solve(MX)
-    a, b = MX.T @ lifted, X.T @ MX
-    size, turn = np.linalg.eigh((b + b.T) / 2)
-    good = size > 1e-11 * size[-1]
-    T = turn[:, good] / np.sqrt(size[good])
-    inverse, turn2 = np.linalg.eigh(T.T @ (a + a.T) @ T / 2)
-    ritz = shift + 1 / inverse
-    overlap = (vectors.T @ MX @ (T @ turn2)) ** 2
-    best = np.argmax(overlap, axis=1)
-    return np.asarray(np.maximum(ritz[best], values))
+    pairs = modes_near(
+        slabs, solve, factor.shift, None, vectors[:, moved], tolerance=_OPEN_TOLERANCE
+    )
+    out[moved] = np.maximum(pairs.values, values[moved])
+    return out
 
 
 def shunted_frequencies(

@@ -13,7 +13,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.plate.elements.box_model import Medium
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.electrode_circuits import open_values, shunted_frequencies
+from squeezefilm.plate.solid.electrode_circuits import shunted_frequencies
 from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import (
     MODEL,
@@ -22,7 +22,12 @@ from squeezefilm.plate.solid.modes import (
     label_of,
     surface_shapes,
 )
-from squeezefilm.plate.solid.refined_modes import UNREFINED, RefinedModes, extrapolated
+from squeezefilm.plate.solid.refined_modes import (
+    UNREFINED,
+    RefinedModes,
+    effective_coupling,
+    extrapolated,
+)
 from squeezefilm.plate.solid.symmetry import Symmetry, drive_signs
 
 _Row = TypeVar("_Row")
@@ -66,6 +71,9 @@ class _Columns(NamedTuple):
     modal_forces: si.FloatArray
     drive_forces: si.FloatArray
     open_frequencies: si.HertzArray
+    open_errors: si.HertzArray
+    couplings: si.DimensionlessArray
+    coupling_errors: si.DimensionlessArray
     energy_shares: si.DimensionlessArray
     quality_factors: si.DimensionlessArray
     fields: list[tuple[PlateModel, si.FloatArray]]
@@ -90,7 +98,6 @@ def collected_modes(
 
     frequencies = np.array(taken(table.frequencies for table in tables))
     errors = np.array(taken(table.errors for table in tables))
-    opened = np.array(taken(table.open_frequencies for table in tables))
     over = int(np.sum(errors > tolerance * frequencies))
     coarse = any(piece.level == UNREFINED for piece in pieces)
     model = pieces[0].solved.model
@@ -110,8 +117,10 @@ def collected_modes(
         shapes=np.array(taken(table.shapes for table in tables)),
         modal_forces=np.array(taken(table.modal_forces for table in tables)),
         drive_forces=np.array(taken(table.drive_forces for table in tables)),
-        open_frequencies=opened,
-        couplings=np.sqrt(np.maximum(0.0, 1 - (frequencies / opened) ** 2)),
+        open_frequencies=np.array(taken(table.open_frequencies for table in tables)),
+        open_errors=np.array(taken(table.open_errors for table in tables)),
+        coupling_errors=np.array(taken(table.coupling_errors for table in tables)),
+        couplings=np.array(taken(table.couplings for table in tables)),
         quality_factors=np.array(taken(table.quality_factors for table in tables)),
         materials=tuple(materials),
         energy_shares=np.array(taken(table.energy_shares for table in tables)),
@@ -159,8 +168,8 @@ def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
     shunted = omega.real / np.sqrt(piece.values)
     frequency, error = frequency * shunted, error * shunted
     losses = losses + 2 * omega.imag / omega.real
-    known = rough.values[piece.index]
-    opened = open_values(rough.solved, rough.factor, rough.shift, known, some) / known
+    coupling, coupling_error = effective_coupling(piece)
+    opened, open_error = extrapolated(piece.coarse_open_values, piece.open_values, piece.level)
     # A product for each mode, as results were recorded: `forces @ signs` may differ in the last
     # digit. (So may a mode that is alone in its class: BLAS adds in another order along its row.)
     driven = np.array([row @ signs for row in forces])
@@ -174,7 +183,10 @@ def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
         shapes=turn[:, None, None] * surface[..., 2],
         modal_forces=turn[:, None] * forces,
         drive_forces=np.abs(driven),
-        open_frequencies=frequency / shunted * np.sqrt(opened),
+        open_frequencies=opened,
+        open_errors=open_error,
+        couplings=coupling,
+        coupling_errors=coupling_error,
         energy_shares=shares,
         quality_factors=1 / np.maximum(losses, 1e-30),
         fields=[(solved, sign * one) for sign, one in zip(turn, vectors.T, strict=True)],

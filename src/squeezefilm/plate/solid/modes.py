@@ -39,10 +39,11 @@ class PlateModes(SolvedAgain):
     `shapes` is w on the upper face over `x` × `y`, shape (modes, x, y), of modes with unit modal
     mass, so in 1/√kg. `modal_forces` (modes × patches) is the force of one volt on each patch's
     electrode on such a mode, in N/(V √kg), and `drive_forces` that of one volt on the drive.
-    `couplings` is the effective coupling coefficient √(1 − f_short²/f_open²) of the drive's
-    terminals, `quality_factors` from the materials' losses weighted by their elastic energy,
-    whose shares are in `energy_shares` (modes × `materials`). `left_coarse` says that a deadline
-    left no time for a finer mesh.
+    `open_frequencies` are those with the drive's terminals open (parallel resonances without
+    losses) with `open_errors`; `couplings` is the effective coupling coefficient
+    √(1 − f_short²/f_open²) of the terminals with `coupling_errors`. `quality_factors` are from the
+    materials' losses weighted by their elastic energy, whose shares are in `energy_shares` (modes ×
+    `materials`). `left_coarse` says that a deadline left no time for a finer mesh.
     """
 
     plate: RectangularPlate
@@ -57,6 +58,8 @@ class PlateModes(SolvedAgain):
     modal_forces: si.FloatArray
     drive_forces: si.FloatArray
     open_frequencies: si.HertzArray
+    open_errors: si.HertzArray
+    coupling_errors: si.DimensionlessArray
     couplings: si.DimensionlessArray
     quality_factors: si.DimensionlessArray
     materials: tuple[str, ...]

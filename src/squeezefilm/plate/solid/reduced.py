@@ -139,15 +139,20 @@ def _krylov_space(
     """The modes, (K − σM)⁻¹ applied to the columns, and `steps` times (K − σM)⁻¹M to that, of unit
     mass."""
     X = factor.solve(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
-    Q = np.zeros((slabs.unknowns, 0)) if modes is None else modes
-    MQ = slabs.mass_times(Q)
-    for _ in range(steps):
+    known = np.zeros((slabs.unknowns, 0)) if modes is None else modes
+    held = known.shape[1]
+    # As long as it may become, vectors side by side: each step takes products with all of it.
+    Q = np.empty((slabs.unknowns, held + steps * X.shape[1]), order="F")
+    MQ = np.empty_like(Q)
+    Q[:, :held], MQ[:, :held] = known, slabs.mass_times(known)
+    for step in range(steps):
         MX = slabs.mass_times(X)
         norm = np.sqrt(np.maximum(np.sum(X * MX, axis=0), 1e-300))
         X, MX = X / norm, MX / norm
-        for _ in range(2):
-            part = MQ.T @ X
-            X, MX = X - Q @ part, MX - MQ @ part
+        # But for rounding a new direction meets the last two blocks only: these first, then all.
+        for against in (slice(max(0, held - 2 * X.shape[1]), held), slice(held)):
+            part = MQ[:, against].T @ X
+            X, MX = X - Q[:, against] @ part, MX - MQ[:, against] @ part
         if np.sum(X * MX) < 1e-6 * X.shape[1]:
             # Little is left: the product carried along has lost its digits.
             MX = slabs.mass_times(X)
@@ -158,9 +163,12 @@ def _krylov_space(
             break
         scale = turn[:, good] / np.sqrt(size[good])
         X, MX = X @ scale, MX @ scale
-        Q, MQ = np.concatenate([Q, X], axis=1), np.concatenate([MQ, MX], axis=1)
-        X = factor.solve(MX)
-    return Q
+        new = slice(held, held + X.shape[1])
+        Q[:, new], MQ[:, new] = X, MX
+        held = new.stop
+        if step < steps - 1:
+            X = factor.solve(MX)
+    return Q[:, :held]
 
 
 def class_slices(parts: list[ReducedClass]) -> list[slice]:

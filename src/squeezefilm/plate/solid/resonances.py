@@ -5,7 +5,9 @@ The space was grown from the drive, so that what the drive cannot move is not am
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import ndimage
@@ -45,9 +47,44 @@ class DrivenMode:
         return "in plane" if self.label is None else f"({self.label[0]},{self.label[1]})"
 
     @property
-    def half_bandwidth(self) -> si.Hertz:
-        """f/(2Q): so far from resonance the amplitude is down to 71 %."""
-        return self.frequency / (2 * self.quality_factor)
+    def moving(self) -> Moving:
+        """What its neighbours are compared by, at the highest antinode."""
+        half = self.frequency / (2 * self.quality_factor)
+        return Moving(self.name, self.frequency, half, self.antinode_per_volt)
+
+
+class Moving(NamedTuple):
+    """A mode by its name, frequency (Hz), half-bandwidth f/2Q (Hz) and amplitude per volt (m/V)."""
+
+    name: str
+    frequency: si.Hertz
+    half_bandwidth: si.Hertz
+    amplitude_per_volt: si.MetrePerVolt
+
+
+@dataclass(frozen=True)
+class Neighbour:
+    """The mode that adds most at another's resonance: its name and frequency, how far it lies from
+    the other in its own half-bandwidths f/2Q, and how much it adds over the other's amplitude."""
+
+    name: str
+    frequency: si.Hertz
+    distance: si.Dimensionless
+    share: si.Dimensionless
+
+
+def strongest_neighbour(own: Moving, others: Iterable[Moving]) -> Neighbour | None:
+    """The mode that adds most at a mode's resonance; None where there is no other.
+
+    A mode of amplitude A' and half-bandwidth b' adds A'/√(1 + n²) at a distance of n b'.
+    """
+    found: Neighbour | None = None
+    for other in others:
+        distance = abs(other.frequency - own.frequency) / other.half_bandwidth
+        share = other.amplitude_per_volt / (1 + distance**2) ** 0.5 / own.amplitude_per_volt
+        if found is None or share > found.share:
+            found = Neighbour(other.name, other.frequency, distance, share)
+    return found
 
 
 def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[DrivenMode]:

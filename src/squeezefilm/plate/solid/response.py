@@ -13,6 +13,7 @@ from scipy import ndimage
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.elements.blas_threads import one_blas_thread
@@ -33,7 +34,8 @@ from squeezefilm.plate.solid.refined_modes import (
     RefinedModes,
     extrapolated_class,
 )
-from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs
+from squeezefilm.plate.solid.resonances import Neighbour, driven_modes, strongest_neighbour
+from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs, told_of
 
 _GRID = (121, 81)
 
@@ -136,6 +138,18 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
             _potentials=potentials,
             _again=functools.partial(self.at, f),
         )
+
+    @si.checked_numbers
+    def neighbour(self, frequency: si.Hertz) -> Neighbour | None:
+        """Of the driven modes that this response is made of, the one that adds most at the
+        resonance of that nearest to a frequency (Hz), within 10 % of it."""
+        si.require("frequency", frequency, si.Unit("Hz"), above=0, at_most=FREQUENCY.most)
+        around = 0.9 * frequency, 1.1 * frequency
+        found = [one.moving for part in self._parts for one in driven_modes(part, around)]
+        if not found:
+            return None
+        own = min(found, key=lambda one: abs(one.frequency - frequency))
+        return strongest_neighbour(own, [one for one in found if one is not own])
 
     @functools.cached_property
     def maximum(self) -> si.FloatArray:
@@ -315,7 +329,7 @@ def _reduced(
     parts = []
     for number, parity in enumerate(classes):
         if progress is not None:
-            progress(f"reducing class {number + 1} of {len(classes)}", number / len(classes))
+            progress(f"response, {told_of(parity)}", number / len(classes))
         known = next((piece for piece in solved if piece.found.parity == parity), None)
         if known is None:
             part = reduced_class(plate, parity, band, steps, pressures, resolution)

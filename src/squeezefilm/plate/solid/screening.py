@@ -28,6 +28,11 @@ SCREENING_ERROR: si.Dimensionless = 0.05
 
 # Krylov steps beside two for each mode expected in the band of one class.
 _STEPS = 40
+# One force goes along with the drive for each so many vectors of the space; not more than this.
+_LONG, _MOST_BESIDE = 40, 15
+_POINTS = (41, 31)
+Load = tuple[si.FloatArray, si.FloatArray, si.FloatArray]
+"""A surface force: x, y, and w on their grid (see `PlateModel.force`)."""
 
 
 @si.checked_numbers
@@ -48,24 +53,34 @@ def screened_modes(
             quantity="patches",
         )
     wide = band[0], band[1] * (1 + SCREENING_ERROR)
-    steps = _steps(plate, wide)
+    steps, loads = _space(plate, wide)
     found: list[DrivenMode] = []
     with one_blas_thread():
         for parity in drive_classes(plate):
-            part = reduced_class(plate, parity, wide, steps, [], SCREENING)
+            part = reduced_class(plate, parity, wide, steps, loads, SCREENING)
             if part.basis.shape[1]:
                 found += driven_modes(part, wide)
     return tuple(sorted(found, key=lambda mode: mode.frequency))
 
 
-def _steps(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> int:
-    """Steps of the reduction for a band: by how many modes of bending one class has there."""
+def _space(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> tuple[int, list[Load]]:
+    """Steps of the reduction for a band, by how many modes of bending one class has there, and
+    surface forces that go along with the drive where they are many.
+
+    To solve for several right sides takes little longer than for one: a long space is grown from
+    the drive and, beside it, forces without any order. What the drive cannot move has no amplitude
+    then, but is found.
+    """
     low, high = (wave_number(plate, max(f, 1.0)) for f in band)
     rim, copies = plate.length + plate.width, 1 << sum(symmetric_axes(plate))
     # Weyl's count of a free plate: k² area/4π, and what its rim adds.
     modes = (high**2 - low**2) * plate.area / (4 * math.pi) + (high - low) * rim / (2 * math.pi)
     require_within(BAND_MODES, math.ceil(modes), "band", enough="ask for a narrower band")
-    return _STEPS + math.ceil(2 * modes / copies)
+    vectors = _STEPS + math.ceil(2 * modes / copies)
+    beside = min(vectors // _LONG, _MOST_BESIDE)
+    x, y = np.linspace(0, plate.length, _POINTS[0]), np.linspace(0, plate.width, _POINTS[1])
+    forces = np.random.default_rng(1).standard_normal((beside, *_POINTS))
+    return math.ceil(vectors / (1 + beside)) + min(beside, 6), [(x, y, force) for force in forces]
 
 
 _SIDES, _ENDS = ("length", "width"), ("left and right", "front and back")

@@ -20,10 +20,10 @@ from squeezefilm.plate.solid.modes import Label
 from squeezefilm.plate.solid.reduced import resolved_frequency
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes
 
-# Products of a slice's unknowns that are worked off in a second: of one thread of the machine that
-# this was written on, 10 to 15 times 10^9 for large slices. Others are slower or faster by a factor
-# of three or so; time that is left is told from what was measured meanwhile.
-_RATE = 11e9
+# Processor time of one thread of the machine that this was written on, fitted to 14 plates of metal
+# and glass (see `benchmarks/size.py`): products of a slice's unknowns that are worked off in a
+# second to factorise and search a mesh, and entries of its factors to go on to the response.
+_RATE, _RESPONSE_RATE = 34e9, 70e6
 # Around what a mesh takes besides (s).
 _BESIDES = 0.1
 
@@ -40,13 +40,14 @@ class SolveSize(NamedTuple):
 
     @property
     def seconds(self) -> si.Second:
-        """Of all that a working mode takes (s), right to a factor of three or so."""
+        """Of all that a working mode takes (s): within a factor of 2 of the processor time on 14
+        plates, and by how fast the machine is and what else it does."""
         return self.coarse + self.refined + self.response
 
 
 def expected_seconds(solved: PlateModel) -> si.Second:
     """How long a mesh takes to be factorised and searched (s): slices times the cube of their
-    unknowns. Right to a factor of three or so, by machine."""
+    unknowns, as `SolveSize.seconds` is right."""
     slices, unknowns = _counted(solved)
     return _BESIDES + slices * unknowns**3 / _RATE
 
@@ -65,28 +66,28 @@ def solve_size(plate: RectangularPlate, label: Label, frequency: si.Hertz) -> So
     Raises what `plate_model` raises: `OutOfRangeError` for a plate too thin for solid elements,
     `InputError` for one too large.
     """
-    highest = 1.15 * frequency
     fitting = [one for one in all_classes(plate) if class_fits(one, label)]
     driven = drive_classes(plate)
-    band = resolved_frequency((frequency, frequency))
+    highest, band = 1.15 * frequency, resolved_frequency((frequency, frequency))
 
-    def taken(resolution: Resolution, *, response: bool) -> tuple[si.Second, int]:
-        meshes = [
-            plate_model(plate, band if response else highest, resolution, parity)
-            for parity in (driven if response else fitting)
-        ]
-        counted = [_counted(mesh) for mesh in meshes]
-        return (
-            sum(expected_seconds(mesh) for mesh in meshes),
-            max((slices * unknowns for slices, unknowns in counted), default=0),
+    def searched(resolution: Resolution) -> si.Second:
+        return sum(
+            expected_seconds(plate_model(plate, highest, resolution, one)) for one in fitting
         )
 
-    coarse, _ = taken(COARSE, response=False)
-    refined, unknowns = taken(NORMAL, response=False)
-    rough, _ = taken(COARSE, response=True)
-    response, others = taken(NORMAL, response=True)
-    # The response's frequency is extrapolated from a coarse mesh beside it.
-    return SolveSize(max(unknowns, others), coarse, refined, rough, response + rough)
+    def answered(resolution: Resolution) -> tuple[si.Second, int]:
+        """The response's seconds and largest mesh: a mode's own mesh and factors serve again."""
+        seconds, most = 0.0, 0
+        for parity in driven:
+            mesh = plate_model(plate, band, resolution, parity)
+            slices, unknowns = _counted(mesh)
+            seconds += _BESIDES + slices * unknowns**2 / _RESPONSE_RATE
+            seconds += 0.0 if parity in fitting else expected_seconds(mesh)
+            most = max(most, slices * unknowns)
+        return seconds, most
+
+    response, unknowns = answered(NORMAL)
+    return SolveSize(unknowns, searched(COARSE), searched(NORMAL), answered(COARSE)[0], response)
 
 
 @si.checked_numbers

@@ -28,7 +28,7 @@ from squeezefilm.plate.solid.mode_table import collected_modes
 from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.plate.solid.refined_modes import RefinedModes, refined_modes, with_label
 from squeezefilm.plate.solid.size import expected_seconds
-from squeezefilm.plate.solid.symmetry import Symmetry, all_classes, drive_classes
+from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, told_of
 from squeezefilm.progress import Deadline, ShareProgress
 
 # So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
@@ -137,7 +137,7 @@ def _solved(
     for nearest in _WIDTHS if mode is not None else (count,):
         found, begun = [], time.monotonic()
         for number, parity in enumerate(classes):
-            tell(f"coarse mesh, symmetry {_name(parity)}", _COARSE * number / len(classes))
+            tell(f"coarse mesh, {told_of(parity)}", _COARSE * number / len(classes))
             found.append(coarse_modes(plate, parity, centre, highest, band, nearest))
         if deadline is not None:
             deadline = deadline.slower(_slowness(found, time.monotonic() - begun))
@@ -152,7 +152,7 @@ def _solved(
         for number, (one, index) in enumerate(zip(found, chosen, strict=True)):
             if index.size:
                 share = _COARSE + (1 - _COARSE) * number / len(found)
-                tell(f"fine mesh, symmetry {_name(one.parity)}", share)
+                tell(f"fine mesh, {told_of(one.parity)}", share)
                 pieces.append(refined_modes(plate, one, index, highest, tolerance, deadline))
         if mode is None:
             break
@@ -170,7 +170,3 @@ def _slowness(found: list[CoarseModes], took: si.Second) -> float:
     """
     expected = sum(expected_seconds(one.solved) for one in found)
     return min(max(1.0, took / expected), 4.0)
-
-
-def _name(parity: Symmetry) -> str:
-    return "".join(p or "-" for p in parity)

@@ -88,3 +88,14 @@ def all_classes(plate: RectangularPlate) -> list[Symmetry]:
         ["S", "A"] if axis else [None] for axis in symmetric_axes(plate)
     ]
     return list(itertools.product(options[0], options[1]))
+
+
+def told_of(parity: Symmetry) -> str:
+    """Which modes a class of symmetry holds, for those who are told how far a solve is."""
+    moves = {"S": "alike", "A": "opposite"}
+    said = [
+        f"{moves[own]} on both halves of the {side}"
+        for own, side in zip(parity, ("length", "width"), strict=True)
+        if own is not None
+    ]
+    return f"modes that move {' and '.join(said)}" if said else "all modes"

@@ -28,6 +28,7 @@ from squeezefilm.plate.solid.modes import (
 )
 from squeezefilm.plate.solid.reduced import class_drive
 from squeezefilm.plate.solid.refined_modes import RefinedModes
+from squeezefilm.plate.solid.resonances import Neighbour
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.size import solve_size
 from squeezefilm.plate.solid.solve import solve_for_response
@@ -108,6 +109,11 @@ class SolidMode:
     def half_wavelength(self) -> si.Metre:
         """See `PlateModes.half_wavelength` (m)."""
         return self.modes.half_wavelength(self.index)
+
+    @functools.cached_property
+    def neighbour(self) -> Neighbour | None:
+        """The driven mode that adds most at this one's resonance; None where none is near."""
+        return self.response.neighbour(self.frequency)
 
     @si.checked_numbers
     def amplitude_per_volt_at(self, frequency: si.HertzLike) -> si.MetrePerVoltArray:

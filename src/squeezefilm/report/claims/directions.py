@@ -36,9 +36,7 @@ def show_values(values: Sequence[float] | None, unit: str) -> str:
         return "–"
     if unit == "m2":
         return " / ".join(f"{value * 1e4:.4g} cm²" for value in values)
-    return " / ".join(
-        si.format_quantity(value, si.Unit(unit), 4).replace("um", "µm") for value in values
-    )
+    return " / ".join(si.format_quantity(value, si.Unit(unit), 4) for value in values)
 
 
 def show_printed(item: ClaimResult) -> str:

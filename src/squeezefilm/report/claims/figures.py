@@ -12,7 +12,7 @@ from squeezefilm.display import load_display
 from squeezefilm.plate.beam.modes import euler_bernoulli_frequency, timoshenko_frequency
 from squeezefilm.plate.laminate import Laminate, plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.report.display.friction_figures import friction, pressure, wavelength
+from squeezefilm.report.claims.paper_figures import friction, pressure, wavelength
 from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import textwrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea, percent
 from squeezefilm.chain.pad_place import place_words
 from squeezefilm.report.kit import style
+from squeezefilm.report.kit.numbers import printable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,9 +79,11 @@ def _map(axes: Axes, area: ActiveArea, values: FloatArray, label: str) -> None:
     if high - low < 1e-6 * max(abs(high), 1e-9):
         low, high = low - 0.5e-3, high + 0.5e-3
     filled = axes.contourf(x, y, shown, levels=np.linspace(low, high, _LEVELS), cmap="cividis")
-    axes.figure.colorbar(
-        filled, ax=axes, label=label, ticks=MaxNLocator(nbins=5), orientation="horizontal"
+    # A scale takes its room where the map leaves some: beside one that is not wide.
+    side: Literal["vertical", "horizontal"] = (
+        "vertical" if np.ptp(x) < 1.3 * np.ptp(y) else "horizontal"
     )
+    axes.figure.colorbar(filled, ax=axes, label=label, ticks=MaxNLocator(nbins=5), orientation=side)
     axes.grid(visible=False)
     axes.set(aspect="equal", xlabel="x of the finger's centre (mm)", ylabel="y (mm)")
 
@@ -102,8 +105,9 @@ def _places(axes: Axes, area: ActiveArea) -> None:
         (area.worst_place, "worst place", "X"),
     ):
         x, y = (1e3 * one for one in place)
-        said = f"{name}, {place_words(place)}"
+        said = printable(f"{name}, {place_words(place)}")
         axes.plot([x], [y], look, **_PLACE, label=said)
+    # A place can lie anywhere on the map: both are named above it.
     axes.legend(
         loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=1, frameon=False, borderaxespad=0.2
     )

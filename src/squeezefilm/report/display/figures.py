@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import importlib
+from typing import TYPE_CHECKING
+
 from squeezefilm.report.display import (
     area_figures,
-    fidelity_figures,
     friction_figures,
     layout_figures,
     plate_figures,
     texture_figures,
 )
 from squeezefilm.report.friction import figures as friction_report
+from squeezefilm.report.kit import style
 from squeezefilm.report.kit.page_style import FigureOf
+
+if TYPE_CHECKING:
+    from squeezefilm.analysis.analyze import Analysis
 
 DECISION: tuple[FigureOf, ...] = (
     FigureOf(
@@ -41,6 +47,7 @@ DECISION: tuple[FigureOf, ...] = (
         plate_figures.frequency_response,
         "Vibration amplitude per volt around the working resonance, without a finger. Outside the "
         "half-power band less than 71 % of it is left.",
+        needs=("response",),
     ),
     FigureOf(
         "band",
@@ -49,6 +56,7 @@ DECISION: tuple[FigureOf, ...] = (
         "Friction divided by that without vibration, by the model of the verdict. The band and the "
         "bar hold what is uncertain in the description, in the finger and in the laws; in the bar "
         "the amplitude is uncertain too.",
+        needs=("band", "own_curves"),
     ),
 )
 """What one decides from."""
@@ -60,6 +68,7 @@ MODELS: tuple[FigureOf, ...] = (
         friction_report.chain,
         "The same finger by the paper's model, by solved films and by partial levitation, where "
         "film and asperities share the load.",
+        needs=("model_curves",),
     ),
     FigureOf(
         "films",
@@ -67,30 +76,10 @@ MODELS: tuple[FigureOf, ...] = (
         friction_figures.film_models,
         "The film's mean over-pressure divided by the finger's pressure: above 1 the film would "
         "carry the finger alone. The same finger, drawn in five ways.",
-    ),
-    FigureOf(
-        "pressure",
-        "Pressure under the finger",
-        friction_figures.pressure,
-        "Above, the gap under the ridges of the finger, averaged over a period; below, the mean "
-        "pressure of the film, to compare with what would carry the finger. The paper's Fig 4.",
-    ),
-    FigureOf(
-        "friction",
-        "Friction on each surface, by the paper's model and by the verdict's",
-        friction_figures.friction,
-        "A colour for each model, dashes for each surface; squares mark where the model's film "
-        "carries the whole finger. The paper's Fig 5.",
-    ),
-    FigureOf(
-        "wavelength",
-        "Wave length against amplitude, by the paper's model",
-        friction_figures.wavelength,
-        "The amplitude that each of the paper's four half wavelengths needs for a relative "
-        "friction of 0.7. The paper's Fig 11.",
+        needs=("film_models",),
     ),
 )
-"""What other models and the paper say."""
+"""What other models say."""
 
 TEXTURES: tuple[FigureOf, ...] = (
     FigureOf(
@@ -99,6 +88,7 @@ TEXTURES: tuple[FigureOf, ...] = (
         texture_figures.texture,
         "Amplitude and friction along a stroke over a square grating: as wanted, and as the "
         "resonator lets them through.",
+        needs=("texture",),
     ),
     FigureOf(
         "fidelity",
@@ -109,21 +99,29 @@ TEXTURES: tuple[FigureOf, ...] = (
         "rounded edges lose first; then both of the friction.",
     ),
     FigureOf(
-        "compensation",
-        "Getting a fine grating through the resonator",
-        fidelity_figures.compensation,
-        "A grating of 0.4 mm at twice the finger speed that it survives uncompensated, up to 0.8 "
-        "of the full amplitude: above the amplitude, below the command that makes it, within the "
-        "voltage. Phase inversion asks for an amplifier that can turn its sign.",
-    ),
-    FigureOf(
         "survival",
         "Which period survives at which speed, compensated or not",
-        fidelity_figures.survival,
+        texture_figures.survival,
         "The finest square grating that keeps 90 % of a swing to 0.8 of the full amplitude, peak "
         "to peak; the legend says how much of its fundamental that leaves.",
+        needs=("survival",),
     ),
 )
 """What a texture becomes along a stroke."""
 
 FIGURES = (*DECISION, *MODELS, *TEXTURES)
+
+
+def prepare() -> None:
+    """Load what drawing takes, before there is anything to draw."""
+    importlib.import_module("squeezefilm.analysis.analyze")
+    style.svg(style.message_figure("Fonts", "are looked for"), "fonts", "")
+
+
+def drawing(analysis: Analysis, key: str) -> str:
+    """One of the figures as an SVG element, with its message for those who cannot see it."""
+    item = next(one for one in FIGURES if one.key == key)
+    with style.rc():
+        figure = item.draw(analysis)
+        message = " ".join(figure.get_suptitle().split())
+        return style.svg(figure, key, f"{item.heading}. {message}. {item.reading}")

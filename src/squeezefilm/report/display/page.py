@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.report.display.figures import DECISION, FIGURES, MODELS, TEXTURES, drawing
 from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
 from squeezefilm.report.kit.decisions import interval_rows, sensitivity_rows
+from squeezefilm.report.kit.drawing_process import DrawingProcess
 from squeezefilm.report.kit.electronics import electronics_rows
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.model_rows import (
@@ -25,9 +27,10 @@ from squeezefilm.report.kit.model_rows import (
     theory_rows,
     weight_rows,
 )
-from squeezefilm.report.kit.numbers import display_values, printable
+from squeezefilm.report.kit.numbers import display_values
 from squeezefilm.report.kit.page_style import (
     FigureOf,
+    as_html,
     bullets,
     html_table,
     page,
@@ -36,7 +39,6 @@ from squeezefilm.report.kit.page_style import (
     stamped,
     text_table,
 )
-from squeezefilm.report.kit.style import rc
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
@@ -52,19 +54,30 @@ _NEXT = 5
 
 
 def write_analysis(
-    analysis: Analysis, folder: Path, progress: Callable[[str], None] | None = None
+    analysis: Analysis,
+    folder: Path,
+    progress: Callable[[str], None] | None = None,
+    aside: DrawingProcess | None = None,
 ) -> Path:
     """Write result.json and report.html into `folder`; the path of the page.
 
-    Raises `InputError` where the folder cannot be written to.
+    The process `aside`, where there is one, draws figures while this one goes on. Raises
+    `InputError` where the folder cannot be written to.
     """
-    folder = require_folder(folder)
+    folder, tell = require_folder(folder), progress or (lambda _: None)
+    if aside is not None:
+        aside.begin(analysis)
+    for number, item in enumerate(FIGURES, start=1):
+        tell(f"figure {number} of {len(FIGURES)}: {item.heading.lower()}")
+        shows = {name: getattr(analysis, name) for name in item.needs}
+        if aside is not None:
+            aside.ask(item.key, shows)
+    tell("what is felt, what each value does, other models")
     summary = analysis.summary()
-    with rc():
-        whole = report_page(analysis, summary, progress)
-    if progress is not None:
-        progress("writing the report")
+    tell("writing the report")
     data = json_text(result_data(analysis, summary))
+    drawn = {} if aside is None else aside.drawings()
+    whole = report_page(analysis, summary, drawn)
     write_folder(folder, {"result.json": data, "report.html": whole})
     return folder / "report.html"
 
@@ -75,12 +88,10 @@ def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
         **summary,
         "curves": {
             "response": analysis.response,
-            "pressure": analysis.pressure,
             "friction": analysis.friction_curves,
             "band": analysis.band,
             "chain": analysis.model_curves,
             "films": None if analysis.film_models is None else analysis.film_models.curves,
-            "wavelength": analysis.wavelength_curves,
             "texture": None if analysis.texture is None else _trace(analysis.texture),
             "fidelity": analysis.fidelity,
             "active_area": None if analysis.active_area is None else analysis.active_area.area,
@@ -105,39 +116,34 @@ def _trace(trace: FrictionTrace) -> dict[str, Any]:
 def report_page(
     analysis: Analysis,
     summary: dict[str, Any] | None = None,
-    progress: Callable[[str], None] | None = None,
+    drawn: Mapping[str, str] | None = None,
 ) -> str:
-    """The report as the text of one self-contained HTML page."""
-    from squeezefilm.report.display.figures import DECISION, FIGURES, MODELS, TEXTURES
-
-    summary = summary or analysis.summary()
+    """The report as the text of one self-contained HTML page; `drawn` are those of its drawings
+    that are there already, by key."""
+    summary, ready = summary or analysis.summary(), drawn or {}
     display = analysis.display
-    title, name = escape(printable(display.title)), escape(printable(display.name))
-    number = 0
+    title, name = as_html(display.title), as_html(display.name)
 
-    def drawn(figures: tuple[FigureOf, ...]) -> Iterator[str]:
-        nonlocal number
+    def shown(figures: tuple[FigureOf, ...]) -> Iterator[str]:
         for item in figures:
-            number += 1
-            if progress is not None:
-                progress(f"figure {number} of {len(FIGURES)}: {item.heading.lower()}")
-            yield _figure(analysis, item, number)
+            svg = ready.get(item.key) or drawing(analysis, item.key)
+            yield _figure(item, FIGURES.index(item) + 1, svg)
 
     parts = [
         part("decide", "To decide from", _INTRODUCTION),
         section("Verdict", _findings(analysis.findings)),
         section("Warnings", _warnings(analysis)),
         section("Key numbers", _key_numbers(analysis)),
-        *drawn(DECISION),
+        *shown(DECISION),
         section("Drive electronics", _electronics(analysis)),
         section("What to measure next", _measure_next(analysis)),
-        part("models", "Appendix: other models, and the paper's claims", _aside(analysis)),
-        *drawn(MODELS),
+        part("models", "Appendix: other models", _aside(analysis)),
+        *shown(MODELS),
         section("What the readings of the film say", _films(analysis)),
         section("How far the film's model is from where it holds", _validity(analysis)),
         section("Models", _models(analysis)),
         part("textures", "Appendix: textures through the resonator", _TEXTURES),
-        *drawn(TEXTURES),
+        *shown(TEXTURES),
         part("origin", "Appendix: where the numbers come from", ""),
         section("More numbers", text_table("At the working point", _HEAD, more_rows(analysis))),
         section("How sure the friction is", _how_sure(analysis)),
@@ -172,14 +178,15 @@ def _aside(analysis: Analysis) -> str:
     return (
         f"The verdict's friction of {p.relative_friction:.2f} is by "
         f"<code>{escape(p.model)}</code>. What follows is by the models that each figure names, "
-        "for comparison: none of it is in the verdict."
+        "for comparison: none of it is in the verdict. "
+        "<code>squeezefilm reproduce</code> draws the paper's own figures."
     )
 
 
 def _findings(findings: tuple[Finding, ...]) -> str:
     items = "\n".join(
         f'<li class="{finding.kind}"><b>{_KINDS[finding.kind]}</b>'
-        f"<span>{escape(printable(finding.text))}</span></li>"
+        f"<span>{as_html(finding.text)}</span></li>"
         for finding in findings
     )
     return f'<ul class="verdict">\n{items}\n</ul>'
@@ -187,10 +194,10 @@ def _findings(findings: tuple[Finding, ...]) -> str:
 
 def _key_numbers(analysis: Analysis) -> str:
     rows, kinds = [], []
-    for heading, of_subject in decision_rows(analysis):
+    for heading, of_subject, _ in decision_rows(analysis):
         rows.append((escape(heading), "", ""))
         rows += [
-            (escape(label), f'<span class="mark">{escape(text)}</span>', escape(remark))
+            (as_html(label), f'<span class="mark">{as_html(text)}</span>', as_html(remark))
             for label, text, remark in of_subject
         ]
         kinds += ["subject", *[""] * len(of_subject)]
@@ -242,16 +249,11 @@ def _how_sure(analysis: Analysis) -> str:
     return "\n<br>\n".join(parts)
 
 
-def _figure(analysis: Analysis, item: FigureOf, number: int) -> str:
+def _figure(item: FigureOf, number: int, svg: str) -> str:
     """A figure in its section, under its number."""
-    from squeezefilm.report.kit.style import svg
-
-    figure = item.draw(analysis)
-    message = " ".join(figure.get_suptitle().split())
-    drawing = svg(figure, item.key, f"{item.heading}. {message}. {item.reading}")
     body = (
         f'<figure id="figure-{item.key}">\n<div class="scroll" tabindex="0" role="region" '
-        f'aria-label="{escape(item.heading)}">{drawing}</div>\n'
+        f'aria-label="{escape(item.heading)}">{svg}</div>\n'
         f"<figcaption>{escape(item.reading)}</figcaption>\n</figure>"
     )
     return section(f"{number}. {escape(item.heading)}", body, "figure")
@@ -276,7 +278,7 @@ def _validity(analysis: Analysis) -> str:
                 f"{check.value:.3g}",
                 limits(check.low, check.high),
                 f'<span class="mark">{"✓ holds" if holds else "✗ does not hold"}</span>',
-                escape(printable(check.sentence)),
+                as_html(check.sentence),
             )
         )
     head = ("Assumption", "Number", "Wanted", "Here", "In words")
@@ -303,12 +305,17 @@ def _models(analysis: Analysis) -> str:
         used += "\n<br>\n" + html_table(
             "The film under the finger, drawn in five ways",
             ("Model", "Over-pressure over ambient", "Carries", "µ′/µ", "What it is"),
-            [(f"<code>{escape(row[0])}</code>", *row[1:], escape(means[row[0]])) for row in drawn],
+            [
+                (f"<code>{escape(row[0])}</code>", *map(as_html, row[1:]), escape(means[row[0]]))
+                for row in drawn
+            ],
             kinds=["used" if row[0] == analysis.prediction.model else "" for row in drawn],
         )
     if not analysis.other_models:
         return used
-    rows = [(f"<code>{escape(row[0])}</code>", *row[1:]) for row in theory_rows(analysis)]
+    rows = [
+        (f"<code>{escape(row[0])}</code>", *map(as_html, row[1:])) for row in theory_rows(analysis)
+    ]
     others = html_table(
         "The same plate by other theories, each driven at its own resonance, without a finger",
         ("Model", "Resonance", "Half wavelength", "Amplitude"),
@@ -326,8 +333,8 @@ def _provenance(analysis: Analysis) -> str:
         rows.append(
             (
                 f"<code>{escape(value.path)}</code>",
-                escape(printable(value.text)),
-                escape(printable(value.source)) or "–",
+                as_html(value.text),
+                as_html(value.source) or "–",
                 f'<span class="mark">⚠\u00a0{evidence}</span>' if assumed else evidence,
             )
         )

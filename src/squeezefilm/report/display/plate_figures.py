@@ -109,7 +109,7 @@ def _label_nodes(axes: Axes, nodes: FloatArray) -> None:
     every = math.ceil(len(nodes) / _MOST_LABELS)
     marked = nodes[::every]
     turned = 90 if len(marked) > 14 else 0
-    above.set_xticks(marked, [f"{node:.1f}" for node in marked], rotation=turned)
+    above.set_xticks(marked, [f"{node:.1f}".replace("-", "−") for node in marked], rotation=turned)
     above.set_xlabel("nodal lines at (mm)" + ("" if every == 1 else f", one in {every}"))
 
 

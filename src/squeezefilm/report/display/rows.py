@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.area_rows import place_rows
 from squeezefilm.report.kit.decisions import felt_rows
 from squeezefilm.report.kit.numbers import (
     HZ,
@@ -23,7 +22,7 @@ from squeezefilm.report.kit.numbers import (
     shown,
     span,
 )
-from squeezefilm.report.kit.point_rows import Row, heat_rows, reduction_row
+from squeezefilm.report.kit.point_rows import Row, heat_rows, place_rows, reduction_row
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -31,29 +30,28 @@ if TYPE_CHECKING:
     from squeezefilm.plate.working_mode import WorkingMode
 
 
-_EXPLORING: si.MetrePerSecond = 0.1
-
-
 class Rows(NamedTuple):
-    """Rows of one subject under its heading."""
+    """Rows of one subject under its heading; those that are `said` stand in the verdict, too."""
 
     heading: str
     rows: list[Row]
+    said: list[Row]
 
 
 def decision_rows(analysis: Analysis) -> list[Rows]:
     """The key numbers by subject, in the order of the chain."""
     p = analysis.prediction
     groups = [
-        Rows("Vibration", vibration_rows(p)),
-        Rows("Friction", friction_rows(analysis)),
-        Rows("Textures", texture_rows(analysis)),
+        Rows("Vibration", vibration_rows(p), []),
+        Rows("Friction", friction_rows(analysis), place_rows(p, analysis.active_area)),
+        Rows("Textures", texture_rows(analysis), []),
     ]
     if p.voltage:
+        sound = _sound_rows(analysis)
         groups += [
-            Rows("Electrical load", _electrical_rows(analysis)),
-            Rows("Heat", heat_rows(p.heat)[:2]),
-            Rows("Sound", _sound_rows(analysis)),
+            Rows("Electrical load", _electrical_rows(analysis), []),
+            Rows("Heat", heat_rows(p.heat)[:2], []),
+            Rows("Sound", sound, [] if analysis.ears is None else sound),
         ]
     return groups
 
@@ -116,9 +114,10 @@ def texture_rows(analysis: Analysis) -> list[Row]:
     tau, table = analysis.envelope_time_constant, analysis.fidelity
     band = f"a bandwidth of {shown(analysis.envelope_bandwidth, HZ, 3)}"
     rows = [("Envelope time constant", shown(tau, S, 3), band)]
+    speed = analysis.prediction.speed
     if table is not None:
-        rows.append(_grating(analysis, int(np.argmin(np.abs(table.speeds - _EXPLORING)))))
-    return [*rows, *felt_rows(analysis.felt, _EXPLORING)]
+        rows.append(_grating(analysis, int(np.argmin(np.abs(table.speeds - speed)))))
+    return [*rows, *felt_rows(analysis.felt, speed)]
 
 
 def _grating(analysis: Analysis, at: int) -> Row:
@@ -137,7 +136,7 @@ def _electrical_rows(analysis: Analysis) -> list[Row]:
     """What the free plate takes from its amplifier at the drive's frequency, and of which kind."""
     load = analysis.drive_electronics
     if load is None:
-        said = "no admittance was solved here; squeezefilm plate solves plates, discs and stators"
+        said = "it takes a voltage, and an admittance solved near it"
         return [("Current", "not known", said)]
     real = f"{shown(load.real_power, W, 3)} of them are real power"
     able = {
@@ -150,7 +149,11 @@ def _electrical_rows(analysis: Analysis) -> list[Row]:
         if parts
     ]
     return [
-        ("Current", shown(load.current, A, 3), "zero-to-peak, without a finger"),
+        (
+            "Current",
+            shown(load.current, A, 3),
+            "zero-to-peak, without a finger" + ("; of an assumed ceramic" if load.assumed else ""),
+        ),
         ("Apparent power", f"{load.apparent_power:.3g} VA", real),
         ("Amplifiers that can", f"{len(able[True])} of {len(load.amplifiers)}", "; ".join(each)),
     ]

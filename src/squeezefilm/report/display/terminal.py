@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
+from squeezefilm.report.display.rows import Rows, decision_rows, more_rows, unsaid_warnings
 from squeezefilm.report.kit.decisions import (
     felt_rows,
     interval_rows,
@@ -28,9 +28,8 @@ if TYPE_CHECKING:
 _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
 
-# Of a warning where it is not asked for in full: two lines of a terminal.
-_SHORT = 140
-_IN_THE_VERDICT = ("Place of the finger", "µ′/µ over the active area", "Sound at")
+# Letters of a warning where it is not asked for in full: three lines of a terminal.
+_SHORT = 210
 
 
 def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
@@ -45,8 +44,9 @@ def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
         heading(console, "Warnings")
         bullets(console, [("!", text, "yellow") for text in cut])
     heading(console, "Key numbers")
-    rows = [row for group in decision_rows(analysis) for row in group.rows]
-    table(console, ("", "", ""), rows if whole else list(_short(rows)), fixed=(0, 1))
+    groups = decision_rows(analysis)
+    rows = [row for group in groups for row in (group.rows if whole else _short(group))]
+    table(console, ("", "", ""), rows, fixed=(0, 1))
     _show_wanted(console, analysis.wanted)
     if whole:
         _show_certainty(console, analysis)
@@ -58,18 +58,22 @@ def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
     console.print(f"\n--all prints {more}")
 
 
-def _short(rows: list[Row]) -> Iterator[Row]:
+def _short(group: Rows) -> Iterator[Row]:
     """Rows without what the verdict says already, each with the first part of its remark."""
-    for label, value, remark in rows:
-        if not label.startswith(_IN_THE_VERDICT):
+    for row in group.rows:
+        if row not in group.said:
+            label, value, remark = row
             yield label, value, re.split("; |, | \\(", remark)[0]
 
 
 def shortened(text: str) -> str:
-    """A long text up to the last whole word that two lines hold."""
-    if len(text) <= _SHORT:
-        return text
-    return text[:_SHORT].rsplit(" ", 1)[0].rstrip(",;:") + " …"
+    """A text up to the end of its first statement, and of those after it that three lines hold."""
+    kept, *more = re.split(r"(?<=[.!?]) (?=[A-Z])|(?<=;) ", text)
+    for statement in more:
+        if len(kept) + len(statement) >= _SHORT:
+            break
+        kept += f" {statement}"
+    return kept.removesuffix(";")
 
 
 def _findings(console: Console, findings: tuple[Finding, ...]) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squeezefilm.render.fidelity.survival import PAPER_PERIODS
 from squeezefilm.render.fidelity.trace import period_of
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import M, S, shown
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.textures import TextureSurvival
     from squeezefilm.render.fidelity.survival import FidelityTable
 
 _NOTHING = (
@@ -112,6 +114,48 @@ def fidelity(analysis: Analysis) -> Figure:
         Patch(facecolor="none", edgecolor=style.INK, lw=0.8, ls="--", label="✗ loses more"),
     ]
     strip.legend(handles=handles, loc="center", ncols=2, frameon=False)
+    return figure
+
+
+@style.drawn
+def survival(analysis: Analysis) -> Figure:
+    """`texture_survival` of an analysis."""
+    found = analysis.survival
+    return _nothing() if found is None else texture_survival(found)
+
+
+def _nothing() -> Figure:
+    return style.message_figure("Nothing to compensate", "No voltage makes an amplitude here.")
+
+
+@style.drawn
+def texture_survival(table: TextureSurvival) -> Figure:
+    """Which spatial period survives at which speed, one line per drive."""
+    figure = style.new_figure(
+        f"Compensation with phase inversion keeps a grating up to {table.gain[-1]:.2g} times the "
+        f"finger speed, without inversion up to {table.gain[1]:.2g} times",
+        f"{table.model}; swing from 0 to {100 * table.level:g} % of what the full voltage holds, "
+        f"{100 * table.kept:g} % of it kept, peak to peak; Q as the display states it",
+        5.0,
+    )
+    grid = figure.add_gridspec(2, 1, height_ratios=[1, 0.1])
+    strip, axes = figure.add_subplot(grid[1]), figure.add_subplot(grid[0])
+    strip.set_axis_off()
+    for law, row, wave, (color, dashes) in zip(
+        table.laws, table.finest_period, table.fundamental, style.LINES, strict=False
+    ):
+        name = f"{law.name}: {100 * wave:.0f} % of the fundamental"
+        axes.loglog(1e3 * table.speeds, 1e3 * row, color=color, ls=dashes, label=name)
+    for period in PAPER_PERIODS:
+        named = "the paper's gratings" if period == PAPER_PERIODS[0] else None
+        axes.axhline(1e3 * period, **style.GUIDE, label=named)
+    axes.set_title(f"{style.plain(table.name)}, τ = {shown(table.time_constant, S, 3)}")
+    axes.set(xlabel="finger speed (mm/s)", xlim=(10, 400), ylim=(0.02, 12))
+    axes.set_ylabel("finest period that survives (mm)")
+    axes.set_xticks([10, 20, 50, 100, 200, 400])
+    axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.4, 1, 2, 4, 10])
+    style.plain_log(axes.xaxis, axes.yaxis)
+    style.legend_in(strip, axes, columns=2)
     return figure
 
 

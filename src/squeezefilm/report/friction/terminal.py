@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
 from squeezefilm.report.friction.told_apart import show_told_apart
-from squeezefilm.report.kit.area_rows import place_rows
 from squeezefilm.report.kit.decisions import interval_rows, wanted_rows
 from squeezefilm.report.kit.model_rows import group_words, influence_rows, weight_rows
 from squeezefilm.report.kit.numbers import HZ, M, N, V, shown
-from squeezefilm.report.kit.point_rows import heat_rows, reduction_row, speed_row
+from squeezefilm.report.kit.point_rows import heat_rows, place_rows, reduction_row, speed_row
 from squeezefilm.report.kit.terminal import heading, plain_console, show_missed, table
 
 if TYPE_CHECKING:

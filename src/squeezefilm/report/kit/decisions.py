@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.numbers import M, V, micro, shown
+from squeezefilm.report.kit.numbers import M, V, shown
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.felt import FeltAt, FeltGratings
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
         Shift,
     )
     from squeezefilm.analysis.uncertainty import UncertainFriction
+    from squeezefilm.report.kit.point_rows import Row
 
-Row = tuple[str, str, str]
 _W = si.Unit("W")
 SHOWN = 12
 
@@ -88,8 +88,11 @@ def _felt_remark(felt: FeltGratings, one: FeltAt) -> str:
     if one.interval is None:
         return f"by assumed senses ('{felt.observer}'){survives}"
     low, high = (_period(end) for end in one.interval)
-    said = f"{100 * felt.level:.0f} % interval {low} to {high}" if low != high else "in all draws"
-    return said + (f"; in {100 * one.never:.0f} % none" if one.never else "") + survives
+    said = "in all draws"
+    if low != high:
+        said = f"{low} at best and {high} at worst ({si.percent(felt.level)} interval)"
+    never = f"; none is felt in {si.percent(one.never)} of the draws" if one.never else ""
+    return said + never + survives
 
 
 def _period(value: si.Metre | None) -> str:
@@ -106,7 +109,7 @@ def sensitivity_rows(found: DisplaySensitivities) -> list[list[str]]:
     return [
         [
             one.path,
-            " to ".join(micro(_value(end.value, one.unit)) for end in (one.low, one.high)),
+            " to ".join(_value(end.value, one.unit) for end in (one.low, one.high)),
             _shifts(one.low.frequency_shift, one.high.frequency_shift),
             _shifts(one.low.amplitude_shift, one.high.amplitude_shift),
             _frictions(one.low, one.high),
@@ -118,10 +121,10 @@ def sensitivity_rows(found: DisplaySensitivities) -> list[list[str]]:
 
 def _weight(one: DisplaySensitivity) -> float:
     """A change of friction by 0.1 stands beside one of the frequency by 2 %; what could not be
-    told stands first."""
+    told stands last."""
     moved = [one.low.frequency_shift, one.high.frequency_shift]
     if None in moved:
-        return float("inf")
+        return -1.0
     return max(one.friction_change / 0.1, *(abs(shift or 0.0) / 0.02 for shift in moved))
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from squeezefilm.report.kit.numbers import dotted, micro
+from squeezefilm.report.kit.numbers import dotted
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
 _MARKS = {"assumed": "* ", "unstated": "? "}
@@ -80,7 +80,7 @@ def show_values(values: Sequence[dict[str, Any]]) -> None:
     for item in values:
         group, _, key = item["path"].rpartition(".")
         mark = _MARKS.get(item["evidence"] or "", "  ")
-        groups.setdefault(group, []).append((mark + key, micro(item["text"]), _origin(item)))
+        groups.setdefault(group, []).append((mark + key, item["text"], _origin(item)))
     for group, rows in groups.items():
         if group:
             heading(console, group)
@@ -171,7 +171,7 @@ _COLUMNS: dict[str, dict[str, str]] = {
 
 def _shown(value: dict[str, Any]) -> str:
     star = "*" if value["evidence"] == "assumed" else ""
-    return micro(value["text"]) + star
+    return f"{value['text']}{star}"
 
 
 def _show_material(one: dict[str, Any]) -> None:
@@ -183,7 +183,7 @@ def _show_material(one: dict[str, Any]) -> None:
     for value in one["values"]:
         mark = _MARKS.get(value["evidence"], "  ")
         between = "" if value["range"] is None else " to ".join(value["range"])
-        rows.append((mark + value["path"], micro(value["text"]), between, _origin(value)))
+        rows.append((mark + value["path"], value["text"], between, _origin(value)))
     table(
         console,
         ("", "", "range", "source"),

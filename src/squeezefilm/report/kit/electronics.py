@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from squeezefilm import quantities as si
 from squeezefilm.plate.electronics import ElectricalLoad
-from squeezefilm.report.kit.numbers import HZ, V, micro, shown
+from squeezefilm.report.kit.numbers import HZ, V, shown
 
 A, FARAD, HENRY, WATT = si.Unit("A"), si.Unit("F"), si.Unit("H"), si.Unit("W")
 
@@ -12,10 +12,12 @@ A, FARAD, HENRY, WATT = si.Unit("A"), si.Unit("F"), si.Unit("H"), si.Unit("W")
 def electronics_rows(load: ElectricalLoad | None) -> list[tuple[str, str, str]]:
     """Current, power, slew, inductors, and which class of amplifier can do it."""
     if load is None:
-        return [("Electrical load", "not known", "it takes a solved plate driven by a voltage")]
+        return [
+            ("Electrical load", "not known", "it takes a voltage, and an admittance solved near it")
+        ]
     at = f"at {shown(load.voltage, V)} and {shown(load.frequency, HZ)}, without a finger"
     each = f"{load.channels} ceramics in parallel, {{}} each on average"
-    rows = []
+    rows = [("Electrical load", "assumed in part", load.assumed)] if load.assumed else []
     if load.capacitance is not None and load.capacitance_per_channel is not None:
         one = shown(load.capacitance_per_channel, FARAD, 3)
         together = each.format(one) if load.channels > 1 else "beside the mode"
@@ -49,8 +51,7 @@ def electronics_rows(load: ElectricalLoad | None) -> list[tuple[str, str, str]]:
             (
                 "Amplifier" if number == 0 else "",
                 "can" if check.suffices else "cannot",
-                f"{check.kind}, such as {check.part}: "
-                f"{micro(check.why).replace('V/us', 'V/µs')} ({check.source})",
+                f"{check.kind}, such as {check.part}: {check.why} ({check.source})",
             )
         )
     return rows

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.record import missed_by
-from squeezefilm.report.kit.numbers import HZ, M, micro, shown
+from squeezefilm.report.kit.numbers import HZ, M, carried, shown
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -85,8 +85,8 @@ def film_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
         said = ("not solved", "–", "–")
         if math.isfinite(item.over_pressure):
             error = f" ± {item.over_pressure_error:.1g}" if item.over_pressure_error else ""
-            carried = f"{100 * item.load_share:.3g} %"
-            said = f"{item.over_pressure:.3g}{error}", carried, f"{item.relative_friction:.3f}"
+            share = carried(item.load_share)
+            said = f"{item.over_pressure:.3g}{error}", share, f"{item.relative_friction:.3f}"
         rows.append((item.model, *said))
     return rows
 
@@ -98,7 +98,7 @@ def influence_rows(unsure: UncertainFriction, knowledge: Knowledge, most: int) -
     return [
         [
             one.parameter.path,
-            micro_words(one.parameter.spread, law=hasattr(one.parameter, "options")),
+            spread_words(one.parameter.spread, law=hasattr(one.parameter, "options")),
             f"{100 * one.total:.0f} ± {si.percent(one.total_error)}",
             "as described"
             if one.parameter.origin == "given"
@@ -110,9 +110,9 @@ def influence_rows(unsure: UncertainFriction, knowledge: Knowledge, most: int) -
     ]
 
 
-def micro_words(spread: tuple[str, ...], *, law: bool) -> str:
+def spread_words(spread: tuple[str, ...], *, law: bool) -> str:
     """Options with their weights, or from where to where a value is drawn."""
-    return ", ".join(spread) if law else " to ".join(map(micro, spread))
+    return ", ".join(spread) if law else " to ".join(spread)
 
 
 def group_words(one: GroupInfluence) -> str:

@@ -37,7 +37,7 @@ def shown(value: float, unit: si.Unit, digits: int = 4) -> str:
     """A quantity as a person reads it, e.g. ``"2 µm"``."""
     if unit.symbol == "Hz" and 0 < abs(value) < 1:
         return f"{value:.{digits}g} Hz"  # nobody reads millihertz
-    text = micro(si.format_quantity(value, unit, digits))
+    text = si.format_quantity(value, unit, digits)
     number, _, symbol = text.partition(" ")
     # 0.6 µm and 0.5 N are what the field says, not 600 nm and 500 mN.
     larger = {"n": "µ", "µ": "m"} | ({"m": ""} if unit.symbol in ("N", "V") else {})
@@ -58,15 +58,14 @@ def changed(share: float, decimals: int = 1) -> str:
     return f"{'−' if share < 0 else '+'}{si.percent(abs(share), decimals)}"
 
 
+def carried(share: float) -> str:
+    """How much of the finger's load something carries, e.g. ``"3020 %"`` or ``"0.23 %"``."""
+    return f"{float(f'{100 * share:.3g}'):g} %"
+
+
 def span(low: float, high: float) -> str:
     """Two relative frictions with what lies between, e.g. ``"0.04–0.79"``."""
     return f"{low:.2f}–{high:.2f}"
-
-
-def micro(text: str) -> str:
-    """The text of a quantity with the micro sign in place of the u that is typed for it."""
-    head, separator, unit = text.rpartition(" ")
-    return f"{head}{separator}µ{unit[1:]}" if separator and unit[:1] == "u" else text
 
 
 def printable(text: str) -> str:
@@ -76,6 +75,12 @@ def printable(text: str) -> str:
         "".join(" " if unicodedata.category(c) in ("Cc", "Cf", "Cs") else c for c in text).split()
     )
     return _MINUS.sub("−", _TYPED_MICRO.sub("µ", line))
+
+
+def unit_stays(text: str) -> str:
+    """A text of which no line may end between a number and its unit, nor after an equals sign."""
+    text = re.sub(r"(?<=\d) (?=%|[µnmkM]?(?:m|Hz|s|N|V|W|A|K|VA|dB|F|H)\b)", "\u00a0", text)
+    return re.sub(r" = (?=\d)", "\u00a0=\u00a0", text)
 
 
 def display_values(display: Display) -> list[Value]:

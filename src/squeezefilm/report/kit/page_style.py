@@ -12,7 +12,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.numbers import printable
+from squeezefilm.report.kit.numbers import printable, unit_stays
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -123,7 +123,7 @@ def stamped(stamp: Mapping[str, Any], digest: str, made: str = "made") -> str:
 
 def bullets(texts: Iterable[str], none: str = "None.") -> str:
     """A list of plain texts; `none` where there is none."""
-    items = "".join(f"<li>{_plain(text)}</li>" for text in texts)
+    items = "".join(f"<li>{as_html(text)}</li>" for text in texts)
     return f"<ul>{items or f'<li>{none}</li>'}</ul>"
 
 
@@ -157,6 +157,8 @@ class FigureOf:
         reading: how it is read.
         file: its name beside a page, where that is not its key.
         has: true of a result that has it; of every one, unless said.
+        needs: attributes of the result that it shows and that take their time, to be asked for
+            before it is drawn.
     """
 
     key: str
@@ -165,6 +167,7 @@ class FigureOf:
     reading: str = ""
     file: str = ""
     has: Callable[[Any], object] = _always
+    needs: tuple[str, ...] = ()
 
 
 def drawn_figures(
@@ -218,8 +221,9 @@ def html_table(
 
 def text_table(caption: str, head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     """A table of plain texts; the first cell of a row heads it."""
-    return html_table(_plain(caption), map(_plain, head), [[*map(_plain, row)] for row in rows])
+    return html_table(as_html(caption), map(as_html, head), [[*map(as_html, row)] for row in rows])
 
 
-def _plain(text: str) -> str:
-    return escape(printable(text))
+def as_html(text: str) -> str:
+    """A plain text as HTML, in which a number keeps its unit beside it."""
+    return escape(unit_stays(printable(text)))

@@ -1,19 +1,45 @@
-"""Rows of a working point that several verbs show: heat, sound, the finger's speed."""
+"""Rows of a working point that several verbs show: place, heat, sound, the finger's speed."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.active_area import CRITERIA, percent
+from squeezefilm.chain.pad_place import place_words
 from squeezefilm.report.kit.numbers import HZ, SPEED, M, S, shown, signed
 
 if TYPE_CHECKING:
+    from squeezefilm.analysis.area_odds import JudgedArea
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.plate.heat.warming import Warming
     from squeezefilm.plate.sound import SoundField
 
 Row = tuple[str, str, str]
 KELVIN = si.Unit("K")
+
+
+def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
+    """Where the friction is meant, and what it is over the active area: quantity, value, remark."""
+    where = place_words(p.place)
+    said = p.place_said.replace(f"{where}, ", "").replace(f", {where}", "")
+    rows = [("Place of the finger", where, said)]
+    area = None if judged is None else judged.area
+    if area is None or area.best_place is None or area.worst_place is None:
+        return [
+            *rows,
+            ("µ′/µ over the active area", "not known", "" if area is None else area.why_not),
+        ]
+    places = f"at {place_words(area.best_place)} and {place_words(area.worst_place)}"
+    shares = ", ".join(f"{percent(area.share_below(one))} below {one:.2f}" for one in CRITERIA)
+    return [
+        *rows,
+        (
+            "µ′/µ over the active area",
+            f"{area.best:.3f} to {area.worst:.3f}",
+            f"{places}; median {area.median:.3f}; {shares}",
+        ),
+    ]
 
 
 def heat_rows(heat: Warming | None) -> list[Row]:

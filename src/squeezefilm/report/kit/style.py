@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from squeezefilm.report.kit.numbers import unit_stays
+
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
@@ -151,7 +153,7 @@ def new_figure(title: str, model: str, height: float) -> Figure:
 
     padding = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.03, hspace=0.05)
     figure = Figure(figsize=(WIDTH, height), layout=padding)
-    figure.suptitle(textwrap.fill(_unit_stays(title), 90), x=0.012, ha="left")
+    figure.suptitle(textwrap.fill(unit_stays(title), 90), x=0.012, ha="left")
     figure.supxlabel(
         textwrap.fill(f"Model: {model}", 125),
         x=0.012,
@@ -160,12 +162,6 @@ def new_figure(title: str, model: str, height: float) -> Figure:
         color=MUTED,
     )
     return figure
-
-
-def _unit_stays(text: str) -> str:
-    """No line may end between a number and its unit, nor after an equals sign."""
-    text = re.sub(r"(?<=\d) (?=%|[µnmkM]?(?:m|Hz|s|N|V)\b)", "\u00a0", text)
-    return re.sub(r" = (?=\d)", "\u00a0=\u00a0", text)
 
 
 def message_figure(title: str, message: str) -> Figure:

@@ -43,7 +43,13 @@ def working_rows(result: SolvedBody) -> list[Row]:
     if isinstance(result, RingAnalysis):
         rows += _ring_rows(result)
     rows.append(("Quality factor", f"{mode.quality_factor:.4g}", said.quality))
-    rows.append(("Effective coupling", f"{mode.coupling:.3g}", ""))
+    error = mode.coupling_coefficient_error
+    said_error = "" if error is None else f"± {error:.1g} (estimated)"
+    rows.append(("Effective coupling", f"{mode.coupling_coefficient:.3g}", said_error))
+    if mode.parallel_resonance_frequency is not None:
+        away = mode.parallel_resonance_frequency_error
+        remark = "" if away is None else f"± {shown(away, HZ, 2)} (estimated), terminals open"
+        rows.append(("Parallel resonance", shown(mode.parallel_resonance_frequency, HZ, 5), remark))
     return rows
 
 
@@ -131,7 +137,7 @@ def mode_rows(
             "not driven"
             if row.amplitude_per_volt < _DRIVEN * amplitude_per_volt
             else shown(row.amplitude_per_volt, PER_VOLT, 3),
-            f"{row.coupling:.2g}",
+            f"{row.coupling_coefficient:.2g}",
         )
         for row in rows
     ]

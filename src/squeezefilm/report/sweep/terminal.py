@@ -72,7 +72,8 @@ def show_sweep(found: Sweep) -> None:
                 else ""
             )
         )
-    for text, count in found.warnings[:_TOLD]:
+    # First what is so at some of the points only: that is what the points differ by.
+    for text, count in sorted(found.warnings, key=lambda one: one[1] == points)[:_TOLD]:
         console.print(f"! {text} (at {count} of {points} points, numbers as at one of them)")
     if len(found.warnings) > _TOLD:
         console.print(f"! {len(found.warnings) - _TOLD} more warnings stand in sweep.json")

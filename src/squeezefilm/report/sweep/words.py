@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.numbers import micro, shown
+from squeezefilm.report.kit.numbers import shown
 from squeezefilm.search.answers import FOLLOWED, without_units
 from squeezefilm.search.axes import Axis
 from squeezefilm.search.swept import Column
@@ -57,5 +57,5 @@ def scaled(values: si.FloatArray, unit: si.Unit | None) -> tuple[float, str]:
     most = float(known.max()) if known.size else 0.0
     if unit is None or unit.symbol == "1" or most == 0:
         return 1.0, "" if unit is None or unit.symbol == "1" else unit.symbol
-    number, _, symbol = micro(si.format_quantity(most, unit, 17)).partition(" ")
+    number, _, symbol = si.format_quantity(most, unit, 17).partition(" ")
     return float(number) / most, symbol

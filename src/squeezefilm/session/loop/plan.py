@@ -121,8 +121,8 @@ class LoopPlan:
     def __post_init__(self) -> None:
         if self.envelope.amplitude_limit > self.drive.largest_amplitude * (1 + 1e-9):
             raise InputError(
-                f"the envelope's limit is {self.envelope.amplitude_limit * 1e6:.4g} um and the "
-                f"drive's table ends at {self.drive.largest_amplitude * 1e6:.4g} um; lower the "
+                f"the envelope's limit is {self.envelope.amplitude_limit * 1e6:.4g} µm and the "
+                f"drive's table ends at {self.drive.largest_amplitude * 1e6:.4g} µm; lower the "
                 "limit, or extend the table",
                 quantity="envelope",
             )

@@ -67,6 +67,7 @@ def prediction(**changes: Any) -> Any:
         "friction_coefficient": 0.4, "tangential_force": 0.08, "heat": None,
         "warnings": ("mind this",),
         "speed": 0.1, "mode": None, "place_summary": lambda: {"x_m": 0.1},
+        "place_was_asked": False,
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -110,9 +111,8 @@ def test_the_ripple_is_of_the_standing_wave_under_the_finger() -> None:
     assert command._ripple(prediction(law=law)) == ("ripple", 2e-6)
     # A model that holds the gap has no balance that could ripple.
     assert command._ripple(prediction(law=law, touch=SimpleNamespace(sharing=None))) is None
-    # At a place of the face the wave is no even one.
-    law.place = "a place"
-    assert command._ripple(prediction(law=law)) is None
+    # At a place of the face that was asked for the wave is no even one.
+    assert command._ripple(prediction(law=law, place_was_asked=True)) is None
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -42,6 +43,9 @@ class Modes:
     quality_factors = np.array([50.0, 60.0, 70.0])
     drive_forces = np.array([-0.2, 0.1, 0.0])
     couplings = np.array([0.15, 0.05, 0.0])
+    coupling_errors = np.array([1e-3, 5e-4, 0.0])
+    open_frequencies = np.array([1.0, 2.0, 3.0])
+    open_errors = np.array([0.1, 0.2, 0.3])
     x, y = np.linspace(0, LENGTH, 201), np.linspace(0, WIDTH, 101)
     count = 3
     model, status = "solid", "fine"
@@ -101,7 +105,7 @@ def display() -> Display:
 
 
 @pytest.fixture
-def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+def parts(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Any]]:
     """What an analysis asks of its parts, by their names."""
     asked: dict[str, Any] = {"modes": [], "circuit": True}
 
@@ -112,10 +116,20 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         asked["modes"].append((plate, mode, band))
         return Modes(band)
 
+    def working(
+        plate: RectangularPlate, mode: Any, tolerance: float, tell: Any, deadline: Any
+    ) -> tuple[Modes, list[str]]:
+        return solve(plate, mode=mode, deadline=deadline, tolerance=tolerance), ["pieces"]
+
     def respond(
-        plate: RectangularPlate, frequencies: np.ndarray, *, resolution: Resolution
+        plate: RectangularPlate,
+        frequencies: np.ndarray,
+        *,
+        resolution: Resolution,
+        solved: list[str],
     ) -> Response:
         assert resolution == NORMAL
+        assert solved == ["pieces"]
         asked["sweep"] = frequencies
         return Response(plate, frequencies, asked["circuit"])
 
@@ -127,6 +141,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         monkeypatch.setattr(command, name, asked_for)
 
     monkeypatch.setattr(command, "solve_modes", solve)
+    monkeypatch.setattr(command, "solve_for_response", working)
     monkeypatch.setattr(command, "harmonic_response", respond)
     stand_in(
         "plate_sound",
@@ -137,7 +152,10 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         SimpleNamespace(mode=SimpleNamespace(frequency=33e3), amplitude_per_volt=9e-8),
     )
     stand_in("shear_mode", SimpleNamespace(frequency=30.3e3))
-    return asked
+    # What is made up here must not answer for a solved plate, nor the other way round.
+    command.solved_plate.cache_clear()
+    yield asked
+    command.solved_plate.cache_clear()
 
 
 def test_an_analysis_is_around_the_mode_asked_for(display: Display, parts: dict[str, Any]) -> None:
@@ -171,6 +189,19 @@ def test_an_analysis_is_around_the_mode_asked_for(display: Display, parts: dict[
     assert said["equivalent_circuit"] == {"R1": 1.0}
 
 
+def test_a_plate_is_solved_once_for_all_voltages(display: Display, parts: dict[str, Any]) -> None:
+    for volts in (5.0, 10.0):
+        driven = dataclasses.replace(
+            display, drive=dataclasses.replace(display.drive, voltage=volts)
+        )
+        analyze_plate(driven, mode=(4, 0), progress=lambda _: None)
+        assert parts["plate_sound"][0][3] == volts
+    assert len(parts["modes"]) == 2
+    thicker = dataclasses.replace(display.actuator, thickness=2.1e-3)
+    analyze_plate(dataclasses.replace(display, actuator=thicker), mode=(4, 0))
+    assert len(parts["modes"]) == 4
+
+
 def test_the_table_has_each_mode_of_the_band(display: Display, parts: dict[str, Any]) -> None:
     one = analyze_plate(display, mode=(4, 0), band=(25e3, 35e3))
     assert parts["modes"][1][2] == (25e3, 35e3)
@@ -181,7 +212,7 @@ def test_the_table_has_each_mode_of_the_band(display: Display, parts: dict[str, 
     assert [row.frequency_error for row in one.rows] == [3, 4, 5]
     assert [row.quality_factor for row in one.rows] == [50, 60, 70]
     assert [row.modal_force for row in one.rows] == [-0.2, 0.1, 0.0]
-    assert [row.coupling for row in one.rows] == [0.15, 0.05, 0.0]
+    assert [row.coupling_coefficient for row in one.rows] == [0.15, 0.05, 0.0]
     assert [row.half_wavelength for row in one.rows] == [20e-3, None, 16e-3]
     # Q F/ω² of unit modal mass, at the ends three times the lobes between.
     assert first.amplitude_per_volt == pytest.approx(50 * 0.2 * 3 / (2 * math.pi * 30e3) ** 2)

@@ -14,18 +14,26 @@ from squeezefilm.analysis.plate.mode_doubts import mode_doubts, why_undriven
 from squeezefilm.analysis.verdict import Finding, held_back, verdict
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
+from squeezefilm.plate.solid.resonances import Neighbour
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
 
 from .test_modes import PAPER, five_strips, row
 
 
-def mode(label: str, frequency: float = 30e3, own: float = 1.0, **changes: Any) -> WorkingMode:
-    """A working mode that has the share `own` of what moves at its antinode."""
+def mode(
+    label: str,
+    frequency: float = 30e3,
+    own: float = 1.0,
+    beside: Neighbour | None = None,
+    **changes: Any,
+) -> WorkingMode:
+    """A working mode that has the share `own` of what moves at its antinode, and a neighbour."""
     lines = tuple(int(n) for n in label.strip("()").split(","))
     solid = SimpleNamespace(
         modal_amplitude_per_volt=own * 1e-7,
         amplitude_per_volt=1e-7,
         index=0,
+        neighbour=beside,
         modes=SimpleNamespace(labels=(lines,)),
     )
     one = WorkingMode(
@@ -86,9 +94,15 @@ def test_people_hear_what_is_below_20_kHz(monkeypatch: pytest.MonkeyPatch) -> No
 def test_company_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     crowd = row("(8,0)", 30e3, 1e-7, neighbour="(6,4)", neighbour_share=0.3, neighbour_distance=1.5)
     near(monkeypatch, crowd)
-    (doubt,) = mode_doubts(PAPER, mode("(8,0)"))
+    # A beam has no neighbours of its own; of a solved plate they are taken from its solution.
+    (doubt,) = mode_doubts(PAPER, mode("(8,0)", solid=None))
     assert doubt.kind == "crowded"
     assert "(6,4) lies 1.5 half-bandwidths away (by screening) and adds about 30 %" in doubt.text
+    assert mode_doubts(PAPER, mode("(8,0)", beside=Neighbour("(6,4)", 31e3, 4.0, 0.09))) == ()
+    solved = mode("(8,0)", beside=Neighbour("in plane", 31.1e3, 1.15, 0.15))
+    (doubt,) = mode_doubts(PAPER, solved)
+    assert (doubt.kind, doubt.text) == ("crowded", solved.company)
+    assert "the mode in plane at 31.1 kHz lies 1.1 half-bandwidths away and adds 15 %" in doubt.text
     near(monkeypatch, row("(8,0)", 30e3, 1e-7), row("(8,0)", 31e3, 2e-8))
     (doubt,) = mode_doubts(PAPER, mode("(8,0)"))
     assert doubt.kind == "ambiguous"

@@ -100,6 +100,10 @@ def test_the_suggestion_is_inaudible_straight_and_moves_most() -> None:
     assert best.mode is modes[3]
     assert best.text.startswith("Write nodal_lines = 8: at 30 kHz (8,0)")
     assert "of 2 such modes" in best.text
+    # What the file has already need not be written.
+    kept = suggested(modes, modes[3])
+    assert kept.text.startswith("Keep nodal_lines = 8, as described: at 30 kHz (8,0)")
+    assert suggested(modes, modes[4]).text == best.text
     nothing = suggested(modes[:3])
     assert nothing.mode is None
     assert "none can be suggested" in nothing.text
@@ -155,7 +159,7 @@ def test_a_disc_without_diameters_has_no_pair() -> None:
     found = list_modes(load_display("winfield2007-tpad"), (20e3, 30e3))
     assert found.pair is None
     assert found.working_mode is not None
-    assert found.suggestion.text.startswith("Write nodal_circles = 1, nodal_diameters = 0")
+    assert found.suggestion.text.startswith("Keep nodal_circles = 1, nodal_diameters = 0")
 
 
 def test_one_channel_carries_no_finger_and_a_split_does_a_little() -> None:

@@ -11,15 +11,19 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis.plate import ring
+from squeezefilm.analysis.plate.hurry import ALONE
 from squeezefilm.analysis.plate.ring import RingAnalysis, analyze_ring, mode_row, modes_in_band
 from squeezefilm.analysis.plate.solved import ModeRow
 from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, OutOfTimeError
 from squeezefilm.plate.circuit import EquivalentCircuit
-from squeezefilm.plate.ring.modes import AnnularMode
-from squeezefilm.plate.ring.response import RingResponse
+from squeezefilm.plate.ring.body import ring_body
+from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, AnnularMode
+from squeezefilm.plate.ring.response import RingResponse, ring_response
 from squeezefilm.plate.ring.section import SectorDrive
 from squeezefilm.plate.ring.stator import StatorAssumptions
+from squeezefilm.plate.sound import ring_surface, sound_field
+from squeezefilm.progress import Pace
 
 RADIUS = np.linspace(10e-3, 30e-3, 5)
 ALL_ROUND = SectorDrive(((0.0, 2 * math.pi, 1),))
@@ -133,7 +137,9 @@ def test_a_summary_has_every_number_under_its_name() -> None:
         "frequency_error_Hz": 4.0, "amplitude_m_per_V": pytest.approx(6e-8),
         "centreline_amplitude_m_per_V": pytest.approx(2e-8), "half_wavelength_m": 31e-3,
         "half_wavelength_along": "circumference", "nodal_circles_m": [15e-3],
-        "quality_factor": 100.0, "coupling": 0.2, "voltage_V": 20.0,
+        "quality_factor": 100.0, "coupling_coefficient": 0.2, "voltage_V": 20.0,
+        "coupling_coefficient_error": None, "parallel_resonance_frequency_Hz": None,
+        "parallel_resonance_frequency_error_Hz": None,
         "current_A": pytest.approx(0.2), "apparent_power_VA": pytest.approx(2.0),
         "input_power_W": pytest.approx(1.2), "described_amplitude_m_per_V": None, "fit": None,
         "sound_pressure_level_dB": {"0.3 m": 70.0, "1 m": 60.0}, "sound_guidance": None,
@@ -165,7 +171,10 @@ def test_a_row_is_a_mode_under_its_drive() -> None:
     # Half as far as the highest antinode of a mode that is scaled to 1.
     assert row.amplitude_per_volt == pytest.approx(0.5 * 100 * 16e-3 / stiffness)
     assert row.modal_force == pytest.approx(16e-3 / math.sqrt(2e-3))
-    assert row.coupling == pytest.approx(16e-3 / math.sqrt(16e-3**2 + stiffness * 1e-9))
+    assert row.coupling_coefficient == pytest.approx(16e-3 / math.sqrt(16e-3**2 + stiffness * 1e-9))
+    assert row.parallel_resonance_frequency == pytest.approx(
+        40e3 * math.sqrt(1 + 16e-3**2 / (stiffness * 1e-9))
+    )
     assert row.half_wavelength == 31e-3
 
 
@@ -177,8 +186,16 @@ class Harmonics:
         self.asked: list[tuple[int, float, int]] = []
 
     def __call__(
-        self, section: Any, harmonic: int, *, near: float, count: int, quality_factor: float
+        self,
+        section: Any,
+        harmonic: int,
+        *,
+        near: float,
+        count: int,
+        degree: int,
+        quality_factor: float,
     ) -> list[AnnularMode]:
+        assert degree == DEFAULT_DEGREE
         assert section.surface_radii == (10e-3, 30e-3)
         assert quality_factor == self.quality
         self.asked.append((harmonic, near, count))
@@ -290,8 +307,8 @@ def test_an_analysis_is_around_the_working_mode(parts: dict[str, Any]) -> None:
     assert (one.half_wavelength_along, one.described_amplitude_per_volt) == ("circumference", None)
     # What sounds is the velocity at the display's 20 V.
     radius, velocity, harmonic, frequency = parts["ring_surface"]
-    assert radius is one.response.radius
-    assert velocity == pytest.approx(2j * math.pi * 40e3 * 20 * MOTION)
+    assert radius == pytest.approx(one.response.radius[[0, 4]])
+    assert velocity == pytest.approx(2j * math.pi * 40e3 * 20 * MOTION[[0, 4]])
     assert (harmonic, frequency) == (2, 40e3)
     assert parts["sound_field"] == ("a surface",)
     assert told == ["section", "mode B(1,2)", "response at 20 frequencies", "airborne sound"]
@@ -325,6 +342,48 @@ def test_a_stator_is_beside_what_was_measured_of_it(parts: dict[str, Any]) -> No
     # 2 µm at 140 V.
     assert one.described_amplitude_per_volt == pytest.approx(2e-6 / 140)
     assert told[0] == "fitting the stator's thickness"
+
+
+def frozen(budget: float) -> Pace:
+    """A budget by a clock that stands still: what is allowed depends on the expected times only."""
+    return Pace(budget, clock=lambda: 0.0)
+
+
+def test_a_budget_leaves_out_the_band_and_says_so(parts: dict[str, Any]) -> None:
+    one = analyze_ring(disc(), pace=frozen(1.1))
+    assert "band" not in parts
+    assert [row.label for row in one.rows] == ["B(1,2)"]
+    assert ALONE in one.objections
+    assert ALONE not in analyze_ring(disc(), pace=frozen(60.0)).objections
+    assert "band" in parts
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("winfield2007-tpad", "of a disc and its"),
+        ("biet2008-stator", "of a stator, whose"),
+    ],
+)
+def test_a_budget_that_allows_no_mode_is_refused_with_what_is_expected(
+    parts: dict[str, Any], name: str, says: str
+) -> None:
+    with pytest.raises(OutOfTimeError, match=says) as caught:
+        analyze_ring(load_display(name), pace=frozen(0.5))
+    assert "Without a solve: about" in str(caught.value)
+    assert "ring_response" not in parts
+
+
+def test_the_sound_of_every_fourth_radius_is_that_of_all() -> None:
+    display = disc()
+    body = ring_body(display.actuator)
+    own = body.mode()
+    response = ring_response(body, own, np.array([own.frequency]), [0], 2)
+    coarse = ring._sound(display, own, response)
+    velocity = 2j * np.pi * own.frequency * display.drive.voltage * response.motion[0]
+    fine = sound_field(ring_surface(response.radius, velocity, 0, own.frequency), (0.3,))
+    level = coarse.sound_pressure_level_dB[coarse.distances.index(0.3)]
+    assert level == pytest.approx(fine.sound_pressure_level_dB[0], abs=0.02)
 
 
 def test_a_plate_is_no_ring() -> None:

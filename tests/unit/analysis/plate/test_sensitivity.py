@@ -24,7 +24,7 @@ from squeezefilm.analysis.plate.sensitivity import (
     working_point,
 )
 from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
+from squeezefilm.errors import ContradictionError, InputError
 from squeezefilm.materials import VACUUM_PERMITTIVITY
 from squeezefilm.plate.layout import GlueLayer, RectangularPlate
 
@@ -317,3 +317,36 @@ def test_a_softer_ceramic_forgets_what_was_stated_of_the_stiffer_one(
     for name in ("free_permittivity_11", "free_permittivity_33", "stress_coefficient_31",
                  "stress_coefficient_33", "stress_coefficient_15"):  # fmt: skip
         assert getattr(softer.constants, name) is None
+
+
+def test_a_value_of_a_ceramic_takes_the_constants_of_its_kind_along() -> None:
+    """By a sweep, a draw or a sensitivity: all stiffnesses, or all d, in proportion."""
+    display = load_display("touchpad-glass")
+    assert isinstance(display.actuator, RectangularPlate)
+    own = display.actuator.ceramic
+    assert own.constants is not None
+    path = "actuator.ceramic."
+    other = with_values(display, {path + "charge_coefficient": 1.2 * own.charge_coefficient})
+    found = other.actuator.ceramic  # type: ignore[union-attr]
+    assert found == own.scaled(charge=1.2)
+    assert found.constants is not None
+    for pair in (31, 33, 15):
+        name = f"charge_coefficient_{pair}"
+        assert getattr(found.constants, name) == pytest.approx(1.2 * getattr(own.constants, name))
+    assert found.constants.compliance_11 == own.constants.compliance_11
+    both = {"charge_coefficient": 0.9, "in_plane_stiffness": 1.1}
+    other = with_values(display, {path + k: by * getattr(own, k) for k, by in both.items()})
+    found = other.actuator.ceramic  # type: ignore[union-attr]
+    stiffer = own.scaled(stiffness=1.1, charge=0.9).constants
+    assert found.constants is not None
+    assert stiffer is not None
+    assert dataclasses.astuple(found.constants)[:9] == pytest.approx(
+        dataclasses.astuple(stiffer)[:9]
+    )
+    # One of another sign contradicts the constants, as it would in a file.
+    with pytest.raises(ContradictionError, match="charge_coefficient"):
+        with_values(display, {path + "charge_coefficient": -own.charge_coefficient})
+    # Nothing is changed where nothing is asked for, and no factor may turn a sign.
+    assert own.scaled() is own
+    with pytest.raises(InputError, match="charge"):
+        own.scaled(charge=-1.0)

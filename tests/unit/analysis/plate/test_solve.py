@@ -9,6 +9,7 @@ import pytest
 from squeezefilm.analysis.plate import command as solve
 from squeezefilm.analysis.plate.command import solve_plate
 from squeezefilm.display import load_display
+from squeezefilm.progress import Pace
 
 # The solvers themselves take seconds and have tests of their own.
 DEFAULTS = {"mode": None, "band": None, "points": 200, "progress": None}
@@ -46,5 +47,8 @@ def test_discs_and_stators_are_solved_as_rings(asked: list[Any], name: str) -> N
     given: dict[str, Any] = {
         "mode": (0, 1), "band": (30e3, 40e3), "points": 50, "progress": print,
     }  # fmt: skip
-    solve_plate(name, **given)
-    assert asked == [("analyze_ring", name, DEFAULTS), ("analyze_ring", name, given)]
+    solve_plate(name, **given, budget=60.0)
+    assert asked == [
+        ("analyze_ring", name, {**DEFAULTS, "pace": Pace()}),
+        ("analyze_ring", name, {**given, "pace": Pace(60.0)}),
+    ]

@@ -29,6 +29,7 @@ from squeezefilm.contact.sharing.kernel import (
     SWING,
     UNSETTLED,
     CompiledFilms,
+    CompiledRidges,
     asperity_mean,
     balance,
     balance_rows,
@@ -130,10 +131,10 @@ def balanced(
     table: CompiledFilms | None = None,
 ) -> np.ndarray:
     out = np.full(COLUMNS, np.nan)
-    balance(
-        np.atleast_1d(np.asarray(amplitudes, dtype=float)), np.asarray(offsets, dtype=float),
-        pressure, impedance, law.compiled(), table or films(), out,
-    )  # fmt: skip
+    met = np.atleast_1d(np.asarray(amplitudes, dtype=float))
+    alike = np.full(met.size, 1 / met.size)
+    ridges = CompiledRidges(met, np.asarray(offsets, dtype=float), alike)
+    balance(ridges, pressure, impedance, law.compiled(), table or films(), out)
     return out
 
 

@@ -96,7 +96,7 @@ def test_one_ridge_tied_is_that_ridge_and_many_mean_their_pressures(table: FilmT
 
 def test_a_pad_pressed_through_and_one_off_the_table_are_refused(table: FilmTable) -> None:
     weak = AsperityLaw(1.0)
-    with pytest.raises(OutOfRangeError, match=r"under 900 kPa at an amplitude of 1 um is pressed"):
+    with pytest.raises(OutOfRangeError, match=r"under 900 kPa at an amplitude of 1 µm is pressed"):
         share_load(table, weak, np.array([0.0, 1e-6]), np.array([1.0, 9e5]))
     # The gap at which 1e-9 of ambient is left is some 10 mm: beyond e^6 lengths of 40 µm.
     with pytest.raises(OutOfRangeError, match="not tabulated"):

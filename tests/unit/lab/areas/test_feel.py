@@ -109,7 +109,7 @@ def test_pixels_have_from_a_micrometre_to_ten_centimetres(lab: Talk) -> None:
         assert f'pixel = "{pixel}"' in made["text"]
     for pixel in ("0.99 um", "101 mm"):
         said = lab.refused("add picture", name="p", data=PICTURE, pixel=pixel)
-        assert said == f"a pixel of {pixel}: it may have 1 um to 10 cm"
+        assert said == f"a pixel of {pixel}: it may have 1 µm to 10 cm"
     assert "p.png" not in {one.name for one in (lab.folder / "textures").iterdir()}
 
 

@@ -20,11 +20,11 @@ PLATE = preset_text("biet2008-plate")
         ("drive.voltage", "from 0 V up to 2 kV"),
         ("drive.duty", "from 0.001 up to 1"),
         # Patches of 12 mm raster on a plate of 83 × 49 mm.
-        ("actuator.patches.0.length", "from 1 um up to 12 mm"),
-        ("actuator.patches.0.width", "from 1 um up to 49 mm"),
+        ("actuator.patches.0.length", "from 1 µm up to 12 mm"),
+        ("actuator.patches.0.width", "from 1 µm up to 49 mm"),
         ("actuator.patches.0.x", "from 0 m up to 1 mm"),
         ("actuator.length", "from 83 mm up to 10 m"),
-        ("actuator.ceramic.charge_coefficient", "from -1 um/V up to 1 um/V"),
+        ("actuator.ceramic.charge_coefficient", "from -1 µm/V up to 1 µm/V"),
         ("name", ""),
     ],
 )

@@ -235,8 +235,11 @@ def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.Monkey
     assert solved == [display_of(text).actuator]
     assert found["drive_electronics"] is None  # a beam has no admittance
     assert told == [("sweeping", 0.5)]
-    # Neither a beam nor what is no plate is solved ahead.
+    # Neither a beam nor what is no plate is solved ahead, nor a stator fitted.
+    loads: list[Any] = []
+    monkeypatch.setattr(numbers, "load_of_mode", lambda *given: loads.append(given[0]))
     designed(point, "screening")
+    assert loads == []
     designed(WorkingPoint(STATOR), "solved")
     assert len(solved) == 1
 

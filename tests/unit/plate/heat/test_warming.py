@@ -122,7 +122,7 @@ def test_what_is_doubtful_is_said_and_only_that() -> None:
     hot = warming(SOURCE, PLATE, MEASURED)
     said = " ".join(hot.doubts)
     assert "drifts by -306 Hz" in said
-    assert "half-bandwidth of 275 Hz" in said
+    assert "half-bandwidth is 275 Hz" in said
     assert "more than the 60 K" in said
     assert "soft ceramics" in said
     assert "coercive" not in said

@@ -230,7 +230,7 @@ def test_a_band_chooses_how_long_the_krylov_space_is_and_the_progress_is_told(
             )
         assert caught.value.quantity == "charge_coefficient"
         assert asked[-1] == (band, steps)
-    assert told[0][0].startswith("reducing class 1 of ")
+    assert told[0][0].startswith("response, ")
     assert told[0][1] == 0.0
     with pytest.raises(InputError, match="exert no force"):
         harmonic_response(plate(), np.array([9e3, 10e3]), steps=3)

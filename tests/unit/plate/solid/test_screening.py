@@ -8,11 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.layout import CeramicPatch, Electrode, RectangularPlate
+from squeezefilm.plate.solid import screening
 from squeezefilm.plate.solid.layers import SCREENING
-from squeezefilm.plate.solid.resonances import DrivenMode, antinode
+from squeezefilm.plate.solid.resonances import (
+    DrivenMode,
+    Moving,
+    antinode,
+    strongest_neighbour,
+)
 from squeezefilm.plate.solid.response import harmonic_response
 from squeezefilm.plate.solid.screening import (
     SCREENING_ERROR,
@@ -22,6 +29,7 @@ from squeezefilm.plate.solid.screening import (
 )
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.symmetry import drive_classes
+from squeezefilm.plate.solid.working import solid_mode
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
 CERAMIC = Piezoceramic("P1-91", 67.9e9, 0.2897, 23e9, 7700, -247e-12, 1900, 60)
@@ -129,5 +137,51 @@ def test_an_antinode_lies_inside_the_face() -> None:
 def test_a_driven_mode_has_a_name_and_a_bandwidth() -> None:
     mode = DrivenMode(30e3, 60.0, (8, 0), 0.9, ("S", "S"), 1e-7, 2e-7, np.ones((3, 3)))
     assert mode.name == "(8,0)"
-    assert mode.half_bandwidth == pytest.approx(250.0)
+    assert mode.moving == ("(8,0)", 30e3, pytest.approx(250.0), 1e-7)
     assert dataclasses.replace(mode, label=None).name == "in plane"
+
+
+def test_the_neighbour_that_adds_most_need_not_be_the_nearest() -> None:
+    own = Moving("(8,0)", 30e3, 250.0, 1e-7)
+    near, far = Moving("(6,4)", 30.5e3, 250.0, 1e-9), Moving("in plane", 29e3, 500.0, 5e-8)
+    found = strongest_neighbour(own, [near, far])
+    assert found is not None
+    assert (found.name, found.frequency) == ("in plane", 29e3)
+    assert found.distance == pytest.approx(2.0)
+    assert found.share == pytest.approx(0.5 / 5**0.5)
+    assert strongest_neighbour(own, []) is None
+
+
+def test_a_space_grown_from_several_forces_holds_the_same_modes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    band = 20e3, 45e3
+    alone = screened_modes(plate, band)
+    monkeypatch.setattr(screening, "_LONG", 10)
+    together = [mode for mode in screened_modes(plate, band) if mode.antinode_per_volt > 1e-12]
+    assert len(together) == len(alone)
+    for one, other in zip(alone, together, strict=True):
+        assert one.label == other.label
+        assert one.frequency == pytest.approx(other.frequency, rel=1e-9)
+        assert one.antinode_per_volt == pytest.approx(other.antinode_per_volt, rel=1e-5)
+
+
+@pytest.mark.slow
+def test_a_mode_in_the_plane_crosses_the_papers_and_takes_some_of_its_motion() -> None:
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    below, at, above = (
+        solid_mode(dataclasses.replace(plate, thickness=h)) for h in (1.7e-3, 1.75e-3, 1.8e-3)
+    )
+    for mode in (below, at, above):
+        assert mode.neighbour is not None
+        assert mode.neighbour.name == "in plane"
+    assert at.neighbour.share > 3 * max(below.neighbour.share, above.neighbour.share)
+    # What the mode itself has is less than between its neighbours on the curve.
+    between = (below.modal_amplitude_per_volt + above.modal_amplitude_per_volt) / 2
+    assert at.modal_amplitude_per_volt < 0.9 * between
+    # It is above the mode on the thinner plate and below it on the thicker one.
+    assert below.neighbour.frequency > below.frequency
+    assert above.neighbour.frequency < above.frequency

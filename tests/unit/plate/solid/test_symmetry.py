@@ -25,6 +25,7 @@ from squeezefilm.plate.solid.symmetry import (
     drive_signs,
     mirror_map,
     symmetric_axes,
+    told_of,
 )
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
@@ -41,6 +42,15 @@ def plate(*patches: CeramicPatch, **changes: Any) -> RectangularPlate:
 
 
 LEFT, RIGHT = patch(1e-3, 5.5e-3), patch(19e-3, 5.5e-3)
+
+
+def test_a_class_is_told_in_plain_words() -> None:
+    assert told_of((None, None)) == "all modes"
+    assert told_of((None, "A")) == "modes that move opposite on both halves of the width"
+    assert told_of(("S", "A")) == (
+        "modes that move alike on both halves of the length and "
+        "opposite on both halves of the width"
+    )
 
 
 def test_a_mirror_takes_patches_to_patches() -> None:

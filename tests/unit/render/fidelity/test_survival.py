@@ -53,7 +53,7 @@ def test_a_sine_loses_more_than_a_square() -> None:
         ({"time_constant": 0.0}, "time_constant = 0 s"),
         ({"kept": 1.0}, "kept = 1"),
         ({"shape": "saw"}, "Allowed: square, sine"),
-        ({"low": 2e-6, "high": 1e-6}, "low = 2 um lies above high = 1 um"),
+        ({"low": 2e-6, "high": 1e-6}, "low = 2 µm lies above high = 1 µm"),
         ({"spatial_periods": []}, "spatial_periods of shape"),
         ({"spatial_periods": [0.0]}, "spatial_periods = 0 m"),
         ({"speeds": 0.1}, "speeds is one number"),

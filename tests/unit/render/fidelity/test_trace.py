@@ -58,7 +58,7 @@ def test_a_texture_may_depend_on_time_and_speed() -> None:
         ((SQUARE, Stroke(0.1), TAU, falling, 50.0), "25 Hz|25 times|at least 100 Hz"),
         ((SQUARE, Stroke(0.1), 1e-9, falling), "20 million|below 50 MHz"),
         ((lambda x, y, v, t: np.float64(1e-6), Stroke(0.1), TAU, falling), "texture returned .*()"),
-        ((lambda x, y, v, t: -1e-6 + 0 * x, Stroke(0.1), TAU, falling), "texture = -1 um"),
+        ((lambda x, y, v, t: -1e-6 + 0 * x, Stroke(0.1), TAU, falling), "texture = -1 µm"),
         ((lambda x, y, v, t: math.nan + 0 * x, Stroke(0.1), TAU, falling), "texture = nan"),
         ((SQUARE, Stroke(0.1), TAU, lambda a, v: 1.0), "relative_friction returned"),
         ((SQUARE, Stroke(0.1), TAU, lambda a, v: a - 1), "relative_friction = -1"),

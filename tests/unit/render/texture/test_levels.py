@@ -62,7 +62,7 @@ def test_arguments_broadcast(texture: Texture) -> None:
         ((1e-3, -1e-9, HIGH), "low = -1 nm"),
         ((1e-3, math.nan, HIGH), "low = nan"),
         ((1e-3, 0.0, 2.0), "at most 1 mm"),
-        ((1e-3, HIGH, LOW), "low = 2 um lies above high = 500 nm"),
+        ((1e-3, HIGH, LOW), "low = 2 µm lies above high = 500 nm"),
     ],
 )
 def test_a_grating_out_of_range_is_refused(make: type, arguments: tuple, said: str) -> None:

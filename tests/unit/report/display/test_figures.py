@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import subprocess
 import sys
@@ -14,41 +15,39 @@ import pytest
 from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.display import load_display
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.report.display.figures import FIGURES
+from squeezefilm.report.display.figures import FIGURES, drawing, prepare
 from squeezefilm.report.display.layout_figures import drive_strip
 from squeezefilm.report.display.plate_figures import half_power
 from squeezefilm.report.kit import style
+from squeezefilm.report.kit.drawing_process import drawing_process
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = (
-    "layout", "mode", "area", "response", "band", "chain", "films", "pressure", "friction",
-    "wavelength", "texture", "fidelity", "compensation", "survival",
+    "layout", "mode", "area", "response", "band", "chain", "films", "texture", "fidelity",
+    "survival",
 )  # fmt: skip
 # The odd displays, each with the figures that its oddness can spoil.
 ODD = {
     "one-ceramic": ("layout", "mode", "response", "films"),
-    "hostile-names": ("layout", "band", "friction", "wavelength"),
+    "hostile-names": ("layout", "band"),
     "no-voltage": (
         "mode",
         "response",
-        "pressure",
-        "friction",
         "band",
         "chain",
         "films",
         "texture",
         "fidelity",
     ),
-    "floating": ("pressure", "band", "friction", "wavelength", "texture"),
+    "floating": ("band", "texture"),
     "off-resonance": ("response",),
-    "not-driven": ("mode", "response", "friction"),
-    "amplitude-given": ("response", "friction"),
+    "not-driven": ("mode", "response"),
+    "amplitude-given": ("response",),
     "many-nodes": ("layout", "mode"),
     "square": ("layout",),
-    "smooth-finger": ("pressure",),
-    "five-surfaces": ("friction", "band"),
+    "five-surfaces": ("band",),
     "small-ring": ("layout", "mode", "films"),
-    "printed-model": ("pressure", "friction", "texture"),
+    "printed-model": ("band", "texture"),
 }
 OFTEN = {*PRESETS, "hostile-names", "no-voltage", "one-ceramic"}
 """Drawn at every run; the other odd ones at night."""
@@ -146,9 +145,7 @@ def test_messages_tell_the_numbers_of_the_analysis(plate_analysis: Analysis) -> 
     assert "7 ceramics cover 93 %" in titles["layout"]
     assert "8 nodal lines" in titles["mode"]
     assert "33.57 kHz is 556 Hz wide" in titles["response"]
-    assert "to 1.48 times ambient by the paper, to 1.01 in the solved film" in titles["pressure"]
     assert "how ridges are drawn decides" in titles["films"]
-    assert "2.33 µm at λ/2 = 7.5 mm, 1.35 µm at 15 mm" in titles["wavelength"]
     assert "0.67 mm" in titles["fidelity"]
 
 
@@ -163,6 +160,33 @@ def test_the_response_says_when_the_drive_is_beside_it_or_in_vain(
     said = f"{100 * share:.0f}\u00a0% of the motion"
     assert said in draw(analysis_of("off-resonance")).get_suptitle()
     assert "do not drive the mode" in draw(analysis_of("not-driven")).get_suptitle()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PRESETS)
+def test_another_process_draws_the_same_from_what_a_figure_needs(
+    name: str, analysis_of: Callable[[str], Analysis]
+) -> None:
+    analysis = analysis_of(name)
+    with drawing_process(True, prepare, drawing) as aside:
+        if aside is None:
+            pytest.skip("there is one processor")
+        # Without what was asked of it before.
+        aside.begin(dataclasses.replace(analysis))
+        for item in FIGURES:
+            aside.ask(item.key, {need: getattr(analysis, need) for need in item.needs})
+        drawn = aside.drawings()
+    assert drawn == {key: drawing(analysis, key) for key in KEYS}
+
+
+@pytest.mark.slow
+def test_a_figure_computes_nothing_but_what_it_needs(plate_analysis: Analysis) -> None:
+    for item in FIGURES:
+        fresh = dataclasses.replace(plate_analysis)
+        vars(fresh).update({need: getattr(plate_analysis, need) for need in item.needs})
+        before = set(vars(fresh))
+        item.draw(fresh)
+        assert set(vars(fresh)) == before, item.key
 
 
 @pytest.mark.slow

@@ -86,9 +86,13 @@ def rows_of(made: Any) -> dict[str, tuple[str, str]]:
 
 def test_what_the_amplifier_has_to_give_and_which_can() -> None:
     kinds = [SimpleNamespace(part=part, suffices=part == "B") for part in "ABC"]
-    load = SimpleNamespace(current=0.3, apparent_power=1.5, real_power=1.2, amplifiers=kinds)
+    load = SimpleNamespace(
+        current=0.3, apparent_power=1.5, real_power=1.2, amplifiers=kinds, assumed=""
+    )
     said = rows_of(analysis(drive_electronics=load))
-    assert said["Current"][0] == "300 mA"
+    assert said["Current"] == ("300 mA", "zero-to-peak, without a finger")
+    load.assumed = "its ceramic"
+    assert rows_of(analysis(drive_electronics=load))["Current"][1].endswith("of an assumed ceramic")
     assert said["Apparent power"] == ("1.5 VA", "1.2 W of them are real power")
     assert said["Amplifiers that can"] == ("1 of 3", "B can; A and C cannot")
     assert rows_of(analysis())["Current"][0] == "not known"

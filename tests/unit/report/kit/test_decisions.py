@@ -71,17 +71,20 @@ def test_what_is_felt_stands_beside_what_survives() -> None:
             FeltAt(0.1, 0.335e-3, 0.25e-3, (0.25e-3, 0.45e-3), 0.0),
             FeltAt(0.2, 0.67e-3, 0.43e-3, (0.25e-3, None), 0.03),
         ),
+        0.1,
     )
     assert felt_rows(felt) == [
         (
             "Finest grating felt at 100 mm/s",
             "0.25 mm or finer",
-            "90 % interval 0.25 mm or finer to 0.45 mm; 0.34 mm survives the resonator",
+            "0.25 mm or finer at best and 0.45 mm at worst (90 % interval); 0.34 mm survives the "
+            "resonator",
         ),
         (
             "Finest grating felt at 200 mm/s",
             "0.43 mm",
-            "90 % interval 0.25 mm or finer to none; in 3 % none; 0.67 mm survives the resonator",
+            "0.25 mm or finer at best and none at worst (90 % interval); none is felt in 3 % of "
+            "the draws; 0.67 mm survives the resonator",
         ),
     ]
     plain = dataclasses.replace(felt, at=(FeltAt(0.1, 0.5e-3, None),))
@@ -91,7 +94,7 @@ def test_what_is_felt_stands_beside_what_survives() -> None:
     )
 
 
-def test_what_moves_most_stands_first_and_what_is_not_known_before_it() -> None:
+def test_what_moves_most_stands_first_and_what_is_not_known_last() -> None:
     def row(path: str, frequency: float | None, friction: float) -> DisplaySensitivity:
         ends = [
             Shift(value, sign and frequency and sign * frequency, 0.0, 0.3 + sign * friction)
@@ -105,7 +108,7 @@ def test_what_moves_most_stands_first_and_what_is_not_known_before_it() -> None:
         (row("a", 0.0, 0.1), row("b", 0.1, 0.0), row("c", None, 0.0)), 0.3, "quick", "a beam"
     )
     assert sensitivity_rows(found) == [
-        ["c", "1 mm to 2 mm", "not known", "not known", "–, –", "assumed"],
         ["b", "1 mm to 2 mm", "−10 %, +10 %", "–", "0.30, 0.30", "assumed"],
         ["a", "1 mm to 2 mm", "–", "–", "0.20, 0.40", "assumed"],
+        ["c", "1 mm to 2 mm", "not known", "not known", "–, –", "assumed"],
     ]

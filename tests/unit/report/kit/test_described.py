@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -13,32 +14,19 @@ from squeezefilm.report.kit import described
 from squeezefilm.report.kit.numbers import display_values
 
 
-@pytest.fixture(autouse=True)
-def plain_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("FORCE_COLOR", "COLUMNS", "TTY_COMPATIBLE", "TTY_INTERACTIVE"):
-        monkeypatch.delenv(name, raising=False)
-
-
-def printed(capsys: pytest.CaptureFixture[str]) -> str:
-    captured = capsys.readouterr()
-    assert captured.err == ""
-    assert all(len(line) <= 80 for line in captured.out.splitlines())
-    return captured.out
-
-
-def test_presets_are_listed_with_what_is_assumed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_presets_are_listed_with_what_is_assumed(printed: Callable[[], str]) -> None:
     listing = described.preset_list()
     by_name = {item["name"]: item for item in listing}
     assert {"biet2008-plate", "biet2008-stator", "touchpad-glass"} <= set(by_name)
     assert by_name["biet2008-plate"]["values_assumed"] == 15
     described.show_presets(listing)
-    text = printed(capsys)
+    text = printed()
     assert "biet2008-stator" in text
     assert "15 of 67" in text
 
 
 def test_values_are_shown_as_written(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    printed: Callable[[], str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     values = described.display_values("biet2008-plate")
     by_path = {item["path"]: item for item in values}
@@ -53,7 +41,7 @@ def test_values_are_shown_as_written(
     assert by_path["actuator.patches.7.polarity"]["text"] == "1"
     assert by_path["name"]["evidence"] is None
     described.show_values(values)
-    text = printed(capsys)
+    text = printed()
     assert "* poisson_ratio" in text
     assert "* assumed: 15 of 67 values" in text
     assert "? " not in text
@@ -76,7 +64,7 @@ def test_paths_of_the_report_are_those_of_the_listing(plate_analysis: Analysis) 
 
 
 def test_what_was_changed_in_a_copy_is_shown_without_its_source(
-    capsys: pytest.CaptureFixture[str], tmp_path: Any
+    printed: Callable[[], str], tmp_path: Any
 ) -> None:
     from squeezefilm.display import new_display_file
 
@@ -85,21 +73,21 @@ def test_what_was_changed_in_a_copy_is_shown_without_its_source(
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace('"49 mm"', '"48 mm"', 1).replace('width = "49', 'width = "48'))
     described.show_values(described.display_values(str(file)))
-    words = " ".join(printed(capsys).split())
+    words = " ".join(printed().split())
     assert "? width 48 mm unstated: changed from 49 mm (paper, section 3.1.2)" in words
     assert "? without a source: 8 of 67 values" in words
 
 
 def test_materials_are_listed_and_one_is_shown_with_its_sources(
-    capsys: pytest.CaptureFixture[str],
+    printed: Callable[[], str],
 ) -> None:
     listing = described.material_list()
     assert [one["name"] for one in listing] == [one.name for one in materials.library()]
     described.show_materials(listing)
-    text = printed(capsys)
+    text = printed()
     assert all(one["name"] in text for one in listing)
     described.show_materials(described.material_list("pzt 5h"))
-    words = " ".join(printed(capsys).split())
+    words = " ".join(printed().split())
     assert "PZT-5H: very soft" in words
     assert "constants.compliance_11 16.5e-12 m2/N" in words
     with pytest.raises(InputError, match="Did you mean 'PZT-5"):

@@ -7,7 +7,7 @@ from squeezefilm.report.kit.electronics import electronics_rows
 
 LOAD = ElectricalLoad(
     33.58e3, 15.0, 75.4e-9, 1.07, 8.04, 7.83, 0.974, 3.16e6, 293e-6, 1.04, 15e-6, 14.6, 7, 0.153,
-    10.8e-9, (AmplifierCheck("a kind", "a part", False, "gives 2 V/us", "a sheet"),),
+    10.8e-9, (AmplifierCheck("a kind", "a part", False, "gives 2 V/µs", "a sheet"),),
 )  # fmt: skip
 
 
@@ -40,3 +40,9 @@ def test_what_is_not_known_is_not_said() -> None:
     rows = electronics_rows(bare)
     assert [name for name, *_ in rows] == ["Drive current, peak", "Drive power", "Slew rate"]
     assert rows[0][2] == "at 15 V and 33.58 kHz, without a finger"
+
+
+def test_what_is_assumed_of_a_load_stands_before_it() -> None:
+    first, second, *_ = electronics_rows(dataclasses.replace(LOAD, assumed="its ceramic"))
+    assert first == ("Electrical load", "assumed in part", "its ceramic")
+    assert second[0] == "Electrode capacitance"

@@ -5,7 +5,16 @@ from __future__ import annotations
 import pytest
 
 from squeezefilm import quantities as si
-from squeezefilm.report.kit.numbers import HZ, M, changed, printable, shown, signed, span
+from squeezefilm.report.kit.numbers import (
+    HZ,
+    M,
+    changed,
+    printable,
+    shown,
+    signed,
+    span,
+    unit_stays,
+)
 
 
 @pytest.mark.parametrize(
@@ -41,3 +50,11 @@ def test_changes_have_their_sign_and_shares_their_space() -> None:
 )  # fmt: skip
 def test_messages_are_printed_in_the_same_style(written: str, said: str) -> None:
     assert printable(written) == said
+
+
+def test_no_line_ends_between_a_number_and_its_unit() -> None:
+    kept = unit_stays("at 24.5 mm of 3 parts, 0.23 % and 8.04 VA; µ′/µ = 0.31 in 5 models")
+    assert kept.split(" ") == [
+        "at", "24.5\u00a0mm", "of", "3", "parts,", "0.23\u00a0%", "and", "8.04\u00a0VA;",
+        "µ′/µ\u00a0=\u00a00.31", "in", "5", "models",
+    ]  # fmt: skip

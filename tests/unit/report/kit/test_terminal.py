@@ -2,35 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from squeezefilm.quantities import Unit
 from squeezefilm.report.kit import terminal
-from squeezefilm.report.kit.numbers import micro, printable, shown
+from squeezefilm.report.kit.numbers import printable, shown
 
 
-@pytest.fixture(autouse=True)
-def plain_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("FORCE_COLOR", "COLUMNS", "TTY_COMPATIBLE", "TTY_INTERACTIVE"):
-        monkeypatch.delenv(name, raising=False)
-
-
-def printed(capsys: pytest.CaptureFixture[str]) -> str:
-    captured = capsys.readouterr()
-    assert captured.err == ""
-    assert "\x1b" not in captured.out
-    assert all(len(line) <= 80 for line in captured.out.splitlines())
-    return captured.out
-
-
-def test_what_a_model_misses_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_a_model_misses_is_said(printed: Callable[[], str]) -> None:
     terminal.show_missed(terminal.plain_console(), "partial-levitation")
-    text = printed(capsys)
+    text = printed()
     assert "What measurements say and 'partial-levitation' does not" in text
     assert "the faster the finger slides" in " ".join(text.split())
     assert "In the model" not in text
     terminal.show_missed(terminal.plain_console(), "film-smooth")
-    assert "were not asked of the model 'film-smooth'" in printed(capsys)
+    assert "were not asked of the model 'film-smooth'" in printed()
 
 
 def test_progress_is_plain_lines_where_no_terminal_is(capsys: pytest.CaptureFixture[str]) -> None:
@@ -67,7 +55,5 @@ def test_quantities_read_as_the_field_says_them(value: float, unit: str, text: s
     assert shown(value, Unit(unit)) == text
 
 
-def test_micro_sign_and_printable() -> None:
-    assert micro("50 um") == "50 µm"
-    assert micro("copper") == "copper"
+def test_printable() -> None:
     assert printable("a\x1b[31m\n b\u202e") == "a [31m b"

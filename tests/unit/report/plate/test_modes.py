@@ -36,7 +36,7 @@ def test_the_displays_own_mode_is_marked_and_remarks_are_words(paper: ModeList) 
     assert any("hidden" in row[-1] for row in rows)
     lines = printed(lambda: show_mode_list(paper))
     assert any(line.startswith("→ (8,0)") for line in lines)
-    assert any(line.startswith("suggested Write nodal_lines = 8") for line in lines)
+    assert any(line.startswith("suggested Keep nodal_lines = 8, as described") for line in lines)
     assert lines[-1].endswith("squeezefilm plate solves a mode to 0.1 %")
 
 

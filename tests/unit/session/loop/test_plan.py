@@ -24,7 +24,7 @@ PlanOf = Callable[..., LoopPlan]
         ({"output_delay": -1e-3}, "output_delay"),
         ({"host_timeout": 0.0}, "host_timeout"),
         ({"compensation": "preview"}, "Allowed: none, inverse"),
-        ({"drive": DriveTable.linear(1e-8, 50.0)}, "1 um and the drive's table ends at 0.5 um"),
+        ({"drive": DriveTable.linear(1e-8, 50.0)}, "1 µm and the drive's table ends at 0.5 µm"),
     ],
 )
 def test_a_plan_refuses_what_it_cannot_do(

@@ -32,7 +32,7 @@ def test_a_device_in_order_is_recorded_before_and_after(tmp_path: Path) -> None:
         begun = begin_session(store, store.enrol(), device, CONSENT, LOUD, acknowledged=True)
         device.amplitude = 1.5e-6
         after = end_session(store, begun, device)
-        assert "amplitude is 1.5 um" in after.problems[0]
+        assert "amplitude is 1.5 µm" in after.problems[0]
         rows = store.rows("SELECT * FROM verification ORDER BY moment DESC")
         assert [(r["moment"], r["passed"], r["session"]) for r in rows] == [
             ("before", 1, begun),
@@ -51,8 +51,8 @@ def test_a_device_in_order_is_recorded_before_and_after(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("amplitude", "resonance", "says"),
     [
-        (1.7e-6, 30.5e3, "amplitude is 1.7 um"),
-        (2.3e-6, 30.5e3, "amplitude is 2.3 um"),
+        (1.7e-6, 30.5e3, "amplitude is 1.7 µm"),
+        (2.3e-6, 30.5e3, "amplitude is 2.3 µm"),
         (2e-6, 31.0e3, "resonance is 31 kHz"),
         (math.nan, 30.5e3, "amplitude is nan"),
     ],

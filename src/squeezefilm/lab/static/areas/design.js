@@ -270,10 +270,10 @@ class DesignView {
     say(n.wave, quantity(found.half_wavelength_m, "m"));
     say(n.time, quantity(found.envelope_time_constant_s, "s"), `Q = ${plain(found.quality_factor)}`);
     say(n.force, quantity(found.tangential_force_N, "N"), `at ${quantity(found.normal_force_N, "N")}`);
-    // The screening beam and a measured stator have no admittance: dashes.
+    // The screening has no admittance: dashes.
     const load = found.drive_electronics ?? {};
     const able = load.amplifiers?.filter((one) => one.suffices).map((one) => one.kind);
-    say(n.current, quantity(load.current_A, "A"), load.channels ? `peak, without a finger; ${load.channels} driven ceramics, ${quantity(load.capacitance_F, "F")}` : "of the solved plate");
+    say(n.current, quantity(load.current_A, "A"), load.channels ? `peak, without a finger; ${load.channels > 1 ? `${load.channels} driven ceramics, ` : ""}${quantity(load.capacitance_F, "F")}${load.assumed ? `; ${load.assumed}` : ""}` : "of the solved plate");
     say(n.power, quantity(load.real_power_W, "W"), load.channels ? `of ${plain(load.apparent_power_VA)} VA, ${plain(load.slew_rate_V_per_s / 1e6)} V/µs; enough: ${able.join(", ") || "none of three classes"}` : "");
     say(n.inductor, quantity(load.parallel_inductance_V_s_per_A, "H"), load.series_inductance_V_s_per_A ? `parallel; ${quantity(load.series_inductance_V_s_per_A, "H")} in series` : "");
     const model = found.vibration_model.replaceAll("_", " ");

@@ -11,7 +11,7 @@ from squeezefilm.chain.pad_place import place_words
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 from squeezefilm.report.display.area_figures import active_area as figure_of
-from squeezefilm.report.kit.area_rows import place_rows
+from squeezefilm.report.kit.point_rows import place_rows
 
 STATOR = load_display("biet2008-stator")
 POINT = predict(STATOR)

@@ -1,0 +1,245 @@
+"""The pad of a finger on a vibration: what its ridges meet, how film and asperities carry it."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.chain.friction_models import (
+    MODEL_KINDS,
+    FrictionLimits,
+    FrictionModel,
+    ModelKind,
+)
+from squeezefilm.chain.pad_place import PadPlace
+from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED, Finger
+from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.rough_contact import ContactLaw
+from squeezefilm.contact.sharing.balance import share_load
+from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
+from squeezefilm.contact.sharing.pad import (
+    FrictionRipple,
+    Limit,
+    PadFriction,
+    PadPosture,
+    friction_ripple,
+    pad_friction,
+    ridge_points,
+)
+from squeezefilm.contact.sharing.shear import AsperityShear
+from squeezefilm.display import Surface
+from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.hard_limits import FINGER_SPEED
+from squeezefilm.materials import Gas
+from squeezefilm.plate.loaded_mode import mean_square_wave
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class PadLaw:
+    """How film and asperities share the load of a pad, at one frequency and force, and the friction
+    that this leaves.
+
+    `position` is the pad's centre from an antinode, along a wave whose antinodes are all alike; a
+    `place` on the face, with what the ridges meet there, stands in its stead, and amplitudes are
+    still the best antinode's. `slip` is the gas's law of slip where the load is shared.
+    Without a place the wave is even. Raises `InputError` for a position and a place, and for either
+    with a model that knows the finger over an antinode only.
+    """
+
+    surface: Surface
+    finger: Finger
+    gas: Gas
+    half_wavelength: Annotated[si.Metre, si.Above(0)]
+    frequency: Annotated[si.Hertz, si.Above(0)]
+    normal_force: Annotated[si.Newton, si.Above(0)]
+    model: FrictionModel
+    position: si.Metre = 0.0
+    speed: Annotated[si.MetrePerSecond, FINGER_SPEED] = EXPLORING_SPEED
+    slip: str = "first"
+    place: PadPlace | None = None
+
+    def __post_init__(self) -> None:
+        elsewhere = self.position != 0 or self.place is not None
+        if elsewhere and self.kind.film != "shared":
+            raise InputError(
+                f"the model '{self.model}' knows the finger over an antinode only; ask a "
+                "partial-levitation model, or leave position and place out",
+                quantity="place" if self.place is not None else "position",
+            )
+        if self.position and self.place is not None:
+            raise InputError("give a position along the wave or a place on the face, not both")
+
+    @property
+    def kind(self) -> ModelKind:
+        """What the model makes of film and skin."""
+        return MODEL_KINDS[self.model]
+
+    @si.checked_numbers
+    def sharing(
+        self,
+        amplitude: si.MetreLike,
+        limit: Limit | None = None,
+        *,
+        posture: PadPosture | None = None,
+        yielding: bool = False,
+    ) -> PadFriction:
+        """How film and asperities share the load at amplitudes (m), in the model's limit or in
+        the one named; how the pad lies (None: at `position`, level); and whether the
+        finger's skin yields at the ultrasonic frequency. Raises `InputError` for a model that does
+        not share the load."""
+        if limit is None:
+            if self.kind.film != "shared":
+                raise InputError(
+                    f"the model '{self.model}' holds the gap and shares no load; ask a "
+                    "partial-levitation model, or name a limit"
+                )
+            limit = self.kind.limit
+        skin = self.finger.skin if yielding else None
+        return self._pad(amplitude, self.speed, limit=limit, posture=posture, skin=skin)
+
+    @si.checked_numbers
+    def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
+        """µ′/µ in both limits of the skin at amplitudes (m); with shear where the model has it."""
+        a = np.atleast_1d(np.asarray(amplitude, dtype=float))
+        own, tied = (self.sharing(a, one).relative_friction for one in ("own", "one-gap"))
+        return FrictionLimits(a, own, tied)
+
+    def ripple(self, amplitude: si.Metre) -> FrictionRipple:
+        """µ′/µ along the wave by partial levitation at an amplitude (m), each ridge at its own
+        balance, whatever the model. See `friction_ripple`."""
+        return friction_ripple(
+            self._films,
+            self.asperities,
+            amplitude,
+            self.half_wavelength,
+            self.finger,
+            normal_force=self.normal_force,
+            shear=self._shear(self.speed),
+        )
+
+    @property
+    def _films(self) -> FilmTable:
+        return film_table(self.frequency, self.finger.plateau_width, self.gas, self.slip)
+
+    @cached_property
+    def asperities(self) -> ContactLaw:
+        """What skin and surface carry between them."""
+        return self.finger.asperity_law(self.surface.roughness)
+
+    @property
+    def contact_side(self) -> si.Metre:
+        """The side of the square contact at this force (m)."""
+        return float(np.sqrt(self.finger.contact_area(self.normal_force)))
+
+    @si.checked_numbers
+    def mean_gap(self, amplitude: si.MetreLike) -> si.MetreArray:
+        """The plateaus' mean gap (m) at amplitudes (m) of an even wave, wherever the pad is, in the
+        model's limit: of `sharing` what the vibration depends on, without the friction."""
+        met, shares = self._even_swings
+        if self.kind.limit != "own":
+            wave = PadPosture(swings=met, shares=shares)
+            at = np.zeros(met.size)
+            limit = self.kind.limit
+            return self._pad(amplitude, self.speed, limit=limit, points=at, posture=wave).mean_gap
+        swings = np.outer(amplitude, met)
+        pressure = self.finger.plateau_pressure(self.normal_force)
+        with self._named_force():
+            return share_load(self._films, self.asperities, swings, pressure).mean_gap @ shares
+
+    @property
+    def mean_square(self) -> si.Dimensionless:
+        """The mean square over the contact of the amplitude over the best antinode's."""
+        if self.place is None:
+            return self.mean_square_even
+        met, shares = self.ridge_swings
+        return float(met**2 @ shares)
+
+    @property
+    def mean_square_even(self) -> si.Dimensionless:
+        """The same of an even wave, wherever the pad is."""
+        return mean_square_wave(self.half_wavelength, self.contact_side, self.position)
+
+    @cached_property
+    def ridge_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+        """The amplitudes that ridges meet over the best antinode's, and the shares that meet them:
+        those of an even wave, or, at a place, few that stand for them all."""
+        if self.place is None:
+            return self._even_swings
+        return self.place.met(self.finger, self.contact_side)
+
+    @cached_property
+    def _even_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+        """The same of an even wave, wherever the pad is."""
+        points = ridge_points(self.finger, self.contact_side)
+        wave = PadPosture(self.position).over_the_antinode(points, self.half_wavelength)
+        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
+        return np.asarray(kinds, dtype=float), counts / points.size
+
+    @si.checked_numbers
+    def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
+        """µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,): the pad's in the limit
+        "own" is the mean over its ridges."""
+        posture, at = PadPosture(swings=np.ones(1)), np.zeros(1)
+        found = self._pad(amplitude, self.speed, limit="own", points=at, posture=posture)
+        return found.relative_friction
+
+    @cached_property
+    def friction_coefficient(self) -> si.Dimensionless:
+        """µ without vibration, at this force. See `Finger.friction_coefficient`."""
+        return self.finger.friction_coefficient(
+            self.surface.friction_coefficient, self.surface.roughness, self.normal_force
+        )
+
+    def _pad(
+        self,
+        amplitude: si.MetreLike,
+        speed: si.MetrePerSecondLike,
+        *,
+        limit: Limit,
+        points: si.MetreArray | None = None,
+        posture: PadPosture | None = None,
+        skin: Skin | None = None,
+    ) -> PadFriction:
+        if posture is None:
+            # A pad that lies level: where along it a ridge is makes no difference.
+            met, shares = self.ridge_swings
+            points, posture = np.zeros(met.size), PadPosture(swings=met, shares=shares)
+        elif points is None:
+            points = ridge_points(self.finger, self.contact_side)
+        with self._named_force():
+            return pad_friction(
+                self._films,
+                self.asperities,
+                amplitude,
+                self.half_wavelength,
+                points,
+                self.finger.plateau_pressure(self.normal_force),
+                limit=limit,
+                posture=posture,
+                skin=skin,
+                shear=self._shear(speed),
+            )
+
+    @contextlib.contextmanager
+    def _named_force(self) -> Iterator[None]:
+        """Within it what is out of range says under which force."""
+        try:
+            yield
+        except OutOfRangeError as error:
+            shown = si.format_quantity(self.normal_force, si.Unit("N"))
+            raise OutOfRangeError(f"under a normal force of {shown}: {error}") from error
+
+    def _shear(self, speed: si.MetrePerSecondLike) -> AsperityShear | None:
+        if not self.kind.shear:
+            return None
+        finger = self.finger
+        return AsperityShear(
+            speed, self.friction_coefficient, finger.tangential_stiffness, finger.tangential_ratio
+        )

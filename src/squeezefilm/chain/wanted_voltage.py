@@ -1,0 +1,90 @@
+"""The voltage for a wanted friction: the chain of a display from its end to its beginning."""
+
+from __future__ import annotations
+
+from squeezefilm import quantities as si
+from squeezefilm.chain.area_map import at_best_place
+from squeezefilm.chain.chosen_mode import chosen_mode
+from squeezefilm.chain.free_vibration import FreeVibration, amplitude_per_volt
+from squeezefilm.chain.friction import FrictionLaw, friction_law
+from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
+from squeezefilm.chain.pad_place import FacePlace, pad_place
+from squeezefilm.chain.touch import kept_at
+from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
+from squeezefilm.display import NamedDisplay
+from squeezefilm.errors import UnreachableError
+from squeezefilm.from_text import reads_text
+from squeezefilm.plate.working_mode import PlateTheory, WorkingMode
+from squeezefilm.plausibility.checks import require_plausible
+
+_MOST_PLACES = 4
+
+
+@reads_text
+@si.checked_numbers
+def voltage_for_friction(
+    display: NamedDisplay,
+    relative_friction: si.Dimensionless,
+    *,
+    frequency: si.Hertz | None = None,
+    normal_force: si.Newton | None = None,
+    surface: str | None = None,
+    theory: PlateTheory | None = None,
+    model: FrictionModel | None = None,
+    speed: si.MetrePerSecond | None = None,
+    place: FacePlace | None = None,
+    position: si.Metre | None = None,
+) -> tuple[si.Volt, si.Metre]:
+    """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
+
+    The inverse of `predict`, the finger's damping and detuning included; linear in the voltage up
+    to there. The amplitude is the best antinode's, wherever the pad is. Raises
+    `UnreachableError` where no amplitude does, or where the voltage would be more than the 2 kV
+    that a `Drive` may have.
+    """
+    require_plausible(display)
+    mode, _ = chosen_mode(display.actuator, theory)
+    drive_frequency = mode.resonance_frequency if frequency is None else frequency
+    si.require("frequency", drive_frequency, si.Unit("Hz"), above=0)
+    law = friction_law(
+        display,
+        mode.half_wavelength,
+        drive_frequency,
+        surface=display.surface(surface),
+        normal_force=normal_force,
+        model=model or DEFAULT_MODEL,
+        speed=speed,
+        position=position or 0.0,
+        place=pad_place(display.actuator, mode, drive_frequency, place),
+    )
+    if place is not None or position is not None:
+        return _needed(mode, law, relative_friction)
+    # Which place is best may change with the voltage, by little: found at the drive's own first.
+    volts, per_volt = display.drive.voltage, amplitude_per_volt(mode, drive_frequency)
+    found, before = (0.0, 0.0), None
+    for _ in range(_MOST_PLACES):
+        drive = FreeVibration(drive_frequency, volts, volts * per_volt, mode.model)
+        law = at_best_place(display, mode, law, drive)
+        here = law.place and (law.place.x, law.place.y)
+        if here is not None and here == before:
+            break
+        found = _needed(mode, law, relative_friction)
+        volts, before = found[0], here
+    return found
+
+
+def _needed(
+    mode: WorkingMode, law: FrictionLaw, relative_friction: si.Dimensionless
+) -> tuple[si.Volt, si.Metre]:
+    """Voltage (V) and the best antinode's amplitude (m) for a µ′/µ of a law."""
+    amplitude = law.amplitude_for(relative_friction)
+    if amplitude == 0:
+        return 0.0, 0.0
+    volts = amplitude / (amplitude_per_volt(mode, law.frequency) * kept_at(mode, law, amplitude))
+    if volts > HIGHEST_VOLTAGE:
+        raise UnreachableError(
+            f"relative_friction = {relative_friction:.4g} needs {amplitude * 1e6:.3g} µm and so "
+            f"{volts:.4g} V; a drive may have {HIGHEST_VOLTAGE:.4g} V. Drive at the resonance, ask "
+            "for less, or take a plate with more amplitude per volt"
+        )
+    return float(volts), amplitude
