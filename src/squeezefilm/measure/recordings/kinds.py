@@ -1,4 +1,5 @@
-"""The kinds of recordings of a bench, in SI units and zero-to-peak amplitudes, whatever the file was in."""
+"""The kinds of recordings of a bench, in SI units and zero-to-peak amplitudes, whatever the file
+was in."""
 
 from __future__ import annotations
 
@@ -114,7 +115,8 @@ class FrictionBench:
 @dataclass(frozen=True, eq=False)
 class FrictionCurve:
     """µ′/µ with its spread (one standard deviation) against `vibration_amplitude` (m), all
-    (points,), at one `frequency` (Hz), `normal_force` (N) and `speed` (m/s)."""
+    (points,), at one `frequency` (Hz), `normal_force` (N) and `speed` (m/s); `display` is the
+    preset or file that describes plate, surface and finger."""
 
     vibration_amplitude: si.MetreArray
     relative_friction: si.DimensionlessArray
@@ -123,6 +125,7 @@ class FrictionCurve:
     normal_force: si.Newton
     speed: si.MetrePerSecond
     told: Told = field(default_factory=Told)
+    display: str = ""
 
 
 Recording = (
