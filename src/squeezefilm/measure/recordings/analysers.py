@@ -3,6 +3,7 @@ measured, then one table a trace."""
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,8 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm.errors import ConfigError
+from squeezefilm.hard_limits import RECORDING_BYTES
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.measure.recordings.text_table import decoded
+from squeezefilm.regular_file import opened
 
 _HEAD = re.compile(r"\s*\"?4294A\b")
 _SAID = re.compile(r'\s*"([^":]+):\s*([^"]*)"\s*$')
@@ -25,9 +28,9 @@ _PARAMETERS: dict[str, tuple[tuple[str, str], tuple[str, str]]] = {
 def is_4294a(path: Path) -> bool:
     """Whether a file begins as the analyser's export does."""
     try:
-        with path.open("rb") as stream:
-            return _HEAD.match(stream.read(40).decode("latin-1")) is not None
-    except OSError:
+        with opened(path, RECORDING_BYTES, "a recording") as handle:
+            return _HEAD.match(os.read(handle, 40).decode("latin-1")) is not None
+    except (ConfigError, OSError):
         return False
 
 

@@ -18,8 +18,8 @@ _USUAL_FREQUENCIES = (1e3, 1e7)
 _USUAL_IMPEDANCES = (1e-2, 1e8)
 _LEAST_RUN, _TIMES_NEXT = 8, 3
 _HUMS = (50.0, 60.0)
-# Lines beside a hum's, where as much is found of what is no hum.
-_BESIDE = (0.8, 0.88, 1.12, 1.2)
+# Of a record of length T, a line is 4/T wide under the window: beside it, what is no hum is found.
+_WIDTHS, _PERIODS = 4.0, 8.0
 _HUM_SHARE, _HUM_TIMES = 0.02, 5.0
 _LARGEST_FRICTION = 5.0
 
@@ -178,10 +178,11 @@ def _hum(name: str, time: si.SecondArray, x: si.FloatArray) -> Iterator[str]:
     length = float(time[-1] - time[0])
     reach = float(np.max(np.abs(x - np.mean(x))))
     for mains in _HUMS:
-        if length * mains < 5 or reach == 0:
+        if length * mains < _PERIODS or reach == 0:
             continue
+        away = max(_WIDTHS / length, 0.15 * mains)
         here = _sine(time, x, mains)
-        beside = max(_sine(time, x, mains * share) for share in _BESIDE)
+        beside = max(_sine(time, x, mains + side * away) for side in (-1.5, -1, 1, 1.5))
         if here > _HUM_SHARE * reach and here > _HUM_TIMES * beside:
             yield (
                 f"the {name} holds {mains:.0f} Hz of {si.percent(here / reach)} of its largest "

@@ -173,7 +173,7 @@ class Reading:
         wanted = self._column(name).column
         place = self.table.index(wanted)
         if place is None:
-            near = si.did_you_mean(str(wanted), [one for one in self.table.names if one])
+            near = si.did_you_mean(str(wanted), self.table.known_names)
             raise self.description.error(
                 f"the file has no column {wanted!r}.{near} It has {self.table.columns_in_words}",
                 ["columns", name, "column"],

@@ -68,6 +68,12 @@ class RawTable:
         return match[1]
 
     @property
+    def known_names(self) -> list[str]:
+        """What columns may be called: their names, whole and without a unit."""
+        bare = [_UNIT_IN_NAME.sub("", name).strip() for name in self.names]
+        return [name for name in (*bare, *self.names) if name]
+
+    @property
     def columns_in_words(self) -> str:
         """The columns by number and name, for messages."""
         shown = (f"{k} '{name}'" if name else f"{k}" for k, name in enumerate(self.names, 1))

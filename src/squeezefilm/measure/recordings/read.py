@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.measure.recordings.analysers import is_4294a, read_4294a
 from squeezefilm.measure.recordings.assembled import assembled
 from squeezefilm.measure.recordings.description import (
@@ -22,6 +23,7 @@ from squeezefilm.measure.recordings.matlab import read_matlab
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.measure.recordings.text_table import read_text_table
 from squeezefilm.measure.recordings.universal import SUFFIXES, read_universal
+from squeezefilm.regular_file import read_regular_text
 from squeezefilm.results import Result, to_json
 
 _SCANS = ("line scan", "grid scan")
@@ -147,9 +149,10 @@ def check_folder(folder: str | Path) -> FolderCheck:
 def _has_kind(path: Path) -> bool:
     """Whether a TOML file describes a recording; a display in the same folder does not."""
     try:
-        return any(line.split("=")[0].strip() == "kind" for line in path.open(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError):
+        text = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+    except ConfigError:
         return False
+    return any(line.split("=")[0].strip() == "kind" for line in text.split("\n"))
 
 
 def _found(path: Path, described: Path | None) -> tuple[Path, Description]:
