@@ -9,9 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from squeezefilm.errors import ConfigError
-from squeezefilm.measure.recordings.read import check_recording
 from tests.unit.measure.recordings.bench_files import (
     IMPEDANCE,
     export_4294a,
@@ -20,6 +17,9 @@ from tests.unit.measure.recordings.bench_files import (
     text,
     written,
 )
+
+from squeezefilm.errors import ConfigError
+from squeezefilm.measure.recordings.read import check_recording
 
 GOOD = impedance_text()
 ROWS = GOOD.count("\n") - 1
@@ -139,7 +139,7 @@ def test_a_slip_in_the_description_is_refused_at_its_key(slip: str, tmp_path: Pa
 
 
 def test_a_file_without_a_description_says_what_to_write(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="write a.toml beside it") as caught:
+    with pytest.raises(ConfigError, match=r"write a\.toml beside it") as caught:
         check_recording(written(tmp_path, GOOD, ""))
     assert "1 'f (Hz)', 2 'Z (ohm)', 3 'theta (deg)'" in str(caught.value)
 

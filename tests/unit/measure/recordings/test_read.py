@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.unit.measure.recordings.bench_files import IMPEDANCE, impedance_text, text, written
 
 import squeezefilm as sf
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import check_folder, check_recording, read_recording
-from tests.unit.measure.recordings.bench_files import IMPEDANCE, impedance_text, text, written
 
 DATA = Path(os.environ.get("SQUEEZEFILM_DATA", Path(__file__).parents[5] / "shared" / "data"))
 T = np.arange(4000) / 400e3
@@ -43,13 +43,15 @@ def test_a_frequency_response_in_peak_to_peak_micrometres(tmp_path: Path) -> Non
     assert np.allclose(found.recording.displacement_per_volt, h, rtol=1e-6)
     assert found.recording.voltage == 10.0
     assert ("drive voltage", "10 V zero-to-peak, given as peak-to-peak") in found.facts
+    asked = said.replace(', given_as = "peak-to-peak" }\nphase', " }\nphase")
+    path = written(tmp_path, text("f,d,p", columns), asked, "b.csv")
     with pytest.raises(ConfigError, match='write given_as = "zero-to-peak"') as caught:
-        asked = said.replace(', given_as = "peak-to-peak" }\nphase', " }\nphase")
-        check_recording(written(tmp_path, text("f,d,p", columns), asked, "b.csv"))
+        check_recording(path)
     assert (caught.value.key, caught.value.line) == ("columns.displacement", 5)
+    asked = said.replace("voltage =", "# voltage =")
+    path = written(tmp_path, text("f,d,p", columns), asked, "c.csv")
     with pytest.raises(ConfigError, match="the drive's voltage is needed"):
-        asked = said.replace("voltage =", "# voltage =")
-        check_recording(written(tmp_path, text("f,d,p", columns), asked, "c.csv"))
+        check_recording(path)
 
 
 def test_a_response_of_velocity_over_volts_by_an_instrument_s_scale(tmp_path: Path) -> None:
@@ -224,9 +226,9 @@ def test_a_friction_curve_names_what_it_was_measured_on(tmp_path: Path) -> None:
     assert curve.display == str(tmp_path / "own.toml")
     assert found.doubts == ()
     share = CURVE.replace('2, unit = "%"', '2, unit = "1"')
+    celsius = written(tmp_path, data, share.replace("kind", 'temperature = "23 °C"\nkind'), "b.csv")
     with pytest.raises(ConfigError, match="temperatures are in kelvin"):
-        told = share.replace("kind", 'temperature = "23 °C"\nkind')
-        check_recording(written(tmp_path, data, told, "b.csv"))
+        check_recording(celsius)
     doubts = check_recording(written(tmp_path, data, share, "c.csv")).doubts
     assert any('is the unit "%"?' in doubt for doubt in doubts)
 
@@ -251,8 +253,8 @@ def test_a_description_may_stand_elsewhere(tmp_path: Path) -> None:
     assert isinstance(other, kinds.ImpedanceSweep)
     assert np.array_equal(one.admittance, other.admittance)
     assert one.told.name == "synthetic resonator"
+    told.write_text(IMPEDANCE, encoding="utf-8")
     with pytest.raises(ConfigError, match="one file of data of the same name"):
-        told.write_text(IMPEDANCE, encoding="utf-8")
         read_recording(told)
 
 
