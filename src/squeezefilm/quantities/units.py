@@ -181,7 +181,8 @@ _DIMENSIONS = {
     "Pa": "a pressure or a modulus", "Pa*s": "a viscosity", "kg/m3": "a density",
     "kg": "a mass", "m/s": "a speed", "m2": "an area", "m/V": "a charge coefficient",
     "C/m2": "a stress coefficient", "m2/N": "a compliance", "rad": "an angle",
-    "ohm": "a resistance", "S": "an admittance", "A": "a current", "W": "a power", "J": "an energy", "F": "a capacitance",
+    "ohm": "a resistance", "S": "an admittance", "A": "a current", "W": "a power", "J": "an "
+    "energy", "F": "a capacitance",
     "K": "a temperature", "J/kg/K": "a specific heat", "N/m": "a stiffness",
     "V/s": "a rate of voltage", "1": "a number without dimension (dimensionless)",
 }  # fmt: skip

@@ -75,6 +75,13 @@ class FolderCheck:
     checks: tuple[RecordingCheck, ...]
     refused: tuple[Refused, ...]
 
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints."""
+        return {
+            "recordings": [one.summary() for one in self.checks],
+            "refused": [{"file": str(one.file), "why": one.why} for one in self.refused],
+        }
+
 
 def read_recording(path: str | Path, described: str | Path | None = None) -> Recording:
     """The recording in a file of a bench, in SI units and zero-to-peak amplitudes.
@@ -121,9 +128,11 @@ def check_folder(folder: str | Path) -> FolderCheck:
     """`check_recording` for all recordings of a folder: what a TOML file with a kind describes, and
     what describes itself. Files that cannot be read are among the `refused`.
 
-    Raises `InputError` for a folder without any recording.
+    Raises `InputError` for what is no folder, or one without any recording.
     """
     root = Path(folder)
+    if not root.is_dir():
+        raise InputError(f"{root} is no folder; give one with recordings in it")
     checks, refused, read = [], [], set()
     descriptions = [one for one in sorted(root.glob("*.toml")) if _has_kind(one)]
     themselves = [one for one in sorted(root.iterdir()) if one.is_file() and is_4294a(one)]

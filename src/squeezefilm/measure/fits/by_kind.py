@@ -1,0 +1,59 @@
+"""`fit_recording`: the fit that goes with each kind of recording."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Annotated, Protocol, cast
+
+from squeezefilm.errors import InputError
+from squeezefilm.from_text import ReadBy, reads_text
+from squeezefilm.measure.fits.estimate import Adequacy, Observation
+from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.read import read_recording
+
+# The module of `measure.fits` and its function; imported when a recording of the kind is fitted.
+FITS: dict[type, tuple[str, str]] = {
+    kinds.ImpedanceSweep: ("impedance", "fit_impedance"),
+    kinds.FrequencyResponse: ("frequency_response", "fit_frequency_response"),
+    kinds.LineScan: ("line_scan", "fit_line_scan"),
+    kinds.GridScan: ("grid_scan", "fit_grid_scan"),
+    kinds.RingDown: ("ring_down", "fit_ring_down"),
+    kinds.VoltageSweeps: ("voltage_sweeps", "fit_voltage_sweeps"),
+    kinds.RawSignals: ("raw_signals", "fit_raw_signals"),
+    kinds.FrictionBench: ("friction_bench", "fit_friction_bench"),
+    kinds.FrictionCurve: ("friction_curve", "compare_friction_curve"),
+}
+
+NamedRecording = Annotated[kinds.Recording, ReadBy(read_recording)]
+"""A recording, or in its place the path of its file (see `reads_text`)."""
+
+
+class Fit(Protocol):
+    """What every fit has, whatever was fitted: estimates are its fields of that type."""
+
+    @property
+    def adequacy(self) -> Adequacy:
+        """Whether the fitted model describes what was recorded."""
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """What a calibration may use."""
+
+
+@reads_text
+def fit_recording(recording: NamedRecording) -> Fit:
+    """What goes with the kind of a recording: a circuit with an impedance, modes with a frequency
+    response, models of friction with a friction curve; a frozen dataclass whose numbers are
+    `Estimate`s, with its `adequacy` and the `observations` for a calibration.
+
+    Raises what `read_recording` raises, and `InputError` for a recording that its fit refuses.
+    """
+    known = FITS.get(type(recording))
+    if known is None:
+        raise InputError(
+            f"{type(recording).__name__} is no kind of recording; give the path of a file, or what "
+            "read_recording returned"
+        )
+    module, name = known
+    fit = getattr(import_module(f"squeezefilm.measure.fits.{module}"), name)
+    return cast(Fit, fit(recording))

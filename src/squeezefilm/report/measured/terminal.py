@@ -1,0 +1,91 @@
+"""What `measure check` and `measure fit` print."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from typing import Any
+
+from squeezefilm import quantities as si
+from squeezefilm.measure.fits.by_kind import Fit
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate
+from squeezefilm.measure.fits.friction_curve import CurveComparison
+from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
+from squeezefilm.report.kit.numbers import printable, shown
+from squeezefilm.report.kit.terminal import bullets, heading, plain_console, table
+from squeezefilm.report.measured.curves import MODELS_HEAD, inside_words, model_rows
+
+_KNOWN = ("m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "S", "m/V", "m/s", "N/m")
+
+
+def show_check(check: RecordingCheck) -> None:
+    """Print how a recording was read, and what is doubtful of it."""
+    console = plain_console()
+    heading(console, f"{check.recording.told.name} ({check.file.name})")
+    table(console, ("", ""), check.facts, fixed=(0,))
+    doubts = [("doubtful", text, "yellow") for text in check.doubts]
+    bullets(console, doubts or [("", "Nothing doubtful was found.", "")])
+
+
+def show_folder(found: FolderCheck) -> None:
+    """Print the recordings of a folder, and what could not be read."""
+    for check in found.checks:
+        show_check(check)
+    console = plain_console()
+    if found.refused:
+        heading(console, f"{len(found.refused)} could not be read")
+        bullets(console, [("refused", one.why, "bold red") for one in found.refused])
+
+
+def show_fit(check: RecordingCheck, fit: Fit) -> None:
+    """Print the numbers of a fit with their intervals, and whether its model is adequate."""
+    console = plain_console()
+    heading(console, f"{check.recording.told.name} ({check.file.name}): {check.kind}")
+    if isinstance(fit, CurveComparison):
+        table(console, MODELS_HEAD, model_rows(fit), fixed=(0,))
+        bullets(console, [("", inside_words(fit), "")])
+    else:
+        table(console, HEAD, estimate_rows(fit), fixed=(0, 1))
+    word, look = ("adequate", "green") if fit.adequacy.adequate else ("INADEQUATE", "bold red")
+    bullets(console, [(word, fit.adequacy.sentence, look)])
+    bullets(console, [("doubtful", text, "yellow") for text in check.doubts])
+
+
+HEAD = ("quantity", "value", "interval", "standard error")
+
+
+def estimate_rows(fit: Fit) -> list[tuple[str, ...]]:
+    """The estimates of a fit: name, value, interval with its level, standard error."""
+    rows: list[tuple[str, ...]] = []
+    for name, one in estimates(fit):
+        low, high = (valued(value, one.unit) for value in one.interval)
+        level = si.percent(one.level)
+        error = valued(one.standard_error, one.unit)
+        rows.append((name, valued(one.value, one.unit), f"{low} to {high} ({level})", error))
+    return rows
+
+
+def estimates(node: Any, path: str = "") -> Iterator[tuple[str, Estimate]]:
+    """Every estimate below a dataclass by its name in words; members of lists are counted from
+    1."""
+    if isinstance(node, Estimate):
+        yield path, node
+    elif isinstance(node, Adequacy):
+        return
+    elif dataclasses.is_dataclass(node):
+        for field in dataclasses.fields(node):
+            if not field.name.startswith("_"):
+                below = f"{path} {field.name}".strip().replace("_", " ")
+                yield from estimates(getattr(node, field.name), below)
+    elif isinstance(node, tuple):
+        for number, one in enumerate(node, 1):
+            yield from estimates(one, f"{path} {number}")
+
+
+def valued(value: float, unit: str) -> str:
+    """A value of an estimate in its own unit, prefixed where that is read more easily."""
+    if unit in ("", "1"):
+        return f"{value:.4g}"
+    if unit in _KNOWN:
+        return printable(shown(value, si.Unit(unit)))
+    return f"{value:.4g} {unit}"
