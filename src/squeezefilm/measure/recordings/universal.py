@@ -78,9 +78,10 @@ def _blocks(path: Path) -> list[_Block]:
     """The data sets that are read, each looked at before and after."""
     import pyuff
 
-    text = read_regular(path, RECORDING_BYTES, "a Universal File").decode("latin-1")
-    lines = text.replace("\r\n", "\n").split("\n")
-    marks = [number for number, line in enumerate(lines, 1) if re.fullmatch(r"    -1\s*", line)]
+    data = read_regular(path, RECORDING_BYTES, "a Universal File")
+    # As the reader finds them; behind binary values a mark does not begin its line.
+    places = [found.start() for found in re.finditer(rb"    -1(?=[\r\n]| {60}|\Z)", data)]
+    marks = [data.count(b"\n", 0, place) + 1 for place in places]
     if len(marks) < 2:
         raise ConfigError(
             "is no Universal File: its data sets stand between lines with -1 in columns 5 and 6",
@@ -94,8 +95,8 @@ def _blocks(path: Path) -> list[_Block]:
         )
     found = []
     reader = pyuff.UFF(str(path))
-    for number, line in enumerate(marks[::2]):
-        kind = lines[line][:6].strip() if line < len(lines) else ""
+    for number, (line, place) in enumerate(zip(marks[::2], places[::2], strict=True)):
+        kind = data[place : place + 200].decode("latin-1").partition("\n")[2][:6].strip()
         if not kind.isdigit():
             raise ConfigError(f"'{kind}' is no type of a data set", file=path, line=line + 1)
         if int(kind) not in _READ:

@@ -49,14 +49,14 @@ def _impedance(figure: Figure, sweep: kinds.ImpedanceSweep) -> None:
     z, f = 1 / sweep.admittance, sweep.frequency / 1e3
     upper.semilogy(f, np.abs(z), **_POINTS)
     style.plain_log(upper.yaxis)
-    lower.plot(f, np.degrees(np.angle(z)), **_POINTS)
+    lower.plot(f, np.degrees(np.unwrap(np.angle(z))), **_POINTS)
 
 
 def _response(figure: Figure, response: kinds.FrequencyResponse) -> None:
     upper, lower = _two(figure, ("amplitude (nm/V)", "phase (deg)", "frequency (kHz)"))
     h, f = response.displacement_per_volt, response.frequency / 1e3
     upper.plot(f, 1e9 * np.abs(h), **_POINTS)
-    lower.plot(f, np.degrees(np.angle(h)), **_POINTS)
+    lower.plot(f, np.degrees(np.unwrap(np.angle(h))), **_POINTS)
 
 
 def _sweeps(figure: Figure, sweeps: kinds.VoltageSweeps) -> None:

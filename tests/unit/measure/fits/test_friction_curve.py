@@ -16,7 +16,14 @@ from squeezefilm.measure.recordings.kinds import FrictionCurve, Told
 
 AMPLITUDE = np.linspace(0.0, 2e-6, 9)
 BARE = FrictionCurve(
-    AMPLITUDE, np.ones(9), np.full(9, 0.02), 30e3, 0.5, 0.02, Told(name="synthetic"), "biet2008-plate"
+    AMPLITUDE,
+    np.ones(9),
+    np.full(9, 0.02),
+    30e3,
+    0.5,
+    0.02,
+    Told(name="synthetic"),
+    "biet2008-plate",
 )
 
 
