@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from squeezefilm.cli.app import AsJson, answer, app, print_json, working, written_to
 from squeezefilm.errors import InputError
+
+if TYPE_CHECKING:
+    from squeezefilm.measure.fits.by_kind import Fit
+    from squeezefilm.measure.recordings.read import RecordingCheck
 
 measure = typer.Typer(
     name="measure",
@@ -65,6 +69,10 @@ def check(
 def fit(
     file: Recording,
     described: DescribedBy = None,
+    display: Annotated[
+        str | None,
+        typer.Option(help="The plate with whose solved shapes a grid scan is compared."),
+    ] = None,
     out: Annotated[
         Path | None, written_to("Folder for the picture of data, model and residual, and a page.")
     ] = None,
@@ -72,7 +80,6 @@ def fit(
 ) -> None:
     """Fit what goes with the kind of a recording: numbers with intervals, and whether the fit is
     adequate. Exit code 1 if it is not."""
-    from squeezefilm.measure.fits.by_kind import fit_recording
     from squeezefilm.measure.recordings.read import check_recording
     from squeezefilm.report.measured.page import fit_summary, write_fit
     from squeezefilm.report.measured.terminal import show_fit
@@ -80,7 +87,7 @@ def fit(
     with working(as_json) as step:
         found = check_recording(file, described)
         step(f"fit of {found.file.name}")
-        fitted = fit_recording(found.recording)
+        fitted = _fitted(found, display)
         written = None if out is None else write_fit(found, fitted, out)
     if as_json:
         print_json(fit_summary(found, fitted))
@@ -90,3 +97,17 @@ def fit(
             typer.echo(f"page: {written}")
     if not fitted.adequacy.adequate:
         raise typer.Exit(1)
+
+
+def _fitted(found: RecordingCheck, display: str | None) -> Fit:
+    """The fit of what was read; where it is refused, what is doubtful of the recording is said."""
+    from squeezefilm.display import load_display
+    from squeezefilm.measure.fits.by_kind import fit_recording
+
+    plate = None if display is None else load_display(display)
+    try:
+        return fit_recording(found.recording, plate)
+    except InputError:
+        for doubt in found.doubts:
+            typer.echo(f"doubtful: {doubt}", err=True)
+        raise

@@ -105,7 +105,21 @@ def _response(reading: Reading) -> kinds.FrequencyResponse:
         volts,
         None if coherence is None else coherence[order],
         _told(reading),
+        _place(reading),
     )
+
+
+def _place(reading: Reading) -> tuple[si.Metre, si.Metre] | None:
+    """Where on the plate (x, y in m) a response was recorded, where that is told."""
+    said: Any = reading.description.said
+    if (said.x is None) != (said.y is None):
+        given = "y" if said.x is None else "x"
+        raise reading.description.error("x and y go together; give both, or none", [given])
+    if said.x is None:
+        return None
+    shown = ", ".join(quantity(one, si.Unit("m")) for one in (said.x, said.y))
+    reading.facts.append(("place", f"x, y = {shown}"))
+    return said.x, said.y
 
 
 def _line(reading: Reading) -> kinds.LineScan:
@@ -230,7 +244,11 @@ def _bench(reading: Reading) -> kinds.FrictionBench:
         raise reading.wanting(
             "vibration_amplitude", "it is needed, or the voltage with amplitude_per_volt beside"
         )
-    return kinds.FrictionBench(time, normal, tangential, position, vibration, _told(reading))
+    if said.frequency is not None:
+        reading.facts.append(("frequency", quantity(said.frequency, _HZ)))
+    return kinds.FrictionBench(
+        time, normal, tangential, position, vibration, _told(reading), said.frequency
+    )
 
 
 def _curve(reading: Reading) -> kinds.FrictionCurve:

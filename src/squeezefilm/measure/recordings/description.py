@@ -124,11 +124,14 @@ class ResponseColumns(Motion):
 
 @dataclass(frozen=True, kw_only=True)
 class DescribedResponse(Described):
-    """Motion at one place against frequency; per volt, or with the voltage of the drive."""
+    """Motion at one place (`x`, `y`) against frequency; per volt, or with the voltage of the
+    drive."""
 
     kind: Literal["frequency response"]
     columns: ResponseColumns
     voltage: Given | None = None
+    x: si.Metre | None = None
+    y: si.Metre | None = None
     correct: Literal["phase 180 deg", "phase sign"] | None = None
 
 
@@ -217,10 +220,11 @@ class BenchColumns:
 
 @dataclass(frozen=True, kw_only=True)
 class DescribedBench(Described):
-    """Strokes of a finger or probe."""
+    """Strokes of a finger or probe; `frequency` is the vibration's."""
 
     kind: Literal["friction bench"]
     columns: BenchColumns
+    frequency: si.Hertz | None = None
     amplitude_per_volt: si.MetrePerVolt | None = None
 
 

@@ -37,13 +37,15 @@ class ImpedanceSweep:
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse:
     """Displacement per volt (m/V, complex) at one place against `frequency` (Hz), both (points,);
-    `voltage` (V) is the drive's amplitude during the sweep, `coherence` (0 to 1) where recorded."""
+    `voltage` (V) is the drive's amplitude during the sweep, `coherence` (0 to 1) where recorded,
+    `place` where on the plate (x, y in m) where told."""
 
     frequency: si.HertzArray
     displacement_per_volt: si.ComplexArray
     voltage: si.Volt | None = None
     coherence: si.DimensionlessArray | None = None
     told: Told = field(default_factory=Told)
+    place: tuple[si.Metre, si.Metre] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +104,8 @@ class RawSignals:
 @dataclass(frozen=True, eq=False)
 class FrictionBench:
     """Strokes of a finger or probe: `time` (s), `normal_force` and `tangential_force` (N),
-    `position` (m) and `vibration_amplitude` (m, zero to peak), all (points,)."""
+    `position` (m) and `vibration_amplitude` (m, zero to peak), all (points,); `frequency` (Hz) of
+    the vibration where told."""
 
     time: si.SecondArray
     normal_force: si.NewtonArray
@@ -110,6 +113,7 @@ class FrictionBench:
     position: si.MetreArray
     vibration_amplitude: si.MetreArray
     told: Told = field(default_factory=Told)
+    frequency: si.Hertz | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -86,16 +86,27 @@ def _line(figure: Figure, scan: kinds.LineScan) -> None:
 
 def _grid(figure: Figure, scan: kinds.GridScan) -> None:
     axes = figure.subplots()
-    w = 1e6 * scan.displacement
     # At the moment at which most is to be seen.
-    w = np.real(w * np.exp(-0.5j * np.angle(np.sum(w**2))))
+    moment = np.exp(-0.5j * np.angle(np.sum(scan.displacement**2)))
+    w = 1e6 * np.real(moment * scan.displacement)
     reach = float(np.max(np.abs(w))) or 1.0
-    dots = axes.scatter(
-        1e3 * scan.x, 1e3 * scan.y, c=w, cmap="RdBu_r", vmin=-reach, vmax=reach, s=28,
-        edgecolors=style.MUTED, linewidths=0.3,
-    )  # fmt: skip
+    label = f"displacement at {shown(scan.frequency, HZ)} (µm)"
+    scattered(axes, (scan.x, scan.y), w, reach, label)
+
+
+def scattered(
+    axes: Axes,
+    places: tuple[si.MetreArray, si.MetreArray],
+    w: si.FloatArray,
+    reach: float,
+    label: str,
+) -> None:
+    """Values at places (x, y in m) as dots in two colours, up to `reach`."""
+    look: dict[str, Any] = {"cmap": "RdBu_r", "vmin": -reach, "vmax": reach, "s": 28}
+    edges: dict[str, Any] = {"edgecolors": style.MUTED, "linewidths": 0.3}
+    dots = axes.scatter(1e3 * places[0], 1e3 * places[1], c=w, **look, **edges)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
-    figure.colorbar(dots, ax=axes, label=f"displacement at {shown(scan.frequency, HZ)} (µm)")
+    axes.figure.colorbar(dots, ax=axes, label=label)
 
 
 def _ring_down(figure: Figure, ring: kinds.RingDown) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from squeezefilm import quantities as si
@@ -52,17 +53,29 @@ def show_fit(check: RecordingCheck, fit: Fit) -> None:
 
 
 HEAD = ("quantity", "value", "interval", "standard error")
+_LEAST_DIGITS, _MOST_DIGITS = 3, 9
 
 
 def estimate_rows(fit: Fit) -> list[tuple[str, ...]]:
-    """The estimates of a fit: name, value, interval with its level, standard error."""
+    """The estimates of a fit: name, value, interval with its level, standard error; with so many
+    digits that two of the standard error are seen."""
     rows: list[tuple[str, ...]] = []
     for name, one in estimates(fit):
-        low, high = (valued(value, one.unit) for value in one.interval)
+        digits = _digits(one.value, one.standard_error)
+        low, high = (valued(value, one.unit, digits) for value in one.interval)
         level = si.percent(one.level)
-        error = valued(one.standard_error, one.unit)
-        rows.append((name, valued(one.value, one.unit), f"{low} to {high} ({level})", error))
+        error = valued(one.standard_error, one.unit, 2)
+        value = valued(one.value, one.unit, digits)
+        rows.append((name, value, f"{low} to {high} ({level})", error))
     return rows
+
+
+def _digits(value: float, error: float) -> int:
+    """How many significant digits of a value show two of its standard error."""
+    if not (math.isfinite(value) and math.isfinite(error)) or value == 0 or error <= 0:
+        return _LEAST_DIGITS
+    wanted = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 2
+    return min(max(wanted, _LEAST_DIGITS), _MOST_DIGITS)
 
 
 def estimates(node: Any, path: str = "") -> Iterator[tuple[str, Estimate]]:
@@ -77,15 +90,18 @@ def estimates(node: Any, path: str = "") -> Iterator[tuple[str, Estimate]]:
             if not field.name.startswith("_"):
                 below = f"{path} {field.name}".strip().replace("_", " ")
                 yield from estimates(getattr(node, field.name), below)
+    elif isinstance(node, Mapping):
+        for key, one in node.items():
+            yield from estimates(one, f"{path} {key}")
     elif isinstance(node, tuple):
         for number, one in enumerate(node, 1):
-            yield from estimates(one, f"{path} {number}")
+            yield from estimates(one, f"{path} {number}" if len(node) > 1 else path)
 
 
-def valued(value: float, unit: str) -> str:
+def valued(value: float, unit: str, digits: int = 4) -> str:
     """A value of an estimate in its own unit, prefixed where that is read more easily."""
     if unit in ("", "1"):
-        return f"{value:.4g}"
+        return f"{value:.{digits}g}"
     if unit in _KNOWN:
-        return printable(shown(value, si.Unit(unit)))
-    return f"{value:.4g} {unit}"
+        return printable(shown(value, si.Unit(unit), digits))
+    return f"{value:.{digits}g} {unit}"
