@@ -80,6 +80,7 @@ def fit(
 ) -> None:
     """Fit what goes with the kind of a recording: numbers with intervals, and whether the fit is
     adequate. Exit code 1 if it is not."""
+    from squeezefilm.measure.fits.by_kind import response_fit
     from squeezefilm.measure.recordings.read import check_recording
     from squeezefilm.report.measured.page import fit_summary, write_fit
     from squeezefilm.report.measured.terminal import show_fit
@@ -88,11 +89,12 @@ def fit(
         found = check_recording(file, described)
         step(f"fit of {found.file.name}")
         fitted = _fitted(found, display)
-        written = None if out is None else write_fit(found, fitted, out)
+        response = response_fit(fitted)
+        written = None if out is None else write_fit(found, fitted, out, response)
     if as_json:
-        print_json(fit_summary(found, fitted))
+        print_json(fit_summary(found, fitted, response))
     else:
-        show_fit(found, fitted)
+        show_fit(found, fitted, response)
         if written is not None:
             typer.echo(f"page: {written}")
     if not fitted.adequacy.adequate:

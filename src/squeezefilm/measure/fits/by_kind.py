@@ -66,12 +66,18 @@ def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None
             f"{type(recording).__name__} is no kind of recording; give the path of a file, or what "
             "read_recording returned"
         )
+    solved = _solved_near(recording, display) if isinstance(recording, kinds.GridScan) else None
     module, name = known
     fits = import_module(f"squeezefilm.measure.fits.{module}")
-    if isinstance(recording, kinds.GridScan):
-        shapes = fits.shapes_at(*_solved_near(recording, display))
-        return cast(Fit, fits.fit_grid_scan(recording, shapes))
-    return cast(Fit, getattr(fits, name)(recording))
+    fit = getattr(fits, name)
+    return cast(Fit, fit(recording) if solved is None else fit(recording, fits.shapes_at(*solved)))
+
+
+def response_fit(fit: Fit) -> Fit | None:
+    """The fit of the frequency response that raw signals give, which has the numbers; None for a
+    fit of anything else. Raises what `fit_recording` raises."""
+    response = getattr(fit, "response", None)
+    return fit_recording(response) if isinstance(response, kinds.FrequencyResponse) else None
 
 
 def _solved_near(

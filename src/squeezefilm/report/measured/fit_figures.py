@@ -45,6 +45,7 @@ _OVER = {
     "frequency": ("frequency (kHz)", 1e-3, "amplitude (nm/V)", 1e9),
     "position": ("position (mm)", 1e3, "displacement (µm)", 1e6),
     "time": ("time (ms)", 1e3, "displacement (µm)", 1e6),
+    "sweeps": ("frequency (kHz)", 1e-3, "displacement (µm)", 1e6),
 }
 
 
@@ -78,7 +79,7 @@ def modelled(check: RecordingCheck, fit: Fit) -> Modelled | None:
         return None
     abscissas = {name: getattr(told, name, None) for name in _OVER}
     if isinstance(recording, kinds.VoltageSweeps):
-        abscissas = {"frequency": np.concatenate([one.frequency for one in recording.sweeps])}
+        abscissas = {"sweeps": np.concatenate([one.frequency for one in recording.sweeps])}
     for name, x in abscissas.items():
         x_label, x_scale, y_label, scale = _OVER[name]
         if isinstance(x, np.ndarray) and x.shape == model.shape:

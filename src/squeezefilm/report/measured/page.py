@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.measure.fits.by_kind import Fit
+from squeezefilm.measure.fits.friction_curve import CurveComparison
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
@@ -53,8 +54,9 @@ def write_checks(found: FolderCheck, folder: Path) -> Path:
     return folder / "check.html"
 
 
-def write_fit(check: RecordingCheck, fit: Fit, folder: Path) -> Path:
-    """Write fit.json, the picture of data, model and residual and fit.html into `folder`.
+def write_fit(check: RecordingCheck, fit: Fit, folder: Path, response: Fit | None = None) -> Path:
+    """Write fit.json, the picture of data, model and residual and fit.html into `folder`; of raw
+    signals also the fit of the `response` that they give.
 
     Returns the path of the page. Raises `InputError` for a folder that cannot be written to.
     """
@@ -67,11 +69,14 @@ def write_fit(check: RecordingCheck, fit: Fit, folder: Path) -> Path:
     files: dict[str, str | bytes] = {
         f"{key}.png": style.png(figure) for key, (_, figure) in figures.items()
     }
-    summary = fit_summary(check, fit)
+    summary = fit_summary(check, fit, response)
     files["fit.json"] = json_text(summary)
     word = "adequate" if fit.adequacy.adequate else "not adequate"
     body = section(f"The fit is {word}", f"<p>{_text(fit.adequacy.sentence)}</p>")
-    body += section("Estimates", text_table("What was fitted", HEAD, estimate_rows(fit)))
+    for heading, one in (("Estimates", fit), ("Of the response that the signals give", response)):
+        rows = [] if one is None else estimate_rows(one)
+        if rows:
+            body += section(heading, text_table("What was fitted", HEAD, rows))
     body += picture_sections(figures) + section("How it was read", _facts(check)) + _doubts(check)
     title = _text(name)
     files["fit.html"] = page(
@@ -81,16 +86,24 @@ def write_fit(check: RecordingCheck, fit: Fit, folder: Path) -> Path:
     return folder / "fit.html"
 
 
-def fit_summary(check: RecordingCheck, fit: Fit) -> dict[str, Any]:
+def fit_summary(check: RecordingCheck, fit: Fit, response: Fit | None = None) -> dict[str, Any]:
     """What ``measure fit --json`` prints: estimates in the unit that each names, adequacy,
     observations for a calibration, and how the recording was read."""
-    summary: dict[str, Any] = {
-        "recording": check.summary(),
+    summary: dict[str, Any] = {"recording": check.summary(), **_numbers(fit)}
+    if response is not None:
+        summary["response"] = _numbers(response)
+    return summary | {"stamp": stamp(summary)}
+
+
+def _numbers(fit: Fit) -> dict[str, Any]:
+    found: dict[str, Any] = {
         "estimates": {name.replace(" ", "_"): to_json(one) for name, one in estimates(fit)},
         "adequacy": to_json(fit.adequacy),
         "observations": to_json(fit.observations),
     }
-    return summary | {"stamp": stamp(summary)}
+    if isinstance(fit, CurveComparison):
+        found["comparison"] = fit.summary()
+    return found
 
 
 def _facts(check: RecordingCheck) -> str:

@@ -38,18 +38,26 @@ def show_folder(found: FolderCheck) -> None:
         bullets(console, [("refused", one.why, "bold red") for one in found.refused])
 
 
-def show_fit(check: RecordingCheck, fit: Fit) -> None:
-    """Print the numbers of a fit with their intervals, and whether its model is adequate."""
+def show_fit(check: RecordingCheck, fit: Fit, response: Fit | None = None) -> None:
+    """Print the numbers of a fit with their intervals, and whether its model is adequate; of raw
+    signals also those of the `response` that they give."""
+    title = f"{check.recording.told.name} ({check.file.name}): {check.kind}"
+    _show_one(title, fit)
+    if response is not None:
+        _show_one("The frequency response that these signals give", response)
+    bullets(plain_console(), [("doubtful", text, "yellow") for text in check.doubts])
+
+
+def _show_one(title: str, fit: Fit) -> None:
     console = plain_console()
-    heading(console, f"{check.recording.told.name} ({check.file.name}): {check.kind}")
+    heading(console, title)
     if isinstance(fit, CurveComparison):
         table(console, MODELS_HEAD, model_rows(fit), fixed=(0,))
         bullets(console, [("", inside_words(fit), "")])
-    else:
-        table(console, HEAD, estimate_rows(fit), fixed=(0, 1))
+    elif rows := estimate_rows(fit):
+        table(console, HEAD, rows, fixed=(0, 1))
     word, look = ("adequate", "green") if fit.adequacy.adequate else ("INADEQUATE", "bold red")
     bullets(console, [(word, fit.adequacy.sentence, look)])
-    bullets(console, [("doubtful", text, "yellow") for text in check.doubts])
 
 
 HEAD = ("quantity", "value", "interval", "standard error")
