@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
+import typing
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +16,7 @@ from tests.unit.measure.recordings.bench_files import IMPEDANCE, impedance_text,
 import squeezefilm as sf
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.description import KINDS
 from squeezefilm.measure.recordings.read import check_folder, check_recording, read_recording
 
 DATA = Path(os.environ.get("SQUEEZEFILM_DATA", Path(__file__).parents[5] / "shared" / "data"))
@@ -256,6 +260,26 @@ def test_a_description_may_stand_elsewhere(tmp_path: Path) -> None:
     told.write_text(IMPEDANCE, encoding="utf-8")
     with pytest.raises(ConfigError, match="one file of data of the same name"):
         read_recording(told)
+
+
+PAGE = Path(__file__).parents[4] / "docs" / "reference" / "measured-data.md"
+
+
+def test_the_examples_of_the_page_are_read_and_it_names_every_kind(tmp_path: Path) -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    files = re.findall(r'^```\w+ title="([^"]+)"\n(.*?)^```', page, re.MULTILINE | re.DOTALL)
+    for name, content in files:
+        (tmp_path / name).write_text(content, encoding="utf-8")
+    found = check_folder(tmp_path)
+    assert len(files) == 2 * len(found.checks) == 4
+    assert found.refused == ()
+    table = re.findall(r"^\| `([a-z -]+)` \|", page, re.MULTILINE)
+    assert table[1:] == list(KINDS)
+    for kind, described_by in KINDS.items():
+        columns = typing.get_type_hints(described_by)["columns"]
+        named = next(one for one in (*typing.get_args(columns), columns) if is_dataclass(one))
+        for field in fields(named):
+            assert f"`{field.name}`" in page, (kind, field.name)
 
 
 REAL = {

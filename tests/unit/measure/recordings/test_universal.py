@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from squeezefilm.errors import ConfigError
 from squeezefilm.measure.recordings import kinds
@@ -145,3 +147,17 @@ def test_damage_is_refused_where_its_data_set_begins(tmp_path: Path) -> None:
         read_universal(two)
     with pytest.raises(ConfigError, match=r"no functions \(type 58\)"):
         read_universal(written(tmp_path / "c.uff", nodes()))
+
+
+@given(at=st.integers(0, 1000), binary=st.sampled_from([0, 1]))
+def test_a_file_cut_anywhere_is_refused_or_holds_whole_functions(
+    at: int, binary: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = written(tmp_path_factory.mktemp("cut") / "a.uff", function(H, binary=binary), nodes())
+    data = path.read_bytes()
+    path.write_bytes(data[: at * len(data) // 1000])
+    try:
+        table = read_universal(path)
+    except ConfigError:
+        return
+    assert table.values.shape == (41, 3)
