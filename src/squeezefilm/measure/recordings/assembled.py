@@ -15,7 +15,7 @@ from squeezefilm.measure.recordings.description import (
     ImpedanceColumns,
 )
 from squeezefilm.measure.recordings.motions import moment_by_moment, motion_of, motion_per_volt
-from squeezefilm.measure.recordings.quantities_read import Reading, quantity, words
+from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.measure.recordings.rows import both_rows, require_rising, rising_order
 
@@ -71,7 +71,7 @@ def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
     first, second = (reading.take(name) for name in pair)
     value = first * np.exp(1j * second) if pair[1] == "phase" else first + 1j * second
     if pair[0] in ("magnitude", "resistance"):
-        zero = np.flatnonzero(value == 0)
+        zero = np.flatnonzero(np.abs(value) < QUANTITIES["magnitude"].least)
         if zero.size:
             raise reading.refuse(pair[0], "an impedance of zero cannot be", int(zero[0]))
         value = 1 / value

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import dataclasses
 import tomllib
-import typing
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -305,7 +304,7 @@ def _kind(text: str, path: Path) -> str:
     allowed = ", ".join(f'"{one}"' for one in KINDS)
     if kind is None:
         raise ConfigError(f"the key 'kind' is missing; it is one of {allowed}", file=path)
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         near = si.did_you_mean(str(kind), KINDS)
         raise ConfigError(
             f"kind = {kind!r} is not known.{near} Allowed: {allowed}",
@@ -313,4 +312,4 @@ def _kind(text: str, path: Path) -> str:
             line=locate(text, ["kind"]),
             key="kind",
         )
-    return typing.cast(str, kind)
+    return kind

@@ -9,6 +9,9 @@ from squeezefilm import quantities as si
 from squeezefilm.measure.recordings.quantities_read import Reading
 from squeezefilm.measure.recordings.rows import require_rising
 
+# Less drives nothing that an instrument sees.
+_LEAST_VOLTAGE: si.Volt = 1e-9
+
 
 def motion_per_volt(
     reading: Reading, frequency: si.HertzArray
@@ -32,7 +35,7 @@ def motion_per_volt(
             "as "
             'voltage = { amplitude = "10 V", given_as = "zero-to-peak" }',
         )
-    still = np.flatnonzero(voltage == 0)
+    still = np.flatnonzero(np.abs(voltage) < _LEAST_VOLTAGE)
     if still.size:
         at = int(still[0])
         raise reading.refuse("voltage", "nothing responds to no voltage; leave the row out", at)

@@ -3,12 +3,14 @@ comes."""
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.faults.mutations import mutated
 from tests.unit.measure.recordings.bench_files import (
     IMPEDANCE,
     export_4294a,
@@ -113,6 +115,7 @@ def test_a_unit_other_than_the_file_s_own_is_refused_with_both(tmp_path: Path) -
 
 DESCRIPTIONS = {
     "an unknown kind": ('"impedance"', '"impedence"', "Did you mean 'impedance'", "kind"),
+    "a kind that is a list": ('"impedance"', '["impedance"]', "is not known", "kind"),
     "an unknown key": ("name =", "nmae =", "unknown key 'nmae'. Did you mean 'name'", "nmae"),
     "an unknown quantity": ("phase =", "phse =", "Did you mean 'phase'", "columns.phse"),
     "no such column": ('"theta"', '"thta"', "Did you mean 'theta'", "columns.phase.column"),
@@ -251,3 +254,17 @@ def test_missing_points_are_doubted(tmp_path: Path) -> None:
     lines = GOOD.split("\n")
     found = check_recording(written(tmp_path, "\n".join(lines[:15] + lines[17:])))
     assert any("points are missing between 29.65 kHz" in doubt for doubt in found.doubts)
+
+
+@given(seed=st.integers(0, 10**9), of_data=st.booleans())
+def test_accidents_in_data_or_description_are_refused_or_read(
+    seed: int, of_data: bool, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = written(tmp_path_factory.mktemp("accident"), GOOD)
+    hit = path if of_data else path.with_suffix(".toml")
+    hit.write_bytes(mutated(hit.read_text(encoding="utf-8"), random.Random(seed)))
+    try:
+        found = check_recording(path)
+    except ConfigError:
+        return
+    assert np.all(np.isfinite(found.recording.admittance))
