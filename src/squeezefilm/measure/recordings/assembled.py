@@ -258,11 +258,7 @@ def _curve(reading: Reading) -> kinds.FrictionCurve:
     order = np.argsort(amplitude, kind="stable")
     given = (("frequency", "Hz"), ("normal_force", "N"), ("speed", "m/s"))
     for name, unit in given:
-        value = getattr(said, name)
-        if value <= 0:
-            shown = quantity(value, si.Unit(unit))
-            raise reading.description.error(f"{shown} is not above 0", [name])
-        reading.facts.append((words(name), quantity(value, si.Unit(unit))))
+        reading.facts.append((words(name), quantity(getattr(said, name), si.Unit(unit))))
     return kinds.FrictionCurve(
         amplitude[order],
         friction[order],

@@ -8,16 +8,19 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.config import load_text
 from squeezefilm.config.lines import locate
 from squeezefilm.config.scan import require_quick_toml
 from squeezefilm.errors import ConfigError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES
+from squeezefilm.hard_limits import DESCRIPTION_BYTES, FINGER_SPEED, FORCE, FREQUENCY, PLACE
 from squeezefilm.measure.recordings.kinds import Told
 from squeezefilm.regular_file import read_regular_text
+
+MOST_VOLTAGE: si.Volt = 1e4
+"""Of a drive: past any amplifier for a plate."""
 
 Convention = Literal["zero-to-peak", "peak-to-peak", "rms"]
 """How the amplitude of a vibration is given; inside, all amplitudes are zero-to-peak."""
@@ -43,14 +46,16 @@ class Column:
     scale: str | None = None
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class Given:
     """A voltage that was the same throughout, and how its amplitude is given."""
 
-    amplitude: si.Volt
+    amplitude: Annotated[si.Volt, si.Above(0.0), si.AtMost(MOST_VOLTAGE)]
     given_as: Convention
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class Described:
     """What every description may say. `file` is the data's file, where it has another name;
@@ -65,11 +70,11 @@ class Described:
     instrument: str = ""
     licence: str = ""
     source: str = ""
-    temperature: si.Kelvin | None = None
+    temperature: Annotated[si.Kelvin, si.Above(0.0)] | None = None
     decimal: Literal[".", ","] | None = None
     delimiter: Literal["tab", "comma", "semicolon", "blank"] | None = None
-    header: int | None = None
-    points: int | None = None
+    header: Annotated[int, si.AtLeast(0)] | None = None
+    points: Annotated[int, si.AtLeast(1)] | None = None
 
     def told(self, file: Path) -> Told:
         """What is told of the recording itself."""
@@ -91,6 +96,7 @@ class ImpedanceColumns:
     susceptance: Column | None = None
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedImpedance(Described):
     """An impedance or admittance against frequency."""
@@ -121,6 +127,7 @@ class ResponseColumns(Motion):
     coherence: Column | None = None
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedResponse(Described):
     """Motion at one place (`x`, `y`) against frequency; per volt, or with the voltage of the
@@ -129,8 +136,8 @@ class DescribedResponse(Described):
     kind: Literal["frequency response"]
     columns: ResponseColumns
     voltage: Given | None = None
-    x: si.Metre | None = None
-    y: si.Metre | None = None
+    x: Annotated[si.Metre, PLACE] | None = None
+    y: Annotated[si.Metre, PLACE] | None = None
     correct: Literal["phase 180 deg", "phase sign"] | None = None
 
 
@@ -141,13 +148,14 @@ class LineColumns(Motion):
     position: Column | None = None
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedLine(Described):
     """Motion along a line at one frequency."""
 
     kind: Literal["line scan"]
     columns: LineColumns
-    frequency: si.Hertz
+    frequency: Annotated[si.Hertz, FREQUENCY]
     voltage: Given | None = None
 
 
@@ -159,13 +167,14 @@ class GridColumns(Motion):
     y: Column | None = None
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedGrid(Described):
     """Motion at places on the face at one frequency."""
 
     kind: Literal["grid scan"]
     columns: GridColumns
-    frequency: si.Hertz
+    frequency: Annotated[si.Hertz, FREQUENCY]
     voltage: Given | None = None
 
 
@@ -180,6 +189,7 @@ class TimeColumns:
     voltage: Column | None = None
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedRingDown(Described):
     """Motion against time after the drive was switched off."""
@@ -188,6 +198,7 @@ class DescribedRingDown(Described):
     columns: TimeColumns
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedSignals(Described):
     """Voltage and motion against time."""
@@ -196,6 +207,7 @@ class DescribedSignals(Described):
     columns: TimeColumns
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedSweeps(Described):
     """Frequency responses at several voltages, one below the other; a sweep ends where the voltage
@@ -217,14 +229,15 @@ class BenchColumns:
     voltage: Column | None = None
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedBench(Described):
     """Strokes of a finger or probe; `frequency` is the vibration's."""
 
     kind: Literal["friction bench"]
     columns: BenchColumns
-    frequency: si.Hertz | None = None
-    amplitude_per_volt: si.MetrePerVolt | None = None
+    frequency: Annotated[si.Hertz, FREQUENCY] | None = None
+    amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)] | None = None
 
 
 @dataclass(frozen=True)
@@ -236,6 +249,7 @@ class CurveColumns:
     spread: Column
 
 
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedCurve(Described):
     """Friction against vibration amplitude; `display` is a preset or a file that describes what it
@@ -243,9 +257,9 @@ class DescribedCurve(Described):
 
     kind: Literal["friction curve"]
     columns: CurveColumns
-    frequency: si.Hertz
-    normal_force: si.Newton
-    speed: si.MetrePerSecond
+    frequency: Annotated[si.Hertz, FREQUENCY]
+    normal_force: Annotated[si.Newton, FORCE]
+    speed: Annotated[si.MetrePerSecond, FINGER_SPEED]
     display: str = ""
 
 

@@ -15,6 +15,7 @@ from squeezefilm.errors import ConfigError, QuantityError
 from squeezefilm.hard_limits import FORCE, FREQUENCY, SIDE, TOUCHED_VIBRATION, VIBRATION
 from squeezefilm.measure.recordings.description import (
     CONVENTIONS,
+    MOST_VOLTAGE,
     Column,
     Description,
     Given,
@@ -51,7 +52,7 @@ QUANTITIES: dict[str, Quantity] = {
     # A millimetre at 30 kHz; nothing that is meant here moves faster.
     "velocity": Quantity(_SPEED, 200.0),
     "velocity_imaginary": Quantity(_SPEED, 200.0),
-    "voltage": Quantity(_V, 1e4),
+    "voltage": Quantity(_V, MOST_VOLTAGE),
     "coherence": Quantity(_ONE, 1.000001, 0.0),
     "position": Quantity(_M, SIDE.most),
     "x": Quantity(_M, SIDE.most),
@@ -155,12 +156,6 @@ class Reading:
     def given_voltage(self, given: Given) -> si.Volt:
         """The zero-to-peak amplitude (V) of a voltage that was the same throughout."""
         volts = given.amplitude * CONVENTIONS[given.given_as]
-        if not 0 < volts <= QUANTITIES["voltage"].most:
-            raise self.description.error(
-                f"{quantity(given.amplitude, _V)} is no voltage of a drive; write one above 0 and "
-                "up to 10 kV",
-                ["voltage", "amplitude"],
-            )
         shown = quantity(volts, _V)
         self.facts.append(("drive voltage", f"{shown} zero-to-peak, given as {given.given_as}"))
         return volts

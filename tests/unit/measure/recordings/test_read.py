@@ -237,6 +237,25 @@ def test_a_friction_curve_names_what_it_was_measured_on(tmp_path: Path) -> None:
     assert any('is the unit "%"?' in doubt for doubt in doubts)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "key"),
+    [
+        ('"0.5 N"', '"0 N"', "normal_force"),
+        ('"20 mm/s"', '"20 km/s"', "speed"),
+        ('"30 kHz"', '"-30 kHz"', "frequency"),
+        ("kind =", 'temperature = "0 K"\nkind =', "temperature"),
+        ("kind =", "points = 0\nkind =", "points"),
+    ],
+)
+def test_a_condition_that_cannot_be_is_refused_at_its_key(
+    old: str, new: str, key: str, tmp_path: Path
+) -> None:
+    path = written(tmp_path, "a,m,s\n0,100,5\n1,80,5\n2,60,5\n", CURVE.replace(old, new))
+    with pytest.raises(ConfigError) as caught:
+        check_recording(path)
+    assert caught.value.key == key
+
+
 def test_a_folder_keeps_what_can_be_read_and_names_what_cannot(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no recording"):
         check_folder(tmp_path)
