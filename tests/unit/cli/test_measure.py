@@ -19,6 +19,8 @@ from tests.unit.measure.recordings.bench_files import (
     written,
 )
 
+from squeezefilm.chain.friction_models import MODEL_KINDS
+from squeezefilm.chain.prediction import predict
 from squeezefilm.cli.measure import check, fit
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
 
@@ -123,3 +125,39 @@ def test_a_folder_without_curves_is_refused_before_any_work(tmp_path: Path) -> N
     done = run("reproduce", "--data", str(tmp_path))
     assert done.returncode == 2
     assert "holds no friction curve, only: impedance" in done.stderr
+
+
+CURVE = """\
+kind = "friction curve"
+name = "synthetic, by partial levitation"
+display = "biet2008-plate"
+frequency = "30 kHz"
+normal_force = "0.5 N"
+speed = "20 mm/s"
+[columns]
+vibration_amplitude = { column = 1, unit = "um", given_as = "peak-to-peak" }
+relative_friction = { column = 2, unit = "%" }
+spread = { column = 3, unit = "%" }
+"""
+
+
+@pytest.mark.slow
+def test_a_synthetic_curve_in_a_folder_is_nearest_to_the_model_that_made_it(
+    tmp_path: Path,
+) -> None:
+    law = predict(
+        "biet2008-plate", vibration_amplitude=2e-6, frequency=30e3, normal_force=0.5, speed=0.02
+    ).law
+    amplitude = np.linspace(0, 2e-6, 6)
+    friction = law.by("partial-levitation").curve(amplitude)
+    data = text("a,m,s", (2e6 * amplitude, 100 * friction, np.full(6, 3.0)))
+    written(tmp_path, data, CURVE)
+    done = run("reproduce", "--data", str(tmp_path), "--json", "--out", str(tmp_path / "out"))
+    assert done.returncode == 0, done.stderr
+    (found,) = json.loads(done.stdout)["curves"]
+    assert found["models"][0]["model"] == "partial-levitation"
+    assert found["models"][0]["rms_difference"] == pytest.approx(0, abs=1e-8)
+    assert len(found["models"]) == len(MODEL_KINDS)
+    assert found["interval"]["points_asked"] == 5
+    page = (tmp_path / "out" / "measured-curves.html").read_text(encoding="utf-8")
+    assert "synthetic, by partial levitation" in page
