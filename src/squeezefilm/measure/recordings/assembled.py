@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -211,6 +211,15 @@ def _sweeps(reading: Reading) -> kinds.VoltageSweeps:
             for one, way in zip(found, directions, strict=True))  # fmt: skip
     reading.facts.append(("sweeps", ", ".join(told)))
     return kinds.VoltageSweeps(tuple(found), tuple(directions), _told(reading))
+
+
+def joined_sweeps(
+    parts: Sequence[tuple[kinds.FrequencyResponse, Reading]], told: kinds.Told
+) -> kinds.VoltageSweeps:
+    """Sweeps that were read from files of their own, as one recording."""
+    down = [any(how.startswith("swept downwards") for _, how in read.facts) for _, read in parts]
+    directions = tuple("down" if one else "up" for one in down)
+    return kinds.VoltageSweeps(tuple(sweep for sweep, _ in parts), directions, told)
 
 
 def _runs(frequency: si.HertzArray, voltage: si.VoltArray) -> list[tuple[int, int]]:

@@ -208,13 +208,37 @@ class DescribedSignals(Described):
 
 
 @si.checked_numbers
+@dataclass(frozen=True)
+class SweepFile:
+    """The file of one sweep, and the voltage of its drive."""
+
+    file: str
+    voltage: Given
+
+
+@si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedSweeps(Described):
-    """Frequency responses at several voltages, one below the other; a sweep ends where the voltage
-    changes or the frequency turns around."""
+    """Frequency responses at several voltages: one below the other in one file, where a sweep ends
+    as the voltage changes or the frequency turns around, or each in a file of its own
+    (`sweeps`)."""
 
     kind: Literal["voltage sweeps"]
     columns: ResponseColumns
+    sweeps: tuple[SweepFile, ...] = ()
+
+    def responses(self) -> tuple[DescribedResponse, ...]:
+        """The descriptions of the sweeps that have files of their own."""
+        common = {one.name: getattr(self, one.name) for one in dataclasses.fields(Described)}
+        return tuple(
+            DescribedResponse(
+                kind="frequency response",
+                columns=self.columns,
+                voltage=one.voltage,
+                **common | {"file": one.file},
+            )
+            for one in self.sweeps
+        )
 
 
 @dataclass(frozen=True)

@@ -44,9 +44,14 @@ def motion_per_volt(
 
 def _voltage(reading: Reading) -> si.FloatArray | None:
     """The drive's voltage (V) in each row, from its column or told once for all."""
-    if reading.has("voltage"):
-        return reading.take("voltage", amplitude=True)
     given = getattr(reading.description.said, "voltage", None)
+    if reading.has("voltage"):
+        if given is not None:
+            raise reading.description.error(
+                "the voltage is named as a column and told once for all; keep one of the two",
+                ["voltage"],
+            )
+        return reading.take("voltage", amplitude=True)
     if given is None:
         return None
     return np.full(reading.table.values.shape[0], reading.given_voltage(given))

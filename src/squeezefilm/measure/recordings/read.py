@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.measure.recordings.analysers import is_4294a, read_4294a
-from squeezefilm.measure.recordings.assembled import assembled
+from squeezefilm.measure.recordings.assembled import assembled, joined_sweeps
 from squeezefilm.measure.recordings.description import (
     KINDS,
     Described,
     DescribedImpedance,
+    DescribedSweeps,
     Description,
     load_description,
 )
 from squeezefilm.measure.recordings.doubts import doubts_of
-from squeezefilm.measure.recordings.kinds import Recording
+from squeezefilm.measure.recordings.kinds import FrequencyResponse, Recording
 from squeezefilm.measure.recordings.matlab import read_matlab
+from squeezefilm.measure.recordings.quantities_read import Reading
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.measure.recordings.text_table import read_text_table
 from squeezefilm.measure.recordings.universal import SUFFIXES, read_universal
@@ -101,12 +104,16 @@ def check_recording(path: str | Path, described: str | Path | None = None) -> Re
     """What `read_recording` reads, with how it was taken and what is doubtful of it. Raises as it
     does."""
     file, description = _found(Path(path), None if described is None else Path(described))
-    table = _table(file, description)
-    recording, reading = assembled(description, table)
-    facts = [("kind", description.kind), ("read as", table.format)]
-    facts.append(("points", f"{table.values.shape[0]} rows of {table.values.shape[1]} columns"))
-    facts += reading.facts
-    facts += [("of the file", note) for note in table.notes]
+    recording, readings = _read(file, description)
+    facts = [("kind", description.kind)]
+    for reading in readings:
+        table = reading.table
+        if len(readings) > 1:
+            facts.append(("file", table.file.name))
+        facts += [("read as", table.format)]
+        facts.append(("points", f"{table.values.shape[0]} rows of {table.values.shape[1]} columns"))
+        facts += reading.facts
+        facts += [("of the file", note) for note in table.notes]
     told = recording.told
     said = (("measured by", told.who), ("when", told.when), ("instrument", told.instrument),
             ("licence", told.licence), ("source", told.source))  # fmt: skip
@@ -118,10 +125,24 @@ def check_recording(path: str | Path, described: str | Path | None = None) -> Re
         kind=description.kind,
         file=file,
         description=description.path,
-        points=table.values.shape[0],
+        points=sum(reading.table.values.shape[0] for reading in readings),
         facts=tuple(facts),
-        doubts=(*reading.doubts, *doubts_of(recording)),
+        doubts=(*(one for reading in readings for one in reading.doubts), *doubts_of(recording)),
     )
+
+
+def _read(file: Path, description: Description) -> tuple[Recording, list[Reading]]:
+    """The recording of a description, and how each of its files was taken."""
+    said = description.said
+    if not isinstance(said, DescribedSweeps) or not said.sweeps:
+        recording, reading = assembled(description, _table(file, description))
+        return recording, [reading]
+    parts: list[tuple[FrequencyResponse, Reading]] = []
+    for one in said.responses():
+        sweep = dataclasses.replace(description, kind="frequency response", said=one)
+        found, reading = assembled(sweep, _table(file.parent / one.file, sweep))
+        parts.append((cast(FrequencyResponse, found), reading))
+    return joined_sweeps(parts, said.told(file)), [reading for _, reading in parts]
 
 
 def check_folder(folder: str | Path) -> FolderCheck:
@@ -179,7 +200,10 @@ def _found(path: Path, described: Path | None) -> tuple[Path, Description]:
 
 
 def _data_of(path: Path, said: Described) -> Path:
-    """The file that a description names, or the one beside it under the same name."""
+    """The file that a description names, or the one beside it under the same name; of sweeps with
+    files of their own the description's."""
+    if isinstance(said, DescribedSweeps) and said.sweeps:
+        return path
     if said.file:
         return path.parent / said.file
     beside = sorted(one for one in path.parent.glob(f"{path.stem}.*") if one.suffix != ".toml")

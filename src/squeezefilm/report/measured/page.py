@@ -47,7 +47,8 @@ def write_checks(found: FolderCheck, folder: Path) -> Path:
         body += picture_sections({name: (check.recording.told.name, figure)})
         body += section("How it was read", _facts(check)) + _doubts(check)
     files["check.html"] = page(
-        "Recordings checked", "What was read", "before anything is fitted; nothing was corrected",
+        "Recordings checked", "What was read", "before anything is fitted; corrected only where a "
+        "description asks for it",
         body, _foot(stamped_with),
     )  # fmt: skip
     write_folder(folder, files)

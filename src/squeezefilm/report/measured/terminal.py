@@ -16,7 +16,7 @@ from squeezefilm.report.kit.numbers import printable, shown
 from squeezefilm.report.kit.terminal import bullets, heading, plain_console, table
 from squeezefilm.report.measured.curves import MODELS_HEAD, inside_words, model_rows
 
-_KNOWN = ("m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "S", "m/V", "m/s", "N/m")
+_KNOWN = ("m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "S", "H", "m/V", "m/s", "N/m")
 
 
 def show_check(check: RecordingCheck) -> None:

@@ -52,6 +52,10 @@ def test_a_frequency_response_in_peak_to_peak_micrometres(tmp_path: Path) -> Non
     with pytest.raises(ConfigError, match='write given_as = "zero-to-peak"') as caught:
         check_recording(path)
     assert (caught.value.key, caught.value.line) == ("columns.displacement", 5)
+    both = f'{said}voltage = {{ column = 2, unit = "um", given_as = "rms" }}\n'
+    path = written(tmp_path, text("f,d,p", columns), both, "d.csv")
+    with pytest.raises(ConfigError, match="keep one of the two"):
+        check_recording(path)
     asked = said.replace("voltage =", "# voltage =")
     path = written(tmp_path, text("f,d,p", columns), asked, "c.csv")
     with pytest.raises(ConfigError, match="the drive's voltage is needed"):
@@ -186,6 +190,38 @@ def test_sweeps_at_several_voltages_are_told_apart(tmp_path: Path) -> None:
     for one in found.sweeps:
         assert np.allclose(one.frequency, up)
         assert np.allclose(one.displacement_per_volt, h[:21], rtol=1e-6)
+
+
+def test_sweeps_may_have_files_of_their_own(tmp_path: Path) -> None:
+    f = np.linspace(29e3, 31e3, 21)
+    h = 1e-7 / (1 - (f / 30e3) ** 2 + 1j * f / 30e3 / 60)
+    for name, volts, order in (("low", 2.0, 1), ("high", 8.0, -1)):
+        parts = (f[::order], volts * h.real[::order], volts * h.imag[::order])
+        written(tmp_path, text("f,r,i", parts), "", f"{name}.csv")
+    said = described(
+        "voltage sweeps",
+        'frequency = { column = 1, unit = "Hz" }\n'
+        'displacement = { column = 2, unit = "m", given_as = "zero-to-peak" }\n'
+        'displacement_imaginary = { column = 3, unit = "m", given_as = "zero-to-peak" }',
+    )
+    for name, volts in (("low", "2 V"), ("high", "16 V")):
+        given = "zero-to-peak" if name == "low" else "peak-to-peak"
+        said += f'[[sweeps]]\nfile = "{name}.csv"\n'
+        said += f'voltage = {{ amplitude = "{volts}", given_as = "{given}" }}\n'
+    path = tmp_path / "all.toml"
+    path.write_text(said, encoding="utf-8")
+    found = check_recording(path)
+    sweeps = found.recording
+    assert isinstance(sweeps, kinds.VoltageSweeps)
+    assert [one.voltage for one in sweeps.sweeps] == [2.0, 8.0]
+    assert sweeps.directions == ("up", "down")
+    assert found.points == 42
+    for one in sweeps.sweeps:
+        assert np.allclose(one.displacement_per_volt, h, rtol=1e-6)
+    data = (tmp_path / "high.csv").read_text(encoding="utf-8").replace("31000,", "x,")
+    (tmp_path / "high.csv").write_text(data, encoding="utf-8")
+    with pytest.raises(ConfigError, match=r"high\.csv, line 2, column 1"):
+        check_recording(path)
 
 
 BENCH = described(
