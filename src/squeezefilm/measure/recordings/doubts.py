@@ -22,6 +22,7 @@ _HUMS = (50.0, 60.0)
 _WIDTHS, _PERIODS = 4.0, 8.0
 _HUM_SHARE, _HUM_TIMES = 0.02, 5.0
 _LARGEST_FRICTION = 5.0
+_NEAR_A_PEAK = 0.3
 
 
 def doubts_of(recording: kinds.Recording) -> tuple[str, ...]:
@@ -81,6 +82,16 @@ def _frequencies(f: si.HertzArray) -> Iterator[str]:
 
 def _response(response: kinds.FrequencyResponse) -> Iterator[str]:
     yield from _frequencies(response.frequency)
+    h = response.displacement_per_volt
+    near = np.abs(h) > _NEAR_A_PEAK * np.max(np.abs(h))
+    turned = np.angle(h[1:] * np.conj(h[:-1]))[near[1:] & near[:-1]]
+    if np.sum(turned) > np.pi / 4:
+        yield (
+            f"the phase rises by {np.degrees(np.sum(turned)):.0f} deg through the resonance, and "
+            "that of a displacement after its drive falls there: the sign of the phase may be the "
+            "other "
+            'one. It is left as it is; write correct = "phase sign" into the description to turn it'
+        )
     if response.coherence is not None and np.median(response.coherence) < 0.9:
         yield (
             f"the coherence is {float(np.median(response.coherence)):.2f} in the middle of the "

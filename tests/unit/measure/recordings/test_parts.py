@@ -105,6 +105,11 @@ def test_every_kind_may_be_doubted() -> None:
     few = doubts_of(kinds.ImpedanceSweep(f, (1e-6 + 1e-3j) * np.ones(5)))
     assert few == ("5 points are few for a resonance; sweep more finely",)
     assert len(KINDS) == 9
+    f = np.linspace(29e3, 31e3, 51)
+    h = 1e-7 / (1 - (f / 30e3) ** 2 + 1j * f / 30e3 / 60)
+    assert doubts_of(kinds.FrequencyResponse(f, h)) == ()
+    (rising,) = doubts_of(kinds.FrequencyResponse(f, np.conj(h)))
+    assert "the sign of the phase may be the other one" in rising
 
 
 def test_an_export_is_known_by_its_head(tmp_path: Path) -> None:
