@@ -44,6 +44,9 @@ _NAMES = {
     "render_texture": "chain.rendered_texture",
     "play_texture": "bench.play",
     "read_trace": "session.record.trace",
+    # Measured
+    "read_recording": "measure.recordings.read",
+    "fit_recording": "measure.fits.by_kind",
     # Studies
     "plan_study": "study.design.plan",
     "run_study": "report.study.session",

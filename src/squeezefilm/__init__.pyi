@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from squeezefilm.errors import SqueezefilmError as SqueezefilmError
     from squeezefilm.film.periodic.profile import GapFunction, GapProfile
     from squeezefilm.formats.trajectories import NamedMotion
+    from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
+    from squeezefilm.measure.recordings.read import read_recording as read_recording
     from squeezefilm.perception.observer import NamedObserver
     from squeezefilm.plate.working_mode import PlateTheory
     from squeezefilm.presets import display_names as display_names
@@ -332,6 +334,11 @@ if TYPE_CHECKING:
         progress: SayProgress | None = ...,
     ) -> PlayResult:
         """Play a texture on a device or on a twin of the display, in real time, and judge the record."""
+    def fit_recording(
+        recording: NamedRecording | str | Path, display: NamedDisplay | str | Path | None = ...
+    ) -> Fit:
+        """What goes with the kind of a recording: a circuit with an impedance, modes with a frequency"""
+
     def plan_study(
         design: NamedDesign | str | Path, participants: int = ..., seed: int = ...
     ) -> StudyPlan:

@@ -199,6 +199,9 @@ DESCRIPTION_BYTES = HardLimit(
     "bytes of a description", 0, 4_000_000, "a display has a few thousand"
 )
 PICTURE_BYTES = HardLimit("bytes of a picture", 0, 16_000_000, "a megapixel of 16 bits")
+RECORDING_BYTES = HardLimit(
+    "bytes of a recording", 0, 200_000_000, "its text is taken apart cell by cell"
+)
 TABLE_BYTES = HardLimit("bytes of a table", 0, 2_000_000_000, "it is read into memory")
 HJIF_BYTES = HardLimit("bytes of an HJIF", 0, 50_000_000, "it is read into memory")
 WAVE_BYTES = HardLimit("bytes of a WAV file", 0, 2**32, "what the format can hold")

@@ -39,12 +39,14 @@ NAMES = (
     "analyze_study",
     "display_names",
     "fit_psychometric",
+    "fit_recording",
     "load_display",
     "load_texture",
     "plan_study",
     "play_texture",
     "plot",
     "predict",
+    "read_recording",
     "read_trace",
     "render_texture",
     "replaced",
@@ -65,7 +67,7 @@ NAMES = (
 
 def test_the_names_are_these_and_each_is_what_its_module_calls_so() -> None:
     assert tuple(sf.__all__) == NAMES
-    assert 25 <= len(NAMES) <= 40
+    assert 25 <= len(NAMES) <= 45
     for name in NAMES:
         assert name in dir(sf)
         found = getattr(sf, name)

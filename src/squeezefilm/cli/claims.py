@@ -7,12 +7,20 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, answer, app, working, written_to
+from squeezefilm.cli.app import AsJson, answer, app, print_json, working, written_to
+from squeezefilm.errors import InputError
 
 
 @app.command()
 def reproduce(
     out: Annotated[Path | None, written_to("Write figures 4, 5, 10, 11 and a page.")] = None,
+    data: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Compare the measured friction curves in a folder with every model instead.",
+        ),
+    ] = None,
     as_json: AsJson = False,
     write_docs: Annotated[
         bool,
@@ -23,6 +31,11 @@ def reproduce(
 
     Exit code 1 if a verdict differs from the one on record.
     """
+    if data is not None:
+        if write_docs:
+            raise InputError("--data writes no documentation; leave --write-docs out, or --data")
+        _measured_curves(data, out, as_json)
+        return
     from squeezefilm.analysis.claims.command import reproduce as run
     from squeezefilm.report.claims.page import checkout, write_reproduction, write_validation_docs
     from squeezefilm.report.claims.terminal import show_claims
@@ -46,3 +59,19 @@ def reproduce(
                 err=True,
             )
         raise typer.Exit(1)
+
+
+def _measured_curves(data: Path, out: Path | None, as_json: bool) -> None:
+    """What `reproduce --data` does."""
+    from squeezefilm.measure.fits.friction_curve import compare_folder
+    from squeezefilm.report.measured.curves import show_comparisons, write_comparisons
+
+    with working(as_json) as step:
+        compared = compare_folder(data, step)
+        written = None if out is None else write_comparisons(compared, out)
+    if as_json:
+        print_json({"curves": [one.summary() for one in compared]})
+        return
+    show_comparisons(compared)
+    if written is not None:
+        typer.echo(f"page: {written}")

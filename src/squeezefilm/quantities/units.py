@@ -65,6 +65,7 @@ _unit("F", "1", (-1, -2, 4, 2, 0, 0))
 _unit("H", "1", (1, 2, -2, -2, 0, 0))
 _unit("VA", "1", (1, 2, -3, 0, 0, 0), False)
 _unit("ohm Ohm Ω", "1", (1, 2, -3, -2, 0, 0))
+_unit("S", "1", (-1, -2, 3, 2, 0, 0))
 _unit("1", "1", _NONE, False)
 _unit("%", "1e-2", _NONE, False)
 
@@ -162,6 +163,7 @@ _EXAMPLES = {
     "F/m": "F/m, nF/m",
     "rad": "rad, deg",
     "ohm": "ohm, kohm, Mohm",
+    "S": "S, mS, µS",
     "Pa/m": "Pa/m, MPa/m, N/m3",
 }
 
@@ -179,7 +181,8 @@ _DIMENSIONS = {
     "Pa": "a pressure or a modulus", "Pa*s": "a viscosity", "kg/m3": "a density",
     "kg": "a mass", "m/s": "a speed", "m2": "an area", "m/V": "a charge coefficient",
     "C/m2": "a stress coefficient", "m2/N": "a compliance", "rad": "an angle",
-    "ohm": "a resistance", "A": "a current", "W": "a power", "J": "an energy", "F": "a capacitance",
+    "ohm": "a resistance", "S": "an admittance", "A": "a current", "W": "a power", "J": "an "
+    "energy", "F": "a capacitance",
     "K": "a temperature", "J/kg/K": "a specific heat", "N/m": "a stiffness",
     "V/s": "a rate of voltage", "1": "a number without dimension (dimensionless)",
 }  # fmt: skip
@@ -282,7 +285,7 @@ def _example(unit: Unit) -> str:
 
 
 _READABLE = [("G", 9), ("M", 6), ("k", 3), ("", 0), ("m", -3), ("µ", -6), ("n", -9), ("p", -12)]
-_SCALED = {"m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "m/V", "m/s", "N/m", "H"}
+_SCALED = {"m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "S", "m/V", "m/s", "N/m", "H"}
 
 
 def format_quantity(value: float, unit: Unit, digits: int = 4) -> str:

@@ -1,4 +1,5 @@
-"""The kinds of recordings of a bench, in SI units and zero-to-peak amplitudes, whatever the file was in."""
+"""The kinds of recordings of a bench, in SI units and zero-to-peak amplitudes, whatever the file
+was in."""
 
 from __future__ import annotations
 
@@ -36,13 +37,15 @@ class ImpedanceSweep:
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse:
     """Displacement per volt (m/V, complex) at one place against `frequency` (Hz), both (points,);
-    `voltage` (V) is the drive's amplitude during the sweep, `coherence` (0 to 1) where recorded."""
+    `voltage` (V) is the drive's amplitude during the sweep, `coherence` (0 to 1) where recorded,
+    `place` where on the plate (x, y in m) where told."""
 
     frequency: si.HertzArray
     displacement_per_volt: si.ComplexArray
     voltage: si.Volt | None = None
     coherence: si.DimensionlessArray | None = None
     told: Told = field(default_factory=Told)
+    place: tuple[si.Metre, si.Metre] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +104,8 @@ class RawSignals:
 @dataclass(frozen=True, eq=False)
 class FrictionBench:
     """Strokes of a finger or probe: `time` (s), `normal_force` and `tangential_force` (N),
-    `position` (m) and `vibration_amplitude` (m, zero to peak), all (points,)."""
+    `position` (m) and `vibration_amplitude` (m, zero to peak), all (points,); `frequency` (Hz) of
+    the vibration where told."""
 
     time: si.SecondArray
     normal_force: si.NewtonArray
@@ -109,12 +113,14 @@ class FrictionBench:
     position: si.MetreArray
     vibration_amplitude: si.MetreArray
     told: Told = field(default_factory=Told)
+    frequency: si.Hertz | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class FrictionCurve:
     """µ′/µ with its spread (one standard deviation) against `vibration_amplitude` (m), all
-    (points,), at one `frequency` (Hz), `normal_force` (N) and `speed` (m/s)."""
+    (points,), at one `frequency` (Hz), `normal_force` (N) and `speed` (m/s); `display` is the
+    preset or file that describes plate, surface and finger."""
 
     vibration_amplitude: si.MetreArray
     relative_friction: si.DimensionlessArray
@@ -123,6 +129,7 @@ class FrictionCurve:
     normal_force: si.Newton
     speed: si.MetrePerSecond
     told: Told = field(default_factory=Told)
+    display: str = ""
 
 
 Recording = (

@@ -45,9 +45,10 @@ effect devices*. Claims on friction by others were read in abstracts, and are co
 set of assumed parameters (`analysis/claims/frozen.py`).
 
 **Friction against amplitude is not validated against measurements**: no measured curve of an
-ultrasonic display could be read anywhere. What follows compares with what the paper printed, and
-says where and why the numbers differ. "Printed formula" is what the formula gives as it stands in
-the paper, where that differs from the corrected one.
+ultrasonic display could be read anywhere ([a curve of yours](measured-data.md) can be compared with
+every model). What follows compares with what the paper printed, and says where and why the numbers
+differ. "Printed formula" is what the formula gives as it stands in the paper, where that differs
+from the corrected one.
 """
 
 _OBSERVED = "Directions of friction that others observed, model by model"

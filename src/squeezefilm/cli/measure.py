@@ -1,0 +1,115 @@
+"""Verbs of what a bench measured: check it, fit it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from squeezefilm.cli.app import AsJson, answer, app, print_json, working, written_to
+from squeezefilm.errors import InputError
+
+if TYPE_CHECKING:
+    from squeezefilm.measure.fits.by_kind import Fit
+    from squeezefilm.measure.recordings.read import RecordingCheck
+
+measure = typer.Typer(
+    name="measure",
+    help="What a bench measured: check how it is read, and fit it.",
+    no_args_is_help=True,
+)
+app.add_typer(measure)
+
+Recording = Annotated[
+    Path,
+    typer.Argument(
+        metavar="FILE", help="Data with a TOML file of the same name beside, or that TOML file."
+    ),
+]
+DescribedBy = Annotated[
+    Path | None,
+    typer.Option("--described", help="The TOML file, where it does not stand beside the data."),
+]
+
+
+@measure.command()
+def check(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE|FOLDER",
+            help="Data with a TOML file of the same name beside, that TOML file, or a folder.",
+        ),
+    ],
+    described: DescribedBy = None,
+    out: Annotated[Path | None, written_to("Folder for pictures, numbers and a page.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Say how a recording is read, with a picture, before anything is fitted: kind, columns, units,
+    amplitudes, and what is doubtful. Exit code 1 if a file of a folder could not be read.
+    """
+    from squeezefilm.measure.recordings.read import FolderCheck, check_folder, check_recording
+    from squeezefilm.report.measured.page import write_checks
+    from squeezefilm.report.measured.terminal import show_folder
+
+    if file.is_dir():
+        if described is not None:
+            raise InputError("--described goes with one file; leave it out for a folder")
+        found = check_folder(file)
+    else:
+        found = FolderCheck((check_recording(file, described),), ())
+    written = None if out is None else write_checks(found, out)
+    answer(as_json, found, show_folder, page=written)
+    if found.refused:
+        raise typer.Exit(1)
+
+
+@measure.command()
+def fit(
+    file: Recording,
+    described: DescribedBy = None,
+    display: Annotated[
+        str | None,
+        typer.Option(help="The plate with whose solved shapes a grid scan is compared."),
+    ] = None,
+    out: Annotated[
+        Path | None, written_to("Folder for the picture of data, model and residual, and a page.")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Fit what goes with the kind of a recording: numbers with intervals, and whether the fit is
+    adequate. Exit code 1 if it is not."""
+    from squeezefilm.measure.fits.by_kind import response_fit
+    from squeezefilm.measure.recordings.read import check_recording
+    from squeezefilm.report.measured.page import fit_summary, write_fit
+    from squeezefilm.report.measured.terminal import show_fit
+
+    with working(as_json) as step:
+        found = check_recording(file, described)
+        step(f"fit of {found.file.name}")
+        fitted = _fitted(found, display)
+        response = response_fit(fitted)
+        written = None if out is None else write_fit(found, fitted, out, response)
+    if as_json:
+        print_json(fit_summary(found, fitted, response))
+    else:
+        show_fit(found, fitted, response)
+        if written is not None:
+            typer.echo(f"page: {written}")
+    if not fitted.adequacy.adequate:
+        raise typer.Exit(1)
+
+
+def _fitted(found: RecordingCheck, display: str | None) -> Fit:
+    """The fit of what was read; where it is refused, what is doubtful of the recording is said."""
+    from squeezefilm.display import load_display
+    from squeezefilm.measure.fits.by_kind import fit_recording
+
+    plate = None if display is None else load_display(display)
+    try:
+        return fit_recording(found.recording, plate)
+    except InputError:
+        for doubt in found.doubts:
+            typer.echo(f"doubtful: {doubt}", err=True)
+        raise

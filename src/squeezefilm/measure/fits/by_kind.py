@@ -1,0 +1,96 @@
+"""`fit_recording`: the fit that goes with each kind of recording."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Annotated, Protocol, cast
+
+from squeezefilm import quantities as si
+from squeezefilm.display import Display, NamedDisplay
+from squeezefilm.errors import InputError
+from squeezefilm.from_text import ReadBy, reads_text
+from squeezefilm.measure.fits.estimate import Adequacy, Observation
+from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.read import read_recording
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.modes import PlateModes
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.working import solid_mode
+
+# The module of `measure.fits` and its function; imported when a recording of the kind is fitted.
+FITS: dict[type, tuple[str, str]] = {
+    kinds.ImpedanceSweep: ("impedance", "fit_impedance"),
+    kinds.FrequencyResponse: ("frequency_response", "fit_frequency_response"),
+    kinds.LineScan: ("line_scan", "fit_line_scan"),
+    kinds.GridScan: ("grid_scan", "fit_grid_scan"),
+    kinds.RingDown: ("ring_down", "fit_ring_down"),
+    kinds.VoltageSweeps: ("voltage_sweeps", "fit_voltage_sweeps"),
+    kinds.RawSignals: ("raw_signals", "fit_raw_signals"),
+    kinds.FrictionBench: ("friction_bench", "fit_friction_bench"),
+    kinds.FrictionCurve: ("friction_curve", "compare_friction_curve"),
+}
+
+_NEAR: si.Dimensionless = 0.1
+"""How far from a scan's frequency (of it) modes may take part in what is seen."""
+# Shapes are much nearer than frequencies on one mesh.
+_TOLERANCE = 1e-2
+
+NamedRecording = Annotated[kinds.Recording, ReadBy(read_recording)]
+"""A recording, or in its place the path of its file (see `reads_text`)."""
+
+
+class Fit(Protocol):
+    """What every fit has, whatever was fitted: estimates are its fields of that type."""
+
+    @property
+    def adequacy(self) -> Adequacy:
+        """Whether the fitted model describes what was recorded."""
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """What a calibration may use."""
+
+
+@reads_text
+def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None) -> Fit:
+    """What goes with the kind of a recording: a circuit with an impedance, modes with a frequency
+    response, models of friction with a friction curve; a frozen dataclass whose numbers are
+    `Estimate`s, with its `adequacy` and the `observations` for a calibration.
+
+    A grid scan is compared with the solved shapes of a `display`, which no other kind needs. Raises
+    what `read_recording` raises, and `InputError` for a recording that its fit refuses.
+    """
+    known = FITS.get(type(recording))
+    if known is None:
+        raise InputError(
+            f"{type(recording).__name__} is no kind of recording; give the path of a file, or what "
+            "read_recording returned"
+        )
+    solved = _solved_near(recording, display) if isinstance(recording, kinds.GridScan) else None
+    module, name = known
+    fits = import_module(f"squeezefilm.measure.fits.{module}")
+    fit = getattr(fits, name)
+    return cast(Fit, fit(recording) if solved is None else fit(recording, fits.shapes_at(*solved)))
+
+
+def response_fit(fit: Fit) -> Fit | None:
+    """The fit of the frequency response that raw signals give, which has the numbers; None for a
+    fit of anything else. Raises what `fit_recording` raises."""
+    response = getattr(fit, "response", None)
+    return fit_recording(response) if isinstance(response, kinds.FrequencyResponse) else None
+
+
+def _solved_near(
+    scan: kinds.GridScan, display: Display | None
+) -> tuple[PlateModes, si.MetreArray, si.MetreArray, tuple[si.Metre, si.Metre]]:
+    """A display's modes within a tenth of a scan's frequency, the scan's places, and the working
+    mode's largest lobe. Raises `InputError` without a display, or for one that is no plate."""
+    if display is None or not isinstance(display.actuator, RectangularPlate):
+        raise InputError(
+            "a grid scan is compared with a plate's solved shapes; name its display, a rectangular "
+            "plate: --display biet2008-plate, or a TOML file",
+            quantity="display",
+        )
+    band = (scan.frequency * (1 - _NEAR), scan.frequency * (1 + _NEAR))
+    modes = solve_modes(display.actuator, band=band, tolerance=_TOLERANCE)
+    return modes, scan.x, scan.y, solid_mode(display.actuator).lobe

@@ -1,0 +1,327 @@
+"""Recordings out of tables and descriptions, one function a kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.description import (
+    Column,
+    Description,
+    ImpedanceColumns,
+)
+from squeezefilm.measure.recordings.motions import moment_by_moment, motion_of, motion_per_volt
+from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
+from squeezefilm.measure.recordings.raw_table import RawTable
+from squeezefilm.measure.recordings.rows import both_rows, require_rising, rising_order
+
+_HZ, _S = si.Unit("Hz"), si.Unit("s")
+_PAIRS = (
+    ("magnitude", "phase"),
+    ("admittance_magnitude", "phase"),
+    ("resistance", "reactance"),
+    ("conductance", "susceptance"),
+)
+# Times are printed with few digits; half a sample off is another sample's time.
+_UNEVEN = 0.5
+
+
+def assembled(description: Description, table: RawTable) -> tuple[kinds.Recording, Reading]:
+    """The recording in a table, and what was taken on the way.
+
+    Raises `ConfigError`, with file, line and column or key, for whatever does not fit.
+    """
+    said: Any = description.said
+    columns = said.columns
+    if columns is None:
+        columns = _own_columns(description, table)
+    if said.points is not None and said.points != table.values.shape[0]:
+        raise description.error(
+            f"points = {said.points}, and the file has {table.values.shape[0]} rows: it is cut "
+            "short, or another one",
+            ["points"],
+        )
+    reading = Reading(description, table, columns)
+    reading.doubts += table.doubts
+    return _OF_KIND[description.kind](reading), reading
+
+
+def _own_columns(description: Description, table: RawTable) -> ImpedanceColumns:
+    """The columns of a file that describes itself."""
+    if not table.described:
+        raise description.error(
+            "the table [columns] is missing, and the file does not say itself what its columns "
+            "hold; "
+            'write [columns] with lines like frequency = { column = 1, unit = "Hz" } (the file has '
+            f"{table.columns_in_words})",
+            ["columns"],
+        )
+    return ImpedanceColumns(
+        **{name: Column(column, unit) for name, column, unit in table.described}
+    )
+
+
+def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
+    pair = _one_of(reading, _PAIRS)
+    frequency = reading.take("frequency")
+    first, second = (reading.take(name) for name in pair)
+    value = first * np.exp(1j * second) if pair[1] == "phase" else first + 1j * second
+    if pair[0] in ("magnitude", "resistance"):
+        zero = np.flatnonzero(np.abs(value) < QUANTITIES["magnitude"].least)
+        if zero.size:
+            raise reading.refuse(pair[0], "an impedance of zero cannot be", int(zero[0]))
+        value = 1 / value
+    value = _corrected(reading, value)
+    frequency, value = _rising(reading, "frequency", frequency, value)
+    return kinds.ImpedanceSweep(frequency, value, _told(reading))
+
+
+def _corrected(reading: Reading, value: si.ComplexArray) -> si.ComplexArray:
+    """A value whose phase was asked to be corrected, and a fact that says so."""
+    correct = getattr(reading.description.said, "correct", None)
+    if correct == "phase 180 deg":
+        reading.facts.append(("corrected", "the phase by 180 deg, as the description asks"))
+        return -value
+    if correct == "phase sign":
+        reading.facts.append(("corrected", "the sign of the phase, as the description asks"))
+        return np.conj(value)
+    return value
+
+
+def _response(reading: Reading) -> kinds.FrequencyResponse:
+    frequency = reading.take("frequency")
+    motion, voltage = motion_per_volt(reading, frequency)
+    coherence = reading.take("coherence") if reading.has("coherence") else None
+    motion = _corrected(reading, motion)
+    volts = None if voltage is None else float(np.median(np.abs(voltage)))
+    order = rising_order(reading, "frequency", frequency)
+    return kinds.FrequencyResponse(
+        frequency[order],
+        motion[order],
+        volts,
+        None if coherence is None else coherence[order],
+        _told(reading),
+        _place(reading),
+    )
+
+
+def _place(reading: Reading) -> tuple[si.Metre, si.Metre] | None:
+    """Where on the plate (x, y in m) a response was recorded, where that is told."""
+    said: Any = reading.description.said
+    if (said.x is None) != (said.y is None):
+        given = "y" if said.x is None else "x"
+        raise reading.description.error("x and y go together; give both, or none", [given])
+    if said.x is None:
+        return None
+    shown = ", ".join(quantity(one, si.Unit("m")) for one in (said.x, said.y))
+    reading.facts.append(("place", f"x, y = {shown}"))
+    return said.x, said.y
+
+
+def _line(reading: Reading) -> kinds.LineScan:
+    said: Any = reading.description.said
+    position = reading.take("position")
+    motion = motion_of(reading, said.frequency, amplitude=True)
+    order = np.argsort(position, kind="stable")
+    same = np.flatnonzero(np.diff(position[order]) == 0)
+    if same.size:
+        first, second = (int(order[same[0] + k]) for k in (0, 1))
+        raise reading.refuse(
+            "position", f"{both_rows(reading, first, second)} have one place", second
+        )
+    given = None if said.voltage is None else reading.given_voltage(said.voltage)
+    reading.facts.append(("frequency", quantity(said.frequency, _HZ)))
+    return kinds.LineScan(position[order], motion[order], said.frequency, given, _told(reading))
+
+
+def _grid(reading: Reading) -> kinds.GridScan:
+    said: Any = reading.description.said
+    x, y = reading.take("x"), reading.take("y")
+    motion = motion_of(reading, said.frequency, amplitude=True)
+    seen: dict[tuple[float, float], int] = {}
+    for row, place in enumerate(zip(x.tolist(), y.tolist(), strict=True)):
+        if place in seen:
+            raise reading.refuse("x", f"{both_rows(reading, seen[place], row)} have one place", row)
+        seen[place] = row
+    given = None if said.voltage is None else reading.given_voltage(said.voltage)
+    reading.facts.append(("frequency", quantity(said.frequency, _HZ)))
+    return kinds.GridScan(x, y, motion, said.frequency, given, _told(reading))
+
+
+def _ring_down(reading: Reading) -> kinds.RingDown:
+    time = reading.take("time")
+    motion = moment_by_moment(reading, time)
+    _, motion = _rising(reading, "time", time, motion)
+    return kinds.RingDown(time, motion, _told(reading))
+
+
+def _signals(reading: Reading) -> kinds.RawSignals:
+    time = reading.take("time")
+    voltage = reading.take("voltage")
+    require_rising(reading, "time", time)
+    even = np.linspace(time[0], time[-1], time.size)
+    step = even[1] - even[0]
+    off = np.abs(time - even)
+    gap = np.flatnonzero(np.diff(time) > (1 + _UNEVEN) * step)
+    if off.max() > _UNEVEN * step:
+        row = int(gap[0]) + 1 if gap.size else int(off.argmax())
+        raise reading.refuse(
+            "time",
+            f"the samples are not evenly spaced ({quantity(step, _S)} on average): samples are "
+            "missing before this row; give a record without a gap",
+            row,
+        )
+    motion = moment_by_moment(reading, even)
+    return kinds.RawSignals(even, voltage, motion, _told(reading))
+
+
+def _sweeps(reading: Reading) -> kinds.VoltageSweeps:
+    frequency = reading.take("frequency")
+    if not reading.has("voltage"):
+        raise reading.wanting("voltage", "sweeps at several voltages are told apart by it")
+    motion, voltage = motion_per_volt(reading, frequency)
+    assert voltage is not None
+    found, directions = [], []
+    for start, stop in _runs(frequency, voltage):
+        rows = slice(start, stop)
+        if stop - start < 3:
+            raise reading.refuse(
+                "frequency",
+                "a sweep begins here that has fewer than three rows; a sweep ends where the "
+                "voltage changes or the frequency turns around",
+                start,
+            )
+        up = frequency[stop - 1] > frequency[start]
+        step = slice(None, None, 1 if up else -1)
+        found.append(
+            kinds.FrequencyResponse(
+                frequency[rows][step],
+                motion[rows][step],
+                float(voltage[start]),
+                None,
+                _told(reading),
+            )
+        )
+        directions.append("up" if up else "down")
+    told = (f"{quantity(float(one.voltage or 0), si.Unit('V'))} {way}"
+            for one, way in zip(found, directions, strict=True))  # fmt: skip
+    reading.facts.append(("sweeps", ", ".join(told)))
+    return kinds.VoltageSweeps(tuple(found), tuple(directions), _told(reading))
+
+
+def joined_sweeps(
+    parts: Sequence[tuple[kinds.FrequencyResponse, Reading]], told: kinds.Told
+) -> kinds.VoltageSweeps:
+    """Sweeps that were read from files of their own, as one recording."""
+    down = [any(how.startswith("swept downwards") for _, how in read.facts) for _, read in parts]
+    directions = tuple("down" if one else "up" for one in down)
+    return kinds.VoltageSweeps(tuple(sweep for sweep, _ in parts), directions, told)
+
+
+def _runs(frequency: si.HertzArray, voltage: si.VoltArray) -> list[tuple[int, int]]:
+    """Where sweeps begin and end: at one voltage, the frequency going one way."""
+    starts, way = [0], 0.0
+    for row in range(1, frequency.size):
+        step = np.sign(frequency[row] - frequency[row - 1])
+        turned = step == 0 or (way != 0 and step != way)
+        if voltage[row] != voltage[row - 1] or turned:
+            starts.append(row)
+            way = 0.0
+        else:
+            way = float(step)
+    return list(zip(starts, [*starts[1:], frequency.size], strict=True))
+
+
+def _bench(reading: Reading) -> kinds.FrictionBench:
+    said: Any = reading.description.said
+    time = reading.take("time")
+    require_rising(reading, "time", time)
+    normal, tangential, position = (
+        reading.take(name) for name in ("normal_force", "tangential_force", "position")
+    )
+    if reading.has("vibration_amplitude"):
+        vibration = reading.take("vibration_amplitude", amplitude=True)
+    elif reading.has("voltage") and said.amplitude_per_volt is not None:
+        vibration = said.amplitude_per_volt * reading.take("voltage", amplitude=True)
+        shown = quantity(said.amplitude_per_volt, si.Unit("m/V"))
+        reading.facts.append(("vibration amplitude", f"the voltage times {shown}, as told"))
+    else:
+        raise reading.wanting(
+            "vibration_amplitude", "it is needed, or the voltage with amplitude_per_volt beside"
+        )
+    if said.frequency is not None:
+        reading.facts.append(("frequency", quantity(said.frequency, _HZ)))
+    return kinds.FrictionBench(
+        time, normal, tangential, position, vibration, _told(reading), said.frequency
+    )
+
+
+def _curve(reading: Reading) -> kinds.FrictionCurve:
+    said: Any = reading.description.said
+    amplitude = reading.take("vibration_amplitude", amplitude=True)
+    friction, spread = reading.take("relative_friction"), reading.take("spread")
+    order = np.argsort(amplitude, kind="stable")
+    given = (("frequency", "Hz"), ("normal_force", "N"), ("speed", "m/s"))
+    for name, unit in given:
+        reading.facts.append((words(name), quantity(getattr(said, name), si.Unit(unit))))
+    return kinds.FrictionCurve(
+        amplitude[order],
+        friction[order],
+        spread[order],
+        said.frequency,
+        said.normal_force,
+        said.speed,
+        _told(reading),
+        _display(reading),
+    )
+
+
+def _display(reading: Reading) -> str:
+    """The display that is named, the path of a file from where the description stands."""
+    said: Any = reading.description.said
+    path = reading.description.path
+    if said.display.endswith(".toml") and path is not None:
+        return str(path.parent / said.display)
+    return str(said.display)
+
+
+def _one_of(reading: Reading, pairs: tuple[tuple[str, str], ...]) -> tuple[str, str]:
+    """The pair of quantities that are both named, and no other is."""
+    named = {name for pair in pairs for name in pair if reading.has(name)}
+    for pair in pairs:
+        if named == set(pair):
+            return pair
+    shown = "; ".join(" with ".join(pair) for pair in pairs)
+    raise reading.description.error(
+        f"one pair must be named of an impedance: {shown}; named are "
+        f"{', '.join(sorted(named)) or 'none'}",
+        ["columns"],
+    )
+
+
+def _rising(
+    reading: Reading, name: str, values: si.FloatArray, other: Any
+) -> tuple[si.FloatArray, Any]:
+    order = rising_order(reading, name, values)
+    return values[order], other[order]
+
+
+def _told(reading: Reading) -> kinds.Told:
+    return reading.description.said.told(reading.table.file)
+
+
+_OF_KIND: Mapping[str, Callable[[Reading], kinds.Recording]] = {
+    "impedance": _impedance,
+    "frequency response": _response,
+    "line scan": _line,
+    "grid scan": _grid,
+    "ring-down": _ring_down,
+    "voltage sweeps": _sweeps,
+    "raw signals": _signals,
+    "friction bench": _bench,
+    "friction curve": _curve,
+}

@@ -1,0 +1,91 @@
+"""MATLAB files up to version 7: variables of one length become columns by their names."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import ConfigError
+from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.measure.recordings.raw_table import RawTable
+from squeezefilm.regular_file import read_regular
+
+
+def read_matlab(path: Path) -> RawTable:
+    """The table in a MATLAB file: of the variables (also those within one structure) the ones of
+    the commonest length; ``H real`` and ``H imaginary`` of a complex H, ``data 1``, ``data 2`` of
+    the columns of a matrix.
+
+    Raises `ConfigError` for version 7.3 (an HDF5 file), for what cannot be read, and where there is
+    no variable of two numbers or more.
+    """
+    data = read_regular(path, RECORDING_BYTES, "a MATLAB file")
+    if b"MATLAB 7.3" in data[:128] or data[:8] == b"\x89HDF\r\n\x1a\n":
+        raise ConfigError(
+            "is a MATLAB file of version 7.3 (HDF5), which is not read; save it in MATLAB with "
+            "save('file.mat', '-v7')",
+            file=path,
+        )
+    variables = _variables(data, path)
+    columns = [pair for name, value in variables for pair in _columns(name, value)]
+    lengths = [column.size for _, column in columns]
+    if not lengths:
+        there = ", ".join(name for name, _ in variables) or "none"
+        raise ConfigError(f"holds no variable with a row of numbers; it holds: {there}", file=path)
+    length = max(set(lengths), key=lambda one: (lengths.count(one), one))
+    kept = [(name, column) for name, column in columns if column.size == length]
+    left = [name for name, column in columns if column.size != length]
+    notes = (f"variables of another length were left out: {', '.join(left)}",) if left else ()
+    names = tuple(name for name, _ in kept)
+    values = np.stack([column for _, column in kept], axis=1)
+    table = RawTable(path, "MATLAB file", names, values, notes=notes)
+    table.require_finite()
+    return table
+
+
+def _variables(data: bytes, path: Path) -> list[tuple[str, Any]]:
+    """The variables by name, those of a structure as its own."""
+    from scipy.io import loadmat
+
+    try:
+        stream: Any = io.BytesIO(data)
+        found = loadmat(stream, squeeze_me=True, struct_as_record=True)
+    # Damaged files end in errors of any type, of zlib, of struct, of NumPy.
+    except Exception as error:
+        why = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise ConfigError(
+            f"cannot be read as a MATLAB file: {why}; save it again with save('file.mat', '-v7')",
+            file=path,
+        ) from error
+    variables = []
+    for name, value in found.items():
+        if name.startswith("__"):
+            continue
+        fields = getattr(getattr(value, "dtype", None), "names", None)
+        if fields and np.ndim(value) == 0:
+            variables += [(field, np.squeeze(value[field].item())) for field in fields]
+        else:
+            variables.append((name, value))
+    return variables
+
+
+def _columns(name: str, value: Any) -> list[tuple[str, si.FloatArray]]:
+    """The columns of one variable, none of what is no number."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "iufc" or array.ndim not in (1, 2) or array.size < 2:
+        return []
+    if array.ndim == 2:
+        parts = [(f"{name} {k + 1}", array[:, k]) for k in range(array.shape[1])]
+    else:
+        parts = [(name, array)]
+    found = []
+    for label, part in parts:
+        if np.iscomplexobj(part):
+            found += [(f"{label} real", part.real), (f"{label} imaginary", part.imag)]
+        else:
+            found.append((label, part))
+    return [(label, np.asarray(part, dtype=float)) for label, part in found]

@@ -1,0 +1,266 @@
+"""Columns of a file as quantities: units and conventions turned into SI and zero-to-peak, each with
+a sentence that says so, and what cannot be right refused at its line."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import ConfigError, QuantityError
+from squeezefilm.hard_limits import FORCE, FREQUENCY, SIDE, TOUCHED_VIBRATION, VIBRATION
+from squeezefilm.measure.recordings.description import (
+    CONVENTIONS,
+    MOST_VOLTAGE,
+    Column,
+    Description,
+    Given,
+)
+from squeezefilm.measure.recordings.raw_table import RawTable
+
+_SCALE = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)\s*")
+_LEAST_ROWS = 3
+
+
+class Quantity(NamedTuple):
+    """What a column may hold: its unit, the largest magnitude that is believed, the least value."""
+
+    unit: si.Unit
+    most: float
+    least: float = -math.inf
+
+
+_M, _HZ, _S, _N, _V = (si.Unit(symbol) for symbol in ("m", "Hz", "s", "N", "V"))
+_OHM, _SIEMENS, _RAD, _ONE = (si.Unit(symbol) for symbol in ("ohm", "S", "rad", "1"))
+_SPEED, _PER_VOLT, _SPEED_PER_VOLT = si.Unit("m/s"), si.Unit("m/V"), si.Unit("m/s/V")
+
+QUANTITIES: dict[str, Quantity] = {
+    "frequency": Quantity(_HZ, FREQUENCY.most, FREQUENCY.least),
+    "magnitude": Quantity(_OHM, 1e12, 1e-6),
+    "admittance_magnitude": Quantity(_SIEMENS, 1e6, 1e-12),
+    "resistance": Quantity(_OHM, 1e12),
+    "reactance": Quantity(_OHM, 1e12),
+    "conductance": Quantity(_SIEMENS, 1e6),
+    "susceptance": Quantity(_SIEMENS, 1e6),
+    "phase": Quantity(_RAD, 1e6),
+    "displacement": Quantity(_M, VIBRATION.most),
+    "displacement_imaginary": Quantity(_M, VIBRATION.most),
+    # A millimetre at 30 kHz; nothing that is meant here moves faster.
+    "velocity": Quantity(_SPEED, 200.0),
+    "velocity_imaginary": Quantity(_SPEED, 200.0),
+    "voltage": Quantity(_V, MOST_VOLTAGE),
+    "coherence": Quantity(_ONE, 1.000001, 0.0),
+    "position": Quantity(_M, SIDE.most),
+    "x": Quantity(_M, SIDE.most),
+    "y": Quantity(_M, SIDE.most),
+    "time": Quantity(_S, 1e9),
+    "normal_force": Quantity(_N, FORCE.most),
+    "tangential_force": Quantity(_N, FORCE.most),
+    "vibration_amplitude": Quantity(_M, TOUCHED_VIBRATION.most, 0.0),
+    "relative_friction": Quantity(_ONE, 1e3),
+    "spread": Quantity(_ONE, 1e3, 0.0),
+}
+_PER_VOLT_OF = {
+    "displacement": Quantity(_PER_VOLT, VIBRATION.most),
+    "displacement_imaginary": Quantity(_PER_VOLT, VIBRATION.most),
+    "velocity": Quantity(_SPEED_PER_VOLT, 200.0),
+    "velocity_imaginary": Quantity(_SPEED_PER_VOLT, 200.0),
+}
+"""The same over the voltage of the drive."""
+
+
+@dataclass
+class Reading:
+    """A table as it is taken apart by its description; facts and doubts are kept on the way."""
+
+    description: Description
+    table: RawTable
+    columns: Any
+    facts: list[tuple[str, str]] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
+
+    def has(self, name: str) -> bool:
+        """Whether the description names a column for a quantity."""
+        return getattr(self.columns, name, None) is not None
+
+    def wanting(self, name: str, why: str) -> ConfigError:
+        """The error of a quantity for which no column is named."""
+        unit = QUANTITIES[name].unit.symbol
+        return self.description.error(
+            f"no column is named for the {words(name)}: {why}; write {name} = "
+            f"{{ column = …, unit = "
+            f'"{unit}" }} (the file has {self.table.columns_in_words})',
+            ["columns"],
+        )
+
+    def refuse(self, name: str, message: str, row: int | None = None) -> ConfigError:
+        """An error in the column of a quantity, at a row."""
+        return self.table.error(f"{words(name)}: {message}", row, self._place(name))
+
+    def per_volt(self, name: str) -> bool:
+        """Whether the unit of a motion is one over volts."""
+        _, dimension = self._scale(name)
+        return name in _PER_VOLT_OF and dimension == _PER_VOLT_OF[name].unit.dimension
+
+    def take(self, name: str, *, amplitude: bool = False) -> si.FloatArray:
+        """The SI values of a quantity, shape (rows,); with `amplitude` zero-to-peak ones, of which
+        the description must say how they are given.
+
+        Raises `ConfigError`: a column that is not there, a unit of another dimension or other than
+        the file's own, a convention that is missing or has no place, a value that cannot be.
+        """
+        if not self.has(name):
+            raise self.wanting(name, "it is needed")
+        column, place = self._column(name), self._place(name)
+        if self.table.values.shape[0] < _LEAST_ROWS:
+            count = self.table.values.shape[0]
+            raise self.table.error(
+                f"has {count} rows, too few for a recording; give the whole file"
+            )
+        scale, dimension = self._scale(name)
+        meant = QUANTITIES[name]
+        if self.per_volt(name):
+            meant = _PER_VOLT_OF[name]
+        if dimension != meant.unit.dimension:
+            wanted = si.allowed_units(meant.unit)
+            raise self.description.error(
+                f"{self._unit_words(column)} is no unit of a {words(name)}; write one of {wanted}",
+                ["columns", name, "unit"],
+            )
+        self._require_own_unit(name, column, place)
+        values = scale * self.table.values[:, place]
+        said = f"column {place + 1}"
+        said += f" '{self.table.names[place]}'" if self.table.names[place] else ""
+        said += f" in {self._unit_words(column)}"
+        if amplitude:
+            values = values * self._convention(name, column)
+            said += f", given as {column.given_as}"
+        elif column.given_as is not None:
+            raise self.description.error(
+                f'given_as = "{column.given_as}" has no place here: the {words(name)} is '
+                + ("over volts of the same kind" if self.per_volt(name) else "no amplitude")
+                + "; delete it",
+                ["columns", name, "given_as"],
+            )
+        self._require_believable(name, values, meant)
+        low, high = (quantity(value, meant.unit) for value in (values.min(), values.max()))
+        if name == "phase":
+            low, high = (f"{np.degrees(value):.1f} deg" for value in (values.min(), values.max()))
+        self.facts.append((words(name), f"{low} to {high}, from {said}"))
+        return np.asarray(values)
+
+    def given_voltage(self, given: Given) -> si.Volt:
+        """The zero-to-peak amplitude (V) of a voltage that was the same throughout."""
+        volts = given.amplitude * CONVENTIONS[given.given_as]
+        shown = quantity(volts, _V)
+        self.facts.append(("drive voltage", f"{shown} zero-to-peak, given as {given.given_as}"))
+        return volts
+
+    def _column(self, name: str) -> Column:
+        found: Column = getattr(self.columns, name)
+        return found
+
+    def _place(self, name: str) -> int:
+        wanted = self._column(name).column
+        place = self.table.index(wanted)
+        if place is None:
+            near = si.did_you_mean(str(wanted), self.table.known_names)
+            raise self.description.error(
+                f"the file has no column {wanted!r}.{near} It has {self.table.columns_in_words}",
+                ["columns", name, "column"],
+            )
+        return place
+
+    def _scale(self, name: str) -> tuple[float, si.Dimension]:
+        """The scale to SI and the dimension of a column's unit, times its scale."""
+        column = self._column(name)
+        factor, total = 1.0, None
+        for key, text in (("unit", column.unit), ("scale", column.scale)):
+            if text is None:
+                continue
+            number = 1.0
+            if key == "scale":
+                match = _SCALE.fullmatch(text)
+                if match is None:
+                    raise self.description.error(
+                        f"'{text}' is no scale; write what one recorded unit stands for, like "
+                        '"125 mm/s/V"',
+                        ["columns", name, key],
+                    )
+                number, text = float(match[1]), match[2]
+            try:
+                scale, dimension = si.parse_unit(text)
+            except QuantityError as error:
+                decibels = "; decibels are not read: export linear values" if "dB" in text else ""
+                allowed = si.allowed_units(QUANTITIES[name].unit)
+                raise self.description.error(
+                    f"{error}{decibels}; units of a {words(name)}: {allowed}",
+                    ["columns", name, key],
+                ) from error
+            factor *= number * float(scale)
+            total = dimension if total is None else _sum(total, dimension)
+        assert total is not None
+        return factor, total
+
+    def _unit_words(self, column: Column) -> str:
+        return column.unit if column.scale is None else f"{column.unit} times {column.scale}"
+
+    def _require_own_unit(self, name: str, column: Column, place: int) -> None:
+        """Refuse a unit other than the one that the file's own header has in brackets."""
+        own = self.table.unit_in_name(place)
+        if own is None or si.parse_unit(own) == si.parse_unit(column.unit):
+            return
+        where = "" if self.table.header_line is None else f" (line {self.table.header_line})"
+        raise self.description.error(
+            f"the description says {column.unit}, and the file{where}, column {place + 1}, "
+            f"'{self.table.names[place]}'; write unit = \"{own}\", or mend the file's header",
+            ["columns", name, "unit"],
+        )
+
+    def _convention(self, name: str, column: Column) -> float:
+        if column.given_as is None:
+            raise self.description.error(
+                f"it must be said how the amplitude of the {words(name)} is given, since that "
+                "changes "
+                'it twofold; write given_as = "zero-to-peak", "peak-to-peak" or "rms" in its '
+                "braces",
+                ["columns", name],
+            )
+        return CONVENTIONS[column.given_as]
+
+    def _require_believable(self, name: str, values: si.FloatArray, meant: Quantity) -> None:
+        bad = np.flatnonzero((np.abs(values) > meant.most) | (values < meant.least))
+        if not bad.size:
+            return
+        row = int(bad[0])
+        least = "" if meant.least == -math.inf else f"from {quantity(meant.least, meant.unit)} "
+        raise self.refuse(
+            name,
+            f"{quantity(values[row], meant.unit)} cannot be right; {least}up to "
+            f"{quantity(meant.most, meant.unit)} are believed: is "
+            f"{self._unit_words(self._column(name))} the unit of this column, and is it the column "
+            "that is meant?",
+            row,
+        )
+
+
+def words(name: str) -> str:
+    """A quantity's name as a person reads it."""
+    return {"magnitude": "impedance magnitude"}.get(name, name.replace("_", " "))
+
+
+def quantity(value: float, unit: si.Unit) -> str:
+    """A value with its unit, with the micro sign."""
+    if unit == _OHM and abs(value) >= 1e4:
+        return f"{value / 1e3:.4g} kohm"
+    head, separator, symbol = si.format_quantity(float(value), unit).rpartition(" ")
+    return f"{head}{separator}µ{symbol[1:]}" if symbol[:1] == "u" else f"{head}{separator}{symbol}"
+
+
+def _sum(first: si.Dimension, second: si.Dimension) -> si.Dimension:
+    a, b, c, d, e, f = (x + y for x, y in zip(first, second, strict=True))
+    return a, b, c, d, e, f

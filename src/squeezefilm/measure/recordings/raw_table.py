@@ -1,0 +1,103 @@
+"""The numbers of a file as columns with names, before anybody says what they are."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import ConfigError, QuantityError
+
+_UNIT_IN_NAME = re.compile(r"[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*$")
+
+
+@dataclass(frozen=True, eq=False)
+class RawTable:
+    """Columns of a file with their names ("" where it names none), shape of `values` (rows,
+    columns).
+
+    `lines` are the rows' lines in the file, counted from 1 (None in a file that has no lines),
+    `header_line` that of the names. `format` is what the file was read as; `notes` and `doubts` are
+    what a person should know of the reading. `described` are the quantities that the file itself
+    says its columns hold, by name: column and unit.
+    """
+
+    file: Path
+    format: str
+    names: tuple[str, ...]
+    values: si.FloatArray
+    lines: si.IntArray | None = None
+    header_line: int | None = None
+    notes: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
+    described: tuple[tuple[str, str, str], ...] = ()
+
+    def error(self, message: str, row: int | None = None, column: int | None = None) -> ConfigError:
+        """An error at a row and a column (both from 0), with the line and the column from 1."""
+        line = None
+        if row is not None and self.lines is not None:
+            line = int(self.lines[row])
+        elif row is not None:
+            message = f"value {row + 1}: {message}"
+        at = None if column is None else column + 1
+        return ConfigError(message, file=self.file, line=line, column=at)
+
+    def index(self, wanted: str | int) -> int | None:
+        """The place (from 0) of a column by its number from 1, or by its name; None if none is so
+        called. A unit in brackets at the end of a name may be left out."""
+        if isinstance(wanted, int):
+            return wanted - 1 if 1 <= wanted <= self.values.shape[1] else None
+        for reading in (str, _folded, _without_unit):
+            found = [k for k, name in enumerate(self.names) if reading(name) == reading(wanted)]
+            if len(found) == 1:
+                return found[0]
+        return None
+
+    def unit_in_name(self, column: int) -> str | None:
+        """The unit that a column's name ends with in brackets, where it is one that is known."""
+        match = _UNIT_IN_NAME.search(self.names[column])
+        if match is None:
+            return None
+        try:
+            si.parse_unit(match[1])
+        except QuantityError:
+            return None
+        return match[1]
+
+    @property
+    def known_names(self) -> list[str]:
+        """What columns may be called: their names, whole and without a unit."""
+        bare = [_UNIT_IN_NAME.sub("", name).strip() for name in self.names]
+        return [name for name in (*bare, *self.names) if name]
+
+    @property
+    def columns_in_words(self) -> str:
+        """The columns by number and name, for messages."""
+        shown = (f"{k} '{name}'" if name else f"{k}" for k, name in enumerate(self.names, 1))
+        return ", ".join(shown)
+
+    def require_finite(self) -> None:
+        """Refuse a table that holds no row, or what is no finite number, with its place."""
+        if not self.values.size:
+            raise self.error("holds no numbers; give a file with a table of them")
+        bad = np.argwhere(~np.isfinite(self.values))
+        if bad.size:
+            row, column = (int(one) for one in bad[0])
+            value = self.values[row, column]
+            raise self.error(
+                f"{value} is no finite number; leave the whole row out where nothing was measured "
+                f"({len(bad)} such in this file)",
+                row,
+                column,
+            )
+
+
+def _folded(name: str) -> str:
+    return " ".join(name.split()).casefold()
+
+
+def _without_unit(name: str) -> str:
+    return _folded(_UNIT_IN_NAME.sub("", name))

@@ -1,0 +1,247 @@
+"""`read_recording` and `check_recording`: a file of a bench, with its description beside it."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, cast
+
+from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.hard_limits import DESCRIPTION_BYTES
+from squeezefilm.measure.recordings.analysers import is_4294a, read_4294a
+from squeezefilm.measure.recordings.assembled import assembled, joined_sweeps
+from squeezefilm.measure.recordings.description import (
+    KINDS,
+    Described,
+    DescribedImpedance,
+    DescribedSweeps,
+    Description,
+    load_description,
+)
+from squeezefilm.measure.recordings.doubts import doubts_of
+from squeezefilm.measure.recordings.kinds import FrequencyResponse, Recording
+from squeezefilm.measure.recordings.matlab import read_matlab
+from squeezefilm.measure.recordings.quantities_read import Reading
+from squeezefilm.measure.recordings.raw_table import RawTable
+from squeezefilm.measure.recordings.text_table import read_text_table
+from squeezefilm.measure.recordings.universal import SUFFIXES, read_universal
+from squeezefilm.regular_file import read_regular_text
+from squeezefilm.results import Result, to_json
+
+_SCANS = ("line scan", "grid scan")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RecordingCheck(Result):
+    """What was read from a file: the recording, and in words how it was taken.
+
+    `facts` are pairs of what and how (range, column, unit, how an amplitude was given), `doubts`
+    sentences about what may be wrong; nothing doubtful was corrected. `file` is the data's, and
+    `description` the TOML file's (None where the data describe themselves).
+    """
+
+    recording: Recording
+    kind: str
+    file: Path
+    description: Path | None
+    points: int
+    facts: tuple[tuple[str, str], ...]
+    doubts: tuple[str, ...]
+    _shown: ClassVar[str] = "kind file points"
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints: how the file was read, and not its numbers."""
+        return {
+            "kind": self.kind,
+            "file": str(self.file),
+            "description": None if self.description is None else str(self.description),
+            "points": self.points,
+            "facts": [{"what": what, "how": how} for what, how in self.facts],
+            "doubts": list(self.doubts),
+            "told": to_json(self.recording.told),
+        }
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A file of a folder that could not be read, and why."""
+
+    file: Path
+    why: str
+
+
+@dataclass(frozen=True, eq=False)
+class FolderCheck:
+    """All recordings of a folder, those that were read and those that were refused."""
+
+    checks: tuple[RecordingCheck, ...]
+    refused: tuple[Refused, ...]
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints."""
+        return {
+            "recordings": [one.summary() for one in self.checks],
+            "refused": [{"file": str(one.file), "why": one.why} for one in self.refused],
+        }
+
+
+def read_recording(path: str | Path, described: str | Path | None = None) -> Recording:
+    """The recording in a file of a bench, in SI units and zero-to-peak amplitudes.
+
+    `path` is the data's file (text, Universal File, MATLAB up to version 7, an export of the 4294A)
+    or the TOML file that describes it; `described` names that file where it does not stand beside
+    the data under the same name. See ``docs/reference/measured-data.md`` for the keys.
+
+    Raises:
+        ConfigError: a file or a description that cannot be used, with file, line and column or key;
+            nothing is guessed about units, nor about how an amplitude is given.
+    """
+    return check_recording(path, described).recording
+
+
+def check_recording(path: str | Path, described: str | Path | None = None) -> RecordingCheck:
+    """What `read_recording` reads, with how it was taken and what is doubtful of it. Raises as it
+    does."""
+    file, description = _found(Path(path), None if described is None else Path(described))
+    recording, readings = _read(file, description)
+    facts = [("kind", description.kind)]
+    for reading in readings:
+        table = reading.table
+        if len(readings) > 1:
+            facts.append(("file", table.file.name))
+        facts += [("read as", table.format)]
+        facts.append(("points", f"{table.values.shape[0]} rows of {table.values.shape[1]} columns"))
+        facts += reading.facts
+        facts += [("of the file", note) for note in table.notes]
+    told = recording.told
+    said = (("measured by", told.who), ("when", told.when), ("instrument", told.instrument),
+            ("licence", told.licence), ("source", told.source))  # fmt: skip
+    facts += [(what, how) for what, how in said if how]
+    if told.temperature is not None:
+        facts.append(("temperature", f"{told.temperature:.4g} K"))
+    return RecordingCheck(
+        recording=recording,
+        kind=description.kind,
+        file=file,
+        description=description.path,
+        points=sum(reading.table.values.shape[0] for reading in readings),
+        facts=tuple(facts),
+        doubts=(*(one for reading in readings for one in reading.doubts), *doubts_of(recording)),
+    )
+
+
+def _read(file: Path, description: Description) -> tuple[Recording, list[Reading]]:
+    """The recording of a description, and how each of its files was taken."""
+    said = description.said
+    if not isinstance(said, DescribedSweeps) or not said.sweeps:
+        recording, reading = assembled(description, _table(file, description))
+        return recording, [reading]
+    parts: list[tuple[FrequencyResponse, Reading]] = []
+    for one in said.responses():
+        sweep = dataclasses.replace(description, kind="frequency response", said=one)
+        found, reading = assembled(sweep, _table(file.parent / one.file, sweep))
+        parts.append((cast(FrequencyResponse, found), reading))
+    return joined_sweeps(parts, said.told(file)), [reading for _, reading in parts]
+
+
+def check_folder(folder: str | Path) -> FolderCheck:
+    """`check_recording` for all recordings of a folder: what a TOML file with a kind describes, and
+    what describes itself. Files that cannot be read are among the `refused`.
+
+    Raises `InputError` for what is no folder, or one without any recording.
+    """
+    root = Path(folder)
+    if not root.is_dir():
+        raise InputError(f"{root} is no folder; give one with recordings in it")
+    checks, refused, read = [], [], set()
+    descriptions = [one for one in sorted(root.glob("*.toml")) if _has_kind(one)]
+    themselves = [one for one in sorted(root.iterdir()) if one.is_file() and is_4294a(one)]
+    for path in [*descriptions, *themselves]:
+        if path in read:
+            continue
+        try:
+            found = check_recording(path)
+        except ConfigError as error:
+            refused.append(Refused(path, str(error)))
+            continue
+        read.add(found.file)
+        checks.append(found)
+    if not checks and not refused:
+        kinds = ", ".join(f'"{one}"' for one in KINDS)
+        raise InputError(
+            f"{root} holds no recording: none of its TOML files has a kind ({kinds}); write one "
+            "beside each file of data"
+        )
+    return FolderCheck(tuple(checks), tuple(refused))
+
+
+def _has_kind(path: Path) -> bool:
+    """Whether a TOML file describes a recording; a display in the same folder does not."""
+    try:
+        text = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+    except ConfigError:
+        return False
+    return any(line.split("=")[0].strip() == "kind" for line in text.split("\n"))
+
+
+def _found(path: Path, described: Path | None) -> tuple[Path, Description]:
+    """The data's file and what describes it."""
+    if path.suffix.lower() == ".toml":
+        description = load_description(path)
+        return _data_of(path, description.said), description
+    if described is None and path.with_suffix(".toml").is_file():
+        described = path.with_suffix(".toml")
+    if described is not None:
+        return path, load_description(described)
+    if is_4294a(path):
+        return path, Description("impedance", DescribedImpedance(kind="impedance"))
+    raise _undescribed(path)
+
+
+def _data_of(path: Path, said: Described) -> Path:
+    """The file that a description names, or the one beside it under the same name; of sweeps with
+    files of their own the description's."""
+    if isinstance(said, DescribedSweeps) and said.sweeps:
+        return path
+    if said.file:
+        return path.parent / said.file
+    beside = sorted(one for one in path.parent.glob(f"{path.stem}.*") if one.suffix != ".toml")
+    if len(beside) == 1:
+        return beside[0]
+    there = ", ".join(one.name for one in beside) or "none"
+    raise ConfigError(
+        f"one file of data of the same name must stand beside it, and there are: {there}; name it "
+        'with file = "…"',
+        file=path,
+    )
+
+
+def _table(file: Path, description: Description) -> RawTable:
+    """The table in a file, by what the file is."""
+    suffix = file.suffix.lower()
+    if suffix in SUFFIXES:
+        at = getattr(description.said, "frequency", None)
+        return read_universal(file, at if description.kind in _SCANS else None)
+    if suffix == ".mat":
+        return read_matlab(file)
+    if suffix in (".xls", ".xlsx", ".ods"):
+        raise ConfigError("is a spreadsheet; save its table as CSV", file=file)
+    if is_4294a(file):
+        return read_4294a(file)
+    return read_text_table(file, description.said)
+
+
+def _undescribed(path: Path) -> ConfigError:
+    """What to write where nothing says what the columns of a file are."""
+    empty = Description("", Described())
+    columns = _table(path, empty).columns_in_words
+    kinds = ", ".join(f'"{one}"' for one in KINDS)
+    return ConfigError(
+        f"nothing says what its columns hold; write {path.with_suffix('.toml').name} beside it, "
+        "for "
+        'instance\n  kind = "impedance"\n  [columns]\n  frequency = { column = 1, unit = "Hz" }\n'
+        '  magnitude = { column = 2, unit = "ohm" }\n  phase = { column = 3, unit = "deg" }\n'
+        f"(kinds: {kinds}; columns of the file: {columns})",
+        file=path,
+    )

@@ -1,0 +1,304 @@
+"""Tables of numbers in text: which sign parts the cells, which one the decimals, where the names
+stand.
+
+Nothing here knows what a column means. What can be found out is found out, what contradicts itself
+is refused with its line and column.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import ConfigError, QuantityError
+from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.measure.recordings.description import Described
+from squeezefilm.measure.recordings.raw_table import RawTable
+from squeezefilm.regular_file import read_regular
+
+DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ",", "blank": None}
+_WORDS = {"\t": "tabs", ";": "semicolons", ",": "commas", None: "blanks"}
+_COMMENTS = ("#", "%", "//", "!")
+_SAMPLE = 400
+_SHOWN = 40
+
+
+@dataclass(frozen=True)
+class _Notation:
+    """What parts the cells of a line, what the decimals of a number, and how many cells there
+    are."""
+
+    delimiter: str | None
+    decimal: str
+    cells: int
+
+    def split(self, line: str) -> list[str]:
+        """The cells of a line, without quotation marks; a delimiter may end the line."""
+        cells = [cell.strip(" \t\"'") for cell in line.split(self.delimiter)]
+        return cells[:-1] if len(cells) > self.cells > 0 and not cells[-1] else cells
+
+    def number(self, cell: str) -> float:
+        """The number in a cell. Raises `ValueError` for what is none."""
+        if "_" in cell or (self.decimal == "," and "." in cell):
+            raise ValueError(cell)
+        return float(cell.replace(",", ".") if self.decimal == "," else cell)
+
+    def is_row(self, line: str) -> bool:
+        """Whether a line is a row of numbers, as many as there are columns."""
+        cells = self.split(line)
+        return len(cells) == self.cells and all(map(self.is_number, cells))
+
+    def is_number(self, cell: str) -> bool:
+        """Whether a cell holds a number; NaN is one, to be refused with its place."""
+        try:
+            self.number(cell)
+        except ValueError:
+            return False
+        return True
+
+    @property
+    def words(self) -> str:
+        """How numbers are written, for people."""
+        point = "a comma" if self.decimal == "," else "a point"
+        return f"{_WORDS[self.delimiter]} between the columns, decimals after {point}"
+
+
+def decoded(path: Path) -> tuple[str, list[str]]:
+    """The text of a file with "\\n" at line ends, and what is to be said of its encoding.
+
+    Raises `ConfigError` for a file that cannot be read or holds no text.
+    """
+    data = read_regular(path, RECORDING_BYTES, "a file with a table of numbers")
+    notes = []
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        encoding = "utf-16"
+    elif b"\0" in data[:4096]:
+        raise ConfigError(
+            "holds bytes that no text has; give a text, a Universal File (.uff, .unv) or a MATLAB "
+            "file (.mat)",
+            file=path,
+        )
+    else:
+        encoding = "utf-8-sig"
+    try:
+        text = data.decode(encoding)
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+        notes.append("the file is no UTF-8 text and was read as Latin-1")
+    if "\0" in text:
+        line = text.count("\n", 0, text.index("\0")) + 1
+        raise ConfigError("holds a NUL, which no text has", file=path, line=line)
+    return text.replace("\r\n", "\n").replace("\r", "\n"), notes
+
+
+def read_text_table(path: Path, said: Described | None = None) -> RawTable:
+    """The table in a text file, written as `said` tells, or as can be found out.
+
+    Raises `ConfigError`, with line and column, for a row with another count of cells than the
+    others, and for a cell that is no finite number.
+    """
+    text, notes = decoded(path)
+    lines = text.split("\n")
+    numbered = [
+        (number, line)
+        for number, line in enumerate(lines, 1)
+        if line.strip() and not line.lstrip().startswith(_COMMENTS)
+    ]
+    notation = _notation(numbered, said, path)
+    first = next(k for k, (_, line) in enumerate(numbered) if notation.is_row(line))
+    rows = numbered[first:]
+    values = _values(rows, notation, path)
+    header_line, names = _names(lines, rows[0][0], notation, said, path)
+    before = [number for number, _ in numbered[:first] if number != header_line]
+    if before:
+        notes.append(f"{len(before)} lines before the table were not read as numbers")
+    cut = _perhaps_cut(text, rows)
+    table = RawTable(
+        file=path,
+        format=f"text, {notation.words}",
+        names=names,
+        values=values,
+        lines=np.array([number for number, _ in rows]),
+        header_line=header_line,
+        notes=tuple(notes),
+        doubts=() if cut is None else (cut,),
+    )
+    table.require_finite()
+    return table
+
+
+def _notation(numbered: Sequence[tuple[int, str]], said: Described | None, path: Path) -> _Notation:
+    """The notation in which most lines are rows of numbers; of equals the first."""
+    sample = [line for _, line in numbered[:_SAMPLE]] + [line for _, line in numbered[-20:]]
+    delimiter = None if said is None else said.delimiter
+    decimal = None if said is None else said.decimal
+    wanted = DELIMITERS if delimiter is None else {delimiter: DELIMITERS[delimiter]}
+    best, most = None, 0
+    for one in wanted.values():
+        for point in (".", ",") if decimal is None else (decimal,):
+            if one == point:
+                continue
+            trial = _Notation(one, point, 0)
+            counts: Counter[int] = Counter()
+            for line in sample:
+                cells = trial.split(line)
+                while cells and not cells[-1]:
+                    cells.pop()
+                if len(cells) > 1 and all(map(trial.is_number, cells)):
+                    counts[len(cells)] += 1
+            if counts and (found := counts.most_common(1)[0])[1] > most:
+                best, most = _Notation(one, point, found[0]), found[1]
+    if best is None:
+        told = "" if delimiter is None and decimal is None else " as delimiter and decimal tell"
+        at = numbered[0][0] if numbered else None
+        raise ConfigError(
+            f"holds no line with two numbers or more{told}; give a table of numbers, a row a line",
+            file=path,
+            line=at,
+        )
+    return best
+
+
+def _values(rows: Sequence[tuple[int, str]], notation: _Notation, path: Path) -> si.FloatArray:
+    """The numbers of all rows, shape (rows, columns)."""
+    found = np.empty((len(rows), notation.cells))
+    for k, (number, line) in enumerate(rows):
+        cells = notation.split(line)
+        if len(cells) != notation.cells:
+            raise ConfigError(_miscounted(cells, notation, last=k == len(rows) - 1), file=path,
+                              line=number, column=min(len(cells), notation.cells + 1))  # fmt: skip
+        for column, cell in enumerate(cells):
+            try:
+                found[k, column] = notation.number(cell)
+            except ValueError:
+                raise ConfigError(
+                    _no_number(cell, notation), file=path, line=number, column=column + 1
+                ) from None
+    return found
+
+
+def _miscounted(cells: Sequence[str], notation: _Notation, *, last: bool) -> str:
+    said = f"has {len(cells)} cells where the rows before have {notation.cells}"
+    if last and len(cells) < notation.cells:
+        return f"{said}: the file ends within a row; copy it again, or delete the row"
+    return f"{said}; mend the row or delete it"
+
+
+def _no_number(cell: str, notation: _Notation) -> str:
+    shown = cell if len(cell) <= _SHOWN else f"{cell[:_SHOWN]}…"
+    if not cell:
+        return "the cell is empty; leave the whole row out where nothing was measured"
+    if notation.decimal == "." and re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", cell):
+        return (
+            f"'{shown}' has its decimals after a comma, and other rows after a point; write all "
+            "of them alike"
+        )
+    if notation.decimal == "," and "." in cell:
+        return (
+            f"'{shown}' has a point, and other rows have their decimals after a comma; write all "
+            "of them alike"
+        )
+    return f"'{shown}' is no number; mend it, or delete the row"
+
+
+def _names(
+    lines: Sequence[str], first: int, notation: _Notation, said: Described | None, path: Path
+) -> tuple[int | None, tuple[str, ...]]:
+    """The line of the columns' names, told or the last one above the numbers that fits, and
+    they."""
+    nameless = ("",) * notation.cells
+    told = None if said is None else said.header
+    if told == 0:
+        return None, nameless
+    if told is not None:
+        if not 1 <= told < first:
+            raise ConfigError(
+                f"header = {told}, and the first row of numbers stands in line {first}; tell a "
+                "line before it, or 0 for none",
+                file=path,
+            )
+        cells = _header_cells(lines[told - 1], notation)
+        if len(cells) != notation.cells:
+            raise ConfigError(
+                f"the line of the header has {len(cells)} cells, and the rows have "
+                f"{notation.cells}",
+                file=path,
+                line=told,
+            )
+        return told, tuple(cells)
+    above = [number for number in range(first - 1, 0, -1) if lines[number - 1].strip()]
+    if not above:
+        return None, nameless
+    cells = _header_cells(lines[above[0] - 1], notation)
+    if notation.delimiter == "," and 2 * len(cells) == notation.cells and len(cells) > 1:
+        raise ConfigError(
+            f"has {notation.cells} cells where the header above has {len(cells)}: decimals after a "
+            "comma and commas between the columns cannot be told apart; export it with semicolons "
+            "or tabs, or with decimal points",
+            file=path,
+            line=first,
+            column=len(cells) + 1,
+        )
+    if len(cells) != notation.cells:
+        return None, nameless
+    if any(map(notation.is_number, cells)):
+        other = next(one for one in cells if not notation.is_number(one))
+        raise ConfigError(
+            f"'{other}' stands beside a number, above the first row of numbers: mend the row if it "
+            f"is one, or write header = {above[0]} if it holds the columns' names (0 for a file "
+            "without)",
+            file=path,
+            line=above[0],
+            column=cells.index(other) + 1,
+        )
+    if all(_is_unit(cell) for cell in cells) and len(above) > 1:
+        upper = _header_cells(lines[above[1] - 1], notation)
+        if len(upper) == notation.cells:
+            joined = (f"{a} ({b.strip('()[] ')})" for a, b in zip(upper, cells, strict=True))
+            return above[0], tuple(joined)
+    return above[0], tuple(cells)
+
+
+def _is_unit(cell: str) -> bool:
+    try:
+        si.parse_unit(cell.strip("()[] ") or "1")
+    except QuantityError:
+        return False
+    return True
+
+
+def _header_cells(line: str, notation: _Notation) -> list[str]:
+    """The names in a line, which may stand between quotation marks, or behind a comment's sign."""
+    bare = line.strip()
+    for sign in _COMMENTS:
+        bare = bare.removeprefix(sign).lstrip() if bare.startswith(sign) else bare
+    if notation.delimiter is None:
+        # Names may hold single blanks where they are quoted, or where two blanks part them.
+        parts = re.findall(r'"([^"]*)"', bare) or re.split(r"\t+|\s{2,}", bare)
+        return parts if len(parts) == notation.cells else bare.split()
+    try:
+        cells = next(csv.reader([bare], delimiter=notation.delimiter), [])
+    except csv.Error:
+        return []
+    cells = [cell.strip(" \t\"'") for cell in cells]
+    return cells[:-1] if len(cells) > notation.cells and not cells[-1] else cells
+
+
+def _perhaps_cut(text: str, rows: Sequence[tuple[int, str]]) -> str | None:
+    """A doubt where the last row has no end and is shorter than all others."""
+    if text.endswith("\n") or len(rows) < 3:
+        return None
+    last = len(rows[-1][1])
+    if last >= min(len(line) for _, line in rows[:-1]):
+        return None
+    return (
+        f"the last row (line {rows[-1][0]}) is shorter than all others and its line has no end: if "
+        "the file was cut short there, its last number lacks digits"
+    )

@@ -1,0 +1,227 @@
+"""Universal Files (UFF, UNV): functions (type 58), data at nodes (55) and the nodes' places
+(15)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import ConfigError
+from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.measure.recordings.raw_table import RawTable
+from squeezefilm.regular_file import read_regular
+
+SUFFIXES = (".uff", ".unv", ".uf")
+_READ = (15, 55, 58)
+# Within half a bin: the value of a function at a frequency is the one recorded nearest to it.
+_DIRECTIONS = ("r1", "r2", "r3")
+
+
+@dataclass(frozen=True)
+class _Block:
+    """One data set: its type, and the line of the file in which it begins."""
+
+    type: int
+    line: int
+    content: Mapping[str, Any]
+
+
+def read_universal(path: Path, at: si.Hertz | None = None) -> RawTable:
+    """The table in a Universal File.
+
+    Functions (type 58) over one abscissa become the column ``x`` and, of each, ``58.1 real`` and
+    ``58.1 imaginary`` (``58.1`` where it is real); with the places of their nodes (15) and a
+    frequency `at` (Hz), or as data at nodes (55), the columns are ``x``, ``y``, ``z`` and the
+    values at each node: ``58 real``, or ``r3 real`` for the third direction.
+
+    Raises `ConfigError`, with the line at which its data set begins, for one that is not closed,
+    has fewer values than it says or cannot be read, and for functions over different abscissas.
+    """
+    blocks = _blocks(path)
+    functions = [one for one in blocks if one.type == 58]
+    nodes: dict[int, list[float]] = {}
+    for one in (one for one in blocks if one.type == 15):
+        c = one.content
+        nodes |= {
+            int(n): place for n, *place in zip(c["node_nums"], c["x"], c["y"], c["z"], strict=True)
+        }
+    fields = [one for one in blocks if one.type == 55]
+    if fields and nodes:
+        names, columns = _data_at_nodes(fields[0], nodes, path)
+    elif functions and nodes and at is not None:
+        names, columns = _functions_at_nodes(functions, nodes, at, path)
+    elif functions:
+        names, columns = _functions(functions, path)
+    else:
+        kinds = ", ".join(sorted({str(one.type) for one in blocks})) or "none"
+        raise ConfigError(
+            f"holds no functions (type 58) and no data at nodes (55 with 15); its data sets are of "
+            f"the types {kinds}",
+            file=path,
+        )
+    notes = tuple(_said(one) for one in functions[:3])
+    table = RawTable(
+        path, f"Universal File of {len(blocks)} data sets", tuple(names), np.stack(columns, axis=1),
+        notes=notes,
+    )  # fmt: skip
+    table.require_finite()
+    return table
+
+
+def _blocks(path: Path) -> list[_Block]:
+    """The data sets that are read, each looked at before and after."""
+    import pyuff
+
+    data = read_regular(path, RECORDING_BYTES, "a Universal File")
+    # As the reader finds them; behind binary values a mark does not begin its line.
+    places = [found.start() for found in re.finditer(rb"    -1(?=[\r\n]| {60}|\Z)", data)]
+    marks = [data.count(b"\n", 0, place) + 1 for place in places]
+    if len(marks) < 2:
+        raise ConfigError(
+            "is no Universal File: its data sets stand between lines with -1 in columns 5 and 6",
+            file=path,
+        )
+    if len(marks) % 2:
+        raise ConfigError(
+            "the data set that begins here is not closed: the file is cut short; export it again",
+            file=path,
+            line=marks[-1],
+        )
+    found = []
+    reader = pyuff.UFF(str(path))
+    for number, (line, place) in enumerate(zip(marks[::2], places[::2], strict=True)):
+        kind = data[place : place + 200].decode("latin-1").partition("\n")[2][:6].strip()
+        if not kind.isdigit():
+            raise ConfigError(f"'{kind}' is no type of a data set", file=path, line=line + 1)
+        if int(kind) not in _READ:
+            continue
+        try:
+            content = reader.read_sets(number)
+        # The reader raises bare exceptions of any type for whatever is malformed.
+        except Exception as error:
+            why = str(error).splitlines()[0] if str(error) else type(error).__name__
+            raise ConfigError(
+                f"the data set of type {kind} that begins here cannot be read: {why}",
+                file=path,
+                line=line,
+            ) from error
+        found.append(_Block(int(kind), line, content))
+        _require_whole(found[-1], path)
+    return found
+
+
+def _require_whole(block: _Block, path: Path) -> None:
+    """Refuse a function of another count of values than its head says, and nodes with parts
+    missing."""
+    c = block.content
+    if block.type == 58:
+        count, said = np.size(c["data"]), int(c["num_pts"])
+        if not count == np.size(c["x"]) == said:
+            raise ConfigError(
+                f"the function that begins here has {count} values, and its head says {said}: the "
+                "file is cut short or was changed",
+                file=path,
+                line=block.line,
+            )
+    elif block.type == 15:
+        if len({len(c[key]) for key in ("node_nums", "x", "y", "z")}) > 1:
+            raise ConfigError(
+                "the nodes that begin here have parts missing", file=path, line=block.line
+            )
+    elif np.size(c.get("r3", [])) != np.size(c["node_nums"]):
+        raise ConfigError(
+            "the data at nodes that begin here have no value for every node",
+            file=path,
+            line=block.line,
+        )
+
+
+def _said(block: _Block) -> str:
+    """What a function says of itself."""
+    c = block.content
+    words = [str(c.get(key, "")).strip() for key in ("id1", "ordinate_axis_lab")]
+    unit = str(c.get("ordinate_axis_units_lab", "")).strip()
+    told = ", ".join(word for word in words if word and word.upper() != "NONE")
+    return f"the function in line {block.line} says: {told or 'nothing'}" + (
+        f", unit {unit}" if unit and unit.upper() != "NONE" else ", no unit"
+    )
+
+
+def _parts(name: str, values: Any) -> list[tuple[str, si.FloatArray]]:
+    """Columns of values that may be complex."""
+    array = np.asarray(values)
+    if not np.iscomplexobj(array):
+        return [(name, array.astype(float))]
+    return [
+        (f"{name} real", array.real.astype(float)),
+        (f"{name} imaginary", array.imag.astype(float)),
+    ]
+
+
+def _functions(functions: Sequence[_Block], path: Path) -> tuple[list[str], list[si.FloatArray]]:
+    x = np.asarray(functions[0].content["x"], dtype=float)
+    pairs = [("x", x)]
+    for number, one in enumerate(functions, 1):
+        other = np.asarray(one.content["x"], dtype=float)
+        if other.shape != x.shape or not np.allclose(other, x, rtol=1e-9, atol=0):
+            raise ConfigError(
+                "the function that begins here stands over another abscissa than the first; save "
+                "functions of one abscissa in a file",
+                file=path,
+                line=one.line,
+            )
+        pairs += _parts(f"58.{number}", one.content["data"])
+    return [name for name, _ in pairs], [column for _, column in pairs]
+
+
+def _data_at_nodes(
+    block: _Block, nodes: Mapping[int, Sequence[float]], path: Path
+) -> tuple[list[str], list[si.FloatArray]]:
+    places = _places([int(one) for one in block.content["node_nums"]], nodes, block, path)
+    pairs = list(zip("xyz", places.T, strict=True))
+    for direction in _DIRECTIONS:
+        pairs += _parts(direction, block.content[direction])
+    return [name for name, _ in pairs], [column for _, column in pairs]
+
+
+def _functions_at_nodes(
+    functions: Sequence[_Block], nodes: Mapping[int, Sequence[float]], at: si.Hertz, path: Path
+) -> tuple[list[str], list[si.FloatArray]]:
+    places, values = [], []
+    for one in functions:
+        x, data = np.asarray(one.content["x"]), np.asarray(one.content["data"])
+        nearest = int(np.argmin(np.abs(x - at)))
+        if not x[0] <= at <= x[-1]:
+            shown = ", ".join(
+                si.format_quantity(value, si.Unit("Hz")) for value in (at, x[0], x[-1])
+            )
+            raise ConfigError(
+                f"the function that begins here does not reach the frequency told (asked, first, "
+                f"last: {shown})",
+                file=path,
+                line=one.line,
+            )
+        places.append(_places([int(one.content["rsp_node"])], nodes, one, path)[0])
+        values.append(data[nearest])
+    pairs = [*zip("xyz", np.array(places).T, strict=True), *_parts("58", np.array(values))]
+    return [name for name, _ in pairs], [column for _, column in pairs]
+
+
+def _places(
+    numbers: Sequence[int], nodes: Mapping[int, Sequence[float]], block: _Block, path: Path
+) -> si.FloatArray:
+    lacking = [number for number in numbers if number not in nodes]
+    if lacking:
+        raise ConfigError(
+            f"the data that begin here are of node {lacking[0]}, whose place no data set of type "
+            "15 gives",
+            file=path,
+            line=block.line,
+        )
+    return np.array([nodes[number] for number in numbers], dtype=float)

@@ -1,0 +1,1 @@
+"""What a bench measured: what was read, what was fitted to it."""

@@ -1,0 +1,85 @@
+"""A synthetic curve, made by one of our models, beside all of them: its maker is the nearest."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from squeezefilm.chain.friction_models import MODEL_KINDS
+from squeezefilm.chain.prediction import predict
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.friction_curve import CurveComparison, compare_friction_curve
+from squeezefilm.measure.recordings.kinds import FrictionCurve, Told
+
+AMPLITUDE = np.linspace(0.0, 2e-6, 9)
+BARE = FrictionCurve(
+    AMPLITUDE,
+    np.ones(9),
+    np.full(9, 0.02),
+    30e3,
+    0.5,
+    0.02,
+    Told(name="synthetic"),
+    "biet2008-plate",
+)
+
+
+@pytest.fixture(scope="module")
+def compared() -> CurveComparison:
+    """A curve by partial levitation without shear, with noise of its spread."""
+    law = predict(
+        "biet2008-plate", vibration_amplitude=2e-6, frequency=30e3, normal_force=0.5, speed=0.02
+    ).law
+    noise = 0.02 * np.random.default_rng(3).standard_normal(9)
+    made = law.by("partial-levitation").curve(AMPLITUDE) + noise
+    return compare_friction_curve(replace(BARE, relative_friction=made))
+
+
+@pytest.mark.slow
+def test_every_model_is_compared_and_the_maker_is_nearest(compared: CurveComparison) -> None:
+    assert {one.model for one in compared.models} == set(MODEL_KINDS)
+    assert compared.nearest.model == "partial-levitation"
+    for one in compared.models:
+        off = compared.curve.relative_friction - one.relative_friction
+        assert one.difference == pytest.approx(np.sqrt(np.mean(off**2)))
+        assert one.in_spreads == pytest.approx(one.difference / 0.02)
+    assert compared.nearest.in_spreads == pytest.approx(1.0, abs=0.5)
+
+
+@pytest.mark.slow
+def test_the_default_is_said_to_miss_it_and_points_are_counted_in_our_interval(
+    compared: CurveComparison,
+) -> None:
+    assert not compared.adequacy.adequate
+    assert "does not describe the curve" in compared.adequacy.sentence
+    assert compared.adequacy.where in compared.adequacy.sentence
+    low, high = compared.band.low, compared.band.high
+    friction = compared.curve.relative_friction
+    expected = [bool(a <= x <= b) for a, x, b in zip(low, friction, high, strict=True)]
+    # Where nothing vibrates friction is 1 by its meaning, and no point can be judged.
+    assert list(compared.inside) == [None, *expected[1:]]
+    assert compared.points_inside == (sum(expected[1:]), 8)
+    # The law that made it is one of those drawn.
+    assert sum(expected[1:]) >= 7
+    json.dumps(compared.summary(), allow_nan=False)
+
+
+@pytest.mark.slow
+def test_a_curve_of_the_default_is_described(compared: CurveComparison) -> None:
+    own = compared.default.relative_friction
+    found = compare_friction_curve(replace(compared.curve, relative_friction=own))
+    assert found.nearest.model == found.default.model
+    assert found.adequacy.adequate
+    assert "within its spread" in found.adequacy.sentence
+    assert len(found.observations) == 9
+    first = found.observations[3]
+    assert (first.answer, first.standard_error) == ("relative_friction", 0.02)
+    assert first.conditions["vibration_amplitude"] == AMPLITUDE[3]
+
+
+def test_a_curve_must_name_its_display() -> None:
+    with pytest.raises(InputError, match="names no display"):
+        compare_friction_curve(replace(BARE, display=""))
