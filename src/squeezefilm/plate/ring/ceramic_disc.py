@@ -19,6 +19,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.hard_limits import DENSITY, LAYER, SIDE
 from squeezefilm.materials import VACUUM_PERMITTIVITY
 
@@ -149,10 +150,11 @@ def _even(count: int, x: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
     return np.asarray(value), np.asarray(slope * 4 * x)
 
 
+@si.checked_numbers
 def disc_admittance(
     disc: CeramicDisc,
     constants: si.ComplexArray,
-    frequency: si.HertzArray,
+    frequency: Annotated[si.HertzArray, si.Above(0.0)],
     system: DiscSystem | None = None,
 ) -> tuple[si.ComplexArray, si.ComplexArray]:
     """The admittance (S), time factor e^{iωt}, shape (frequencies,), and its derivative with each
@@ -161,11 +163,19 @@ def disc_admittance(
     With the potential prescribed, the charge is −x·A·x of the solution x of A x = 0, and stationary
     in x: its derivative with a constant needs no further solve. Linear; thickness-shear, edge and
     thickness modes are as exact as the polynomials allow (see `disc_system`). `constants` may be
-    (10,) or, where they change with frequency, (10, frequencies).
+    (10,) or, where they change with frequency, (10, frequencies). Raises `InputError` for other
+    shapes, `ConvergenceError` for constants that no solid has.
     """
+    si.require("frequency", frequency, si.Unit("Hz"), above=0, axes=1)
+    shapes = ((len(CONSTANTS),), (len(CONSTANTS), frequency.size))
+    if np.shape(constants) not in shapes:
+        raise InputError(
+            f"constants has the shape {np.shape(constants)}; allowed are {shapes[0]} and, for "
+            f"{frequency.size} frequencies, {shapes[1]}: {', '.join(CONSTANTS)}",
+            quantity="constants",
+        )
     system = system or disc_system(disc)
-    frequency = np.asarray(frequency, dtype=float)
-    constants = np.asarray(constants, dtype=complex).reshape(10, -1)
+    constants = np.asarray(constants, dtype=complex).reshape(len(CONSTANTS), -1)
     scale = _scales(system, constants[:, 0])
     parts = system.parts * np.outer(scale, scale)
     mass = system.mass * np.outer(scale, scale)
@@ -178,7 +188,13 @@ def disc_admittance(
         dynamic = np.einsum("pf,pij->fij", own, parts, optimize=True)
         dynamic = dynamic - omega[few, None, None] ** 2 * mass
         x = np.ones(dynamic.shape[:2], dtype=complex)
-        x[:, :-1] = -np.linalg.solve(dynamic[:, :-1, :-1], dynamic[:, :-1, -1:])[..., 0]
+        try:
+            x[:, :-1] = -np.linalg.solve(dynamic[:, :-1, :-1], dynamic[:, :-1, -1:])[..., 0]
+        except np.linalg.LinAlgError as error:
+            raise ConvergenceError(
+                f"the disc could not be solved ({error}); give the constants of a ceramic, see "
+                f"{weak_constants.__name__}"
+            ) from error
         share = np.einsum("pij,fi,fj->pf", parts, x, x, optimize=True)
         slopes[:, few] = -1j * omega[few] * share
         admittance[few] = -1j * omega[few] * np.einsum("fij,fi,fj->f", dynamic, x, x, optimize=True)
@@ -188,6 +204,11 @@ def disc_admittance(
 def _scales(system: DiscSystem, constants: si.ComplexArray) -> si.FloatArray:
     """What brings displacements and potentials to one size; 1 for the voltage."""
     diagonal = np.abs(np.einsum("p,pii->i", constants.real, system.parts))
+    if not np.all(np.isfinite(diagonal) & (diagonal > 1e-200)):
+        raise ConvergenceError(
+            "the disc could not be solved: a stiffness or a permittivity is as good as none; give "
+            f"the constants of a ceramic, see {weak_constants.__name__}"
+        )
     scale = 1 / np.sqrt(diagonal)
     scale[-1] = 1.0
     return np.asarray(scale)
