@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.measure.fits.branches import Layout, circuit_curve
+from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.impedance import ImpedanceFit, fit_impedance, parallel_resonance
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 
@@ -144,7 +145,7 @@ def coverage(kind: Kind, runs: int, seed: int) -> tuple[dict[str, Held], int]:
     return held, failed
 
 
-def compared(made: MadeSweep, fit: ImpedanceFit) -> dict[str, tuple[float, object]]:
+def compared(made: MadeSweep, fit: ImpedanceFit) -> dict[str, tuple[float, Estimate]]:
     """Truth and estimate of every quantity of the made sweep's strongest branch."""
     layout, truth = made.layout, made.truth
     strongest = int(np.argmax([truth[layout.branch(k)][2] for k in range(layout.branches)]))

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy.special import j0, j1
+from scipy.special import jv
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
@@ -76,7 +76,7 @@ def test_its_polynomials_converge() -> None:
 
 def test_its_admittance_is_that_of_elements() -> None:
     # Away from resonances, where modes that the elements leave out of their sum do little.
-    frequency = np.array([20e3, 40e3, 52e3, 75e3])
+    frequency = np.array([20e3, 40e3, 52e3])
     own = disc_admittance(DISC, constants(), frequency)[0]
     other = annular_admittance(section(DISC), full_drive(), frequency, harmonics=(0,), modes=14)
     assert own.imag == pytest.approx(other.imag, rel=2e-3)
@@ -94,10 +94,7 @@ def test_a_thin_disc_has_the_formula_of_a_thin_disc(loss: float) -> None:
     eta = omega * thin.diameter / 2 * np.sqrt(thin.density * s11 * (1 - sigma**2))
     free = EPS[1] * VACUUM_PERMITTIVITY * share
     planar = 2 * (D[0] * share) ** 2 / (free * (s11 + s12))
-    # Bessel's functions of a slightly complex number, by their derivatives on the axis.
-    x, y = eta.real, eta.imag
-    first = j1(x) + 1j * y * (j0(x) - j1(x) / x) - y**2 / 2 * (-j1(x) - (j0(x) - 2 * j1(x) / x) / x)
-    zeroth = j0(x) - 1j * y * j1(x) - y**2 / 2 * (j0(x) - j1(x) / x)
+    first, zeroth = jv(1, eta), jv(0, eta)
     motion = (1 + sigma) * first / (eta * zeroth - (1 - sigma) * first)
     area = math.pi / 4 * thin.diameter**2
     expected = 1j * omega * free * area / thin.thickness * (1 - planar + planar * motion)

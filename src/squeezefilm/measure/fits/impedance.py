@@ -21,6 +21,7 @@ MOST_BRANCHES = 4
 _FEWEST_POINTS = 16
 # A branch that is flatter than this is no resonance but what a band shows of other things.
 _LEAST_QUALITY = 4.0
+_LEAST_RISE = 1e-3
 # A further branch must lower the Bayesian information criterion by this: "very strong" evidence
 # (Kass and Raftery 1995, 10.1080/01621459.1995.10476572), and take a fifth of what was left.
 _EVIDENCE, _LESS_LEFT = 10.0, 0.8
@@ -264,13 +265,15 @@ def _fitted(sweep: ImpedanceSweep, layout: Layout) -> tuple[ComplexFit, Layout] 
         )
     except ConvergenceError:
         return None
-    frequency = np.exp([fit.parameters[layout.branch(k)][0] for k in range(count)])
-    quality = np.exp([fit.parameters[layout.branch(k)][1] for k in range(count)])
+    logs = np.array([fit.parameters[layout.branch(k)] for k in range(count)])
+    frequency, quality = np.exp(np.clip(logs[:, :2], -30, 30)).T
     inside = (frequency > f[0]) & (frequency < f[-1])
     # Narrower than the points are apart is no resonance but a point that is off.
     step = np.interp(frequency, f, np.gradient(f))
     sharp = (quality > _LEAST_QUALITY) & (frequency / quality > 0.5 * step)
-    if not np.all(inside & sharp) or not np.all(np.diag(fit.covariance) > 0):
+    # How far the branch rises above the static capacitance, at its resonance.
+    strong = quality * np.exp(np.clip(logs[:, 2] - fit.parameters[0], -60, 30)) > _LEAST_RISE
+    if not np.all(inside & sharp & strong) or not np.all(np.diag(fit.covariance) > 0):
         return None
     return _in_order(fit, layout, frequency), layout
 

@@ -1,0 +1,133 @@
+"""Circuits out of sweeps: what is found, chosen, refused and said."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.branches import Layout, circuit_curve
+from squeezefilm.measure.fits.impedance import fit_impedance, parallel_resonance, sweep_peaks
+from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+
+FREQUENCY = np.linspace(25.5e3, 32.5e3, 401)
+TRUTH = np.array([np.log(3.3e-9), 0.01, np.log(28.1e3), np.log(75.0), np.log(4.6e-10)])
+
+
+def noisy(curve: si.ComplexArray, noise: float, seed: int = 1) -> si.ComplexArray:
+    white = np.random.default_rng(seed).standard_normal((2, curve.size))
+    return np.asarray(curve * (1 + noise * (white[0] + 1j * white[1])))
+
+
+def sweep_of(layout: Layout, truth: si.FloatArray, noise: float = 1e-3) -> ImpedanceSweep:
+    return ImpedanceSweep(FREQUENCY, noisy(circuit_curve(layout, truth, FREQUENCY)[0], noise))
+
+
+PLAIN = sweep_of(Layout(1), TRUTH)
+
+
+def test_a_circuit_is_found_and_its_numbers_belong_together() -> None:
+    fit = fit_impedance(PLAIN)
+    branch = fit.strongest
+    assert (len(fit.branches), fit.coupling_loss, fit.drift) == (1, None, None)
+    assert fit.adequacy.adequate
+    assert branch.series_resonance.value == pytest.approx(28.1e3, rel=1e-4)
+    assert branch.quality_factor.value == pytest.approx(75, rel=0.01)
+    omega = 2 * np.pi * branch.series_resonance.value
+    L, C, R = (
+        getattr(branch, f"motional_{name}").value
+        for name in ("inductance", "capacitance", "resistance")
+    )
+    assert pytest.approx(1) == omega**2 * L * C
+    assert pytest.approx(branch.quality_factor.value) == omega * L / R
+    fs, fp = branch.series_resonance.value, branch.parallel_resonance.value
+    assert fp / fs == pytest.approx(np.sqrt(1 + C / fit.static_capacitance.value))
+    assert branch.coupling_coefficient.value == pytest.approx(np.sqrt(1 - (fs / fp) ** 2))
+    names = {one.answer for one in fit.observations}
+    assert {"resonance_frequency", "parallel_resonance_frequency", "coupling_coefficient"} <= names
+    assert fit.circuit.frequency == fs
+    assert fit.admittance(FREQUENCY) == pytest.approx(PLAIN.admittance, rel=0.02)
+
+
+@pytest.mark.parametrize("noise", [1e-4, 0.02])
+def test_two_modes_are_told_from_one(noise: float) -> None:
+    truth = np.concatenate([TRUTH, [np.log(29.3e3), np.log(90.0), np.log(2e-10)]])
+    fit = fit_impedance(sweep_of(Layout(2), truth, noise))
+    assert [round(one.series_resonance.value / 1e3, 1) for one in fit.branches] == [28.1, 29.3]
+    assert fit.main == 0
+    assert fit.branches[0].parallel_resonance.value < 29.3e3
+    alone = fit_impedance(sweep_of(Layout(2), truth, noise), branches=1)
+    assert not alone.adequacy.adequate
+
+
+def test_a_coupling_that_loses_is_told() -> None:
+    truth = np.append(TRUTH, 0.02)
+    fit = fit_impedance(sweep_of(Layout(1, coupling_loss=True), truth))
+    assert fit.coupling_loss is not None
+    low, high = fit.coupling_loss.interval
+    assert low < 0.02 < high
+    assert len(fit.branches) == 1
+
+
+def test_a_drift_is_fitted_on_request_and_otherwise_noticed() -> None:
+    drifting = sweep_of(Layout(1, drift=True), np.append(TRUTH, [0.1, 0.05]))
+    fit = fit_impedance(drifting, drift=True)
+    assert fit.drift == pytest.approx(0.1 + 0.05j, abs=5e-3)
+    assert fit.strongest.quality_factor.value == pytest.approx(75, rel=0.01)
+    assert fit.adequacy.adequate
+    assert not fit_impedance(drifting, branches=1).adequacy.adequate
+
+
+@pytest.mark.parametrize(
+    ("turn", "said"),
+    [(lambda y: -y, "offset of 180°"), (np.conj, "wrong sign")],
+)
+def test_a_wrong_phase_is_refused_with_what_to_do(turn: object, said: str) -> None:
+    assert callable(turn)
+    with pytest.raises(InputError, match=said):
+        fit_impedance(dataclasses.replace(PLAIN, admittance=turn(PLAIN.admittance)))
+
+
+@pytest.mark.parametrize(
+    ("frequency", "admittance", "said"),
+    [
+        (FREQUENCY[:9], PLAIN.admittance[:9], "at least 16"),
+        (FREQUENCY[::-1], PLAIN.admittance, "do not rise"),
+        (FREQUENCY, np.where(FREQUENCY > 30e3, np.nan, PLAIN.admittance), "not finite"),
+        (FREQUENCY, 2j * np.pi * FREQUENCY * 3e-9 * (1 - 0.01j), "could not be found"),
+    ],
+)
+def test_what_cannot_be_fitted_is_refused(
+    frequency: si.HertzArray, admittance: si.ComplexArray, said: str
+) -> None:
+    with pytest.raises(InputError, match=said):
+        fit_impedance(ImpedanceSweep(frequency, admittance))
+
+
+def test_more_branches_than_there_are_can_be_asked_for_but_not_too_many() -> None:
+    with pytest.raises(InputError, match="branches"):
+        fit_impedance(PLAIN, branches=9)
+
+
+def test_peaks_are_read_without_a_model() -> None:
+    peaks = sweep_peaks(sweep_of(Layout(1), TRUTH, 0.0))
+    fit = fit_impedance(PLAIN).strongest
+    assert peaks.conductance_frequency == pytest.approx(fit.series_resonance.value, rel=2e-4)
+    assert peaks.resistance_frequency == pytest.approx(fit.parallel_resonance.value, rel=2e-4)
+    assert peaks.conductance == pytest.approx(1 / fit.motional_resistance.value, rel=0.02)
+
+
+def test_the_parallel_resonance_lies_between_two_branches() -> None:
+    truth = np.concatenate([TRUTH, [np.log(29.3e3), np.log(90.0), np.log(2e-10)]])
+    first, second = (parallel_resonance(Layout(2), truth, k) for k in (0, 1))
+    assert 28.1e3 < first < 29.3e3 < second
+    # There the susceptance of the circuit without loss vanishes.
+    lossless = truth.copy()
+    lossless[[1, 3, 6]] = 0.0, 30.0, 30.0
+    for at in (first, second):
+        y = circuit_curve(Layout(2), lossless, np.array([at, 1.001 * at]))[0]
+        assert abs(y[0]) < 1e-6 * abs(y[1])
+
