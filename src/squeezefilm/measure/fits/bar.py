@@ -116,9 +116,7 @@ def _start(sweep: ImpedanceSweep, bar: CeramicBar) -> si.FloatArray:
     )
     square = ratio / (1 + ratio)
     low = slice(0, max(3, sweep.frequency.size // 20))
-    capacitance = float(
-        np.median(sweep.admittance.imag[low] / (2 * np.pi * sweep.frequency[low]))
-    )
+    capacitance = float(np.median(sweep.admittance.imag[low] / (2 * np.pi * sweep.frequency[low])))
     unit = VACUUM_PERMITTIVITY * bar.length * bar.width / bar.thickness
     x = math.pi / 2 * float(sweep.frequency[low].mean()) / series
     permittivity = capacitance / unit / abs(1 - square + square * math.tan(x) / x)

@@ -6,6 +6,7 @@ alike whether their model is adequate.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
@@ -66,7 +67,7 @@ class ComplexFit:
         is what it cannot fall below."""
         best = value(self.parameters)
         slope = gradient(value, self.parameters, np.sqrt(np.diag(self.covariance)))
-        error = float(np.sqrt(max(slope @ self.covariance @ slope, 0.0)))
+        error = math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
         reach = error * float(stats.t.ppf((1 + LEVEL) / 2, self.degrees_of_freedom))
         return Estimate(best, error, (max(best - reach, least), best + reach), unit, LEVEL)
 
@@ -175,7 +176,10 @@ def _minimum(
 
 
 def _fitted(
-    parameters: si.FloatArray, residual: si.ComplexArray, slopes: si.ComplexArray, prior: Prior | None
+    parameters: si.FloatArray,
+    residual: si.ComplexArray,
+    slopes: si.ComplexArray,
+    prior: Prior | None,
 ) -> ComplexFit:
     rows = _stacked(slopes)
     told = 0 if prior is None else int(np.isfinite(prior.spread).sum())

@@ -132,7 +132,9 @@ class DiscCurve:
     def __call__(self, p: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
         """Admittance (points,) and derivatives (parameters, points)."""
         if self._answer is None or p.tobytes() != self._at:
-            curve, slopes = disc_admittance(self._disc, weak_constants(*compliances(p)), self._frequency)
+            curve, slopes = disc_admittance(
+                self._disc, weak_constants(*compliances(p)), self._frequency
+            )
             self._answer = curve, _constant_slopes(p) @ slopes
             self._at = p.tobytes()
         return self._answer

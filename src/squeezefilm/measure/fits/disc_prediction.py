@@ -96,7 +96,7 @@ def predict_radial_mode(
             _drawn(constants, row, seen.conductance_frequency, number, assumed, extra)
             for row in rows
         ]
-        return np.log(np.array(found))
+        return np.asarray(np.log(np.array(found)))
 
     every = drawn(deviations)
     total = every.var(axis=0)
@@ -110,9 +110,7 @@ def predict_radial_mode(
     series, parallel, conductance, resistance = (
         _told(every[:, k], unit) for k, unit in enumerate(("Hz", "Hz", "S", "ohm"))
     )
-    return RadialPrediction(
-        number, series, parallel, conductance, resistance, shares, draws, seed
-    )
+    return RadialPrediction(number, series, parallel, conductance, resistance, shares, draws, seed)
 
 
 def _told(logs: si.FloatArray, unit: str) -> Estimate:

@@ -59,8 +59,9 @@ class ImpedanceFit:
     """A circuit fitted to a sweep: `static_capacitance` C0 (F) with its `loss_tangent`, and
     `branches` rising in frequency, of which `main` is the number of the strongest.
 
-    `coupling_loss` is the loss tangent θ of the piezoelectric coupling itself (motional currents are
-    turned by (1 − iθ)²), None where the sweep does not ask for one. `drift` is the change of the analyser's complex gain from the first to the last point where it
+    `coupling_loss` is the loss tangent θ of the piezoelectric coupling itself (motional currents
+    are turned by (1 − iθ)²), None where the sweep does not ask for one. `drift` is the change of
+    the analyser's complex gain from the first to the last point where it
     was fitted too. `layout` and `fit` are what was fitted, for `admittance`.
     """
 
@@ -207,9 +208,7 @@ def _peak(frequency: si.HertzArray, values: si.FloatArray) -> tuple[float, float
     return float(frequency[top] - b / (2 * a)), float(1 / (c - b**2 / (4 * a)))
 
 
-def _chosen(
-    sweep: ImpedanceSweep, branches: int | None, drift: bool
-) -> tuple[ComplexFit, Layout]:
+def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> tuple[ComplexFit, Layout]:
     """The fit of as many branches as were asked for, or as the sweep asks for."""
     counts = range(1, MOST_BRANCHES + 1) if branches is None else (branches,)
     best: tuple[ComplexFit, Layout] | None = None
@@ -235,7 +234,7 @@ def _better(more: tuple[ComplexFit, Layout], best: tuple[ComplexFit, Layout]) ->
         if np.any(np.sqrt(np.diag(fit.covariance)[layout.branch(k)]) > _TOLD_APART):
             return False
     rows = 2 * more[0].residual.size
-    fall = rows * math.log(best[0].spread**2 / more[0].spread**2)
+    fall = rows * math.log(best[0].spread ** 2 / more[0].spread ** 2)
     fall -= (more[1].size - best[1].size) * math.log(rows)
     return fall > _EVIDENCE and more[0].spread < _LESS_LEFT * best[0].spread
 

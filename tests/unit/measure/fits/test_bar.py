@@ -69,6 +69,5 @@ def test_what_is_no_bar_and_what_is_no_resonance_are_refused() -> None:
         CeramicBar(4e-3, 3e-3, 1e-3, 7850.0)
     sweep = bar_sweep()
     below = ImpedanceSweep(FREQUENCY[150:250], np.conj(1 / sweep.admittance[150:250]))
-    with pytest.raises(InputError, match="resonance|leads"):
+    with pytest.raises(InputError, match=r"resonance|leads"):
         bar_constants(below, BAR)
-

@@ -130,4 +130,3 @@ def test_the_parallel_resonance_lies_between_two_branches() -> None:
     for at in (first, second):
         y = circuit_curve(Layout(2), lossless, np.array([at, 1.001 * at]))[0]
         assert abs(y[0]) < 1e-6 * abs(y[1])
-

@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm import quantities as si
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 def measured_file(name: str) -> Path:
