@@ -6,12 +6,16 @@ was known of them before: the expectations here are from there.
 
 from __future__ import annotations
 
+import tomllib
+
 import numpy as np
 import pytest
 
+from predict_disc import DIAMETER, FILE, MASS, PREDICTED, THICKNESS
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.bar import CeramicBar, bar_constants
 from squeezefilm.measure.fits.disc import disc_by_mass, disc_constants
+from squeezefilm.measure.fits.disc_prediction import predict_radial_mode
 from squeezefilm.measure.fits.impedance import fit_impedance, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 
@@ -77,6 +81,19 @@ def test_the_disc() -> None:
     assert found.quality_factor.value == pytest.approx(84, rel=0.15)
     # Poisson's ratio is what the prior said: one radial mode does not tell it.
     assert found.from_data["-s12/s11"] > 0.9
+
+
+@pytest.mark.slow
+def test_the_committed_prediction_is_what_the_fit_to_the_first_mode_gives() -> None:
+    """With fewer draws than the committed one has, so only to a third of its half intervals."""
+    old = tomllib.loads(FILE.read_text(encoding="utf-8"))
+    constants = disc_constants(disc_sweep(), disc_by_mass(DIAMETER, THICKNESS, MASS))
+    again = predict_radial_mode(constants, disc_sweep(), seed=3, draws=160)
+    for name in PREDICTED:
+        before, now = old["prediction"][name], getattr(again, name)
+        low, high = before["interval_95"]
+        assert abs(now.value - before["value"]) < (high - low) / 6, name
+        assert now.interval == pytest.approx((low, high), abs=(high - low) / 5), name
 
 
 def test_the_disc_as_a_circuit() -> None:

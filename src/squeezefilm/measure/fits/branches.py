@@ -1,7 +1,7 @@
 """Circuits of several branches: their admittance with all derivatives, and starts for a fit.
 
-Y = (1 + a s) [iω C0 (1 − i tan δ) + (1 − iθ)² Σ iω C_k / (1 − (f/f_k)² + i f/(f_k Q_k))], with s from
-−½ to ½ along the sweep. A branch is the R, L, C of Butterworth and Van Dyke: C_k = C,
+Y = (1 + a s) [iω C0 (1 − i tan δ) + (1 − iθ)² Σ iω C_k / (1 − (f/f_k)² + i f/(f_k Q_k))], with s
+from −½ to ½ along the sweep. A branch is the R, L, C of Butterworth and Van Dyke: C_k = C,
 f_k = 1/(2π √(LC)), Q_k = √(L/C)/R. Beyond their circuit: θ, the loss of the piezoelectric coupling
 itself (a complex charge coefficient, which turns the circle of the admittance), and a, complex, a
 drift of the analyser's gain; both are 0 unless fitted.
