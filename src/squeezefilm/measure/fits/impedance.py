@@ -171,16 +171,16 @@ def require_passive(sweep: ImpedanceSweep) -> None:
             f"the sweep gives out power: the real part of its admittance is negative at "
             f"{int(np.sum(y.real < 0))} of {y.size} points, and away from resonance the admittance "
             f"leads by {lead:.0f}° where a capacitor's leads by up to 90°. The phase was probably "
-            "recorded with an offset of 180°; look at it, and ask for its correction beside the "
-            "recording if so",
+            "recorded with an offset of 180°; look at it, and if so write correct = "
+            '"phase 180 deg" in the TOML beside the recording',
             quantity="admittance",
         )
     if lead < 0:
         raise InputError(
             f"away from resonance the admittance leads by {lead:.0f}°, as that of a coil; a "
             "ceramic is a capacitor there and leads by up to 90°. The phase was probably recorded "
-            "with the wrong sign, or as that of the admittance; look at it, and ask for its "
-            "correction beside the recording if so",
+            "with the wrong sign, or as that of the admittance; look at it, and if so write correct "
+            '= "phase sign" in the TOML beside the recording',
             quantity="admittance",
         )
 
