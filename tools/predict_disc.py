@@ -128,9 +128,16 @@ def prediction_text(
 
 PREDICTED = ("series_resonance", "parallel_resonance", "peak_conductance", "peak_resistance")
 FITTED = (
-    "compliance_11", "compliance_12", "poisson_ratio", "charge_coefficient_31",
-    "free_permittivity_33", "planar_coupling", "quality_factor", "charge_loss", "dielectric_loss",
-)  # fmt: skip
+    "compliance_11",
+    "compliance_12",
+    "poisson_ratio",
+    "charge_coefficient_31",
+    "free_permittivity_33",
+    "planar_coupling",
+    "quality_factor",
+    "charge_loss",
+    "dielectric_loss",
+)
 
 
 def difference(old: dict[str, Any], found: RadialPrediction) -> float:

@@ -12,10 +12,21 @@ from squeezefilm.measure.fits.complex_fit import Prior
 from squeezefilm.presets.materials import library
 
 PARAMETERS = (
-    "ln s11", "-s12/s11", "ln |d31|", "ln eps33", "loss of s11", "loss of d31", "loss of eps33",
-    "loss of s12 over loss of s11, less 1", "s13/s11", "s33/s11", "s44/s11", "d33/d31", "d15/d31",
+    "ln s11",
+    "-s12/s11",
+    "ln |d31|",
+    "ln eps33",
+    "loss of s11",
+    "loss of d31",
+    "loss of eps33",
+    "loss of s12 over loss of s11, less 1",
+    "s13/s11",
+    "s33/s11",
+    "s44/s11",
+    "d33/d31",
+    "d15/d31",
     "eps11/eps33",
-)  # fmt: skip
+)
 """What is fitted of a disc, in this order: s at constant field, ε relative and at constant
 stress."""
 

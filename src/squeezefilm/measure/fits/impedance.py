@@ -17,7 +17,10 @@ from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.plate.circuit import EquivalentCircuit
 
-MOST_BRANCHES = 4
+MOST_BRANCHES = 8
+# So many richer circuits in a row that are no better, and no more are tried: two modes of five that
+# are told only together take three steps.
+_PATIENCE = 6
 _FEWEST_POINTS = 16
 # A branch that is flatter than this is no resonance but what a band shows of other things.
 _LEAST_QUALITY = 4.0
@@ -121,7 +124,7 @@ def fit_impedance(
     """Fit a circuit of Butterworth and Van Dyke, with as many `branches` as the sweep asks for.
 
     Without `branches`: one more as long as what is left is smoother than noise and the Bayesian
-    information criterion falls by more than 10, at most 4; a loss of the coupling itself is asked
+    information criterion falls by more than 10, at most 8; a loss of the coupling itself is asked
     for in the same way. `drift` fits a complex gain that changes
     in proportion to the point's number too; a resonance that drifts during the sweep cannot be
     told from another Q. All points have the same relative noise, which is estimated from the data;
@@ -179,8 +182,8 @@ def require_passive(sweep: ImpedanceSweep) -> None:
         raise InputError(
             f"away from resonance the admittance leads by {lead:.0f}°, as that of a coil; a "
             "ceramic is a capacitor there and leads by up to 90°. The phase was probably recorded "
-            "with the wrong sign, or as that of the admittance; look at it, and if so write correct "
-            '= "phase sign" in the TOML beside the recording',
+            "with the wrong sign, or as that of the admittance; look at it, and if so write "
+            'correct = "phase sign" in the TOML beside the recording',
             quantity="admittance",
         )
 
@@ -215,7 +218,7 @@ def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> tuple[C
     since = 0
     for count in counts:
         for lossy in (False, True):
-            if best is not None and (best[0].correlation == 1.0 or since == 3):
+            if best is not None and (best[0].correlation == 1.0 or since == _PATIENCE):
                 return best
             more = _fitted(sweep, Layout(count, lossy, drift))
             if more is not None and (best is None or _better(more, best)):

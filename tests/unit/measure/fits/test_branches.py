@@ -11,18 +11,33 @@ from squeezefilm.plate.circuit import EquivalentCircuit
 FREQUENCY = np.linspace(35e3, 46e3, 240)
 LAYOUT = Layout(2, coupling_loss=True, drift=True)
 P = np.array(
-    [np.log(3e-9), 0.01, np.log(38e3), np.log(80), np.log(2e-10),
-     np.log(41e3), np.log(120), np.log(1e-10), 0.015, 0.03, -0.02]
-)  # fmt: skip
+    [
+        np.log(3e-9),
+        0.01,
+        np.log(38e3),
+        np.log(80),
+        np.log(2e-10),
+        np.log(41e3),
+        np.log(120),
+        np.log(1e-10),
+        0.015,
+        0.03,
+        -0.02,
+    ]
+)
 
 
 def test_one_branch_is_the_circuit_of_butterworth_and_van_dyke() -> None:
     f, quality, capacitance, static = 40e3, 75.0, 2e-10, 3e-9
     omega = 2 * np.pi * f
     circuit = EquivalentCircuit(
-        f, quality, static, 1 / (omega * capacitance * quality), 1 / (omega**2 * capacitance),
+        f,
+        quality,
+        static,
+        1 / (omega * capacitance * quality),
+        1 / (omega**2 * capacitance),
         capacitance,
-    )  # fmt: skip
+    )
     p = np.array([np.log(static), 0.0, np.log(f), np.log(quality), np.log(capacitance)])
     assert circuit_curve(Layout(1), p, FREQUENCY)[0] == pytest.approx(
         circuit.admittance(FREQUENCY), rel=1e-12

@@ -63,6 +63,49 @@ def test_two_modes_are_told_from_one(noise: float) -> None:
     assert not alone.adequacy.adequate
 
 
+def test_five_modes_of_a_wide_band_are_found() -> None:
+    """Two of them improve the fit little by themselves: it must look further than one step."""
+    truth = TRUTH[:2]
+    for f, quality, capacitance in (
+        (20e3, 80, 1.3e-10),
+        (33e3, 60, 3e-11),
+        (45e3, 60, 3e-11),
+        (61e3, 60, 3e-11),
+        (80e3, 90, 7e-11),
+    ):
+        truth = np.append(truth, np.log([f, quality, capacitance]))
+    frequency = np.linspace(10e3, 100e3, 1500)
+    curve = circuit_curve(Layout(5), truth, frequency)[0]
+    fit = fit_impedance(ImpedanceSweep(frequency, noisy(curve, 0.003)))
+    found = [one.series_resonance.value for one in fit.branches]
+    assert found == pytest.approx([20e3, 33e3, 45e3, 61e3, 80e3], rel=1e-3)
+    assert (fit.main, fit.adequacy.adequate) == (0, True)
+
+
+@pytest.mark.parametrize(
+    ("quality", "capacitance", "band", "points"),
+    [
+        (3000.0, 2e-10, (27e3, 31e3), 401),
+        (8.0, 4e-10, (18e3, 45e3), 401),
+        (100.0, 2e-13, (27e3, 29.2e3), 401),
+        (100.0, 2e-10, (27e3, 30e3), 25),
+        (75.0, 2e-10, (28e3, 31e3), 201),
+    ],
+    ids=["sharp", "flat", "weak", "few points", "at the edge of the band"],
+)
+def test_resonances_of_all_sorts_are_found(
+    quality: float, capacitance: float, band: tuple[float, float], points: int
+) -> None:
+    truth = TRUTH.copy()
+    truth[3:] = np.log([quality, capacitance])
+    frequency = np.linspace(*band, points)
+    curve = circuit_curve(Layout(1), truth, frequency)[0]
+    fit = fit_impedance(ImpedanceSweep(frequency, noisy(curve, 1e-4)))
+    assert len(fit.branches) == 1
+    assert fit.strongest.series_resonance.value == pytest.approx(28.1e3, rel=1e-3)
+    assert fit.strongest.quality_factor.value == pytest.approx(quality, rel=0.05)
+
+
 def test_a_coupling_that_loses_is_told() -> None:
     truth = np.append(TRUTH, 0.02)
     fit = fit_impedance(sweep_of(Layout(1, coupling_loss=True), truth))
