@@ -16,7 +16,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.bar import CeramicBar, bar_constants
 from squeezefilm.measure.fits.disc import disc_by_mass, disc_constants
 from squeezefilm.measure.fits.disc_prediction import predict_radial_mode
-from squeezefilm.measure.fits.impedance import fit_impedance, sweep_peaks
+from squeezefilm.measure.fits.impedance import fit_impedance
+from squeezefilm.measure.fits.sweep_reading import sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 
 from .measured_data import measured_file, traces_4294a
@@ -56,8 +57,9 @@ def test_the_transducer_of_28_khz() -> None:
     assert branch.motional_inductance.value == pytest.approx(70e-3, rel=0.06)
     assert 70 * 0.85 < branch.quality_factor.value < 78 * 1.15
     assert 160 * 0.85 < branch.motional_resistance.value < 178 * 1.15
-    # One linear branch misses what it does within the width of its resonance, and that is said.
-    assert not fit.adequacy.adequate
+    # A linear circuit is 7 % off: the transducer softens under half a volt, and that is said.
+    assert fit.softening is not None
+    assert fit.adequacy.residual < 0.015
     assert "28.1" in fit.adequacy.where
     peaks = sweep_peaks(piezo_28khz(turned=True))
     assert peaks.resistance_frequency == pytest.approx(30045, rel=1e-3)

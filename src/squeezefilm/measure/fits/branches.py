@@ -2,9 +2,11 @@
 
 Y = (1 + a s) [iω C0 (1 − i tan δ) + (1 − iθ)² Σ iω C_k / (1 − (f/f_k)² + i f/(f_k Q_k))], with s
 from −½ to ½ along the sweep. A branch is the R, L, C of Butterworth and Van Dyke: C_k = C,
-f_k = 1/(2π √(LC)), Q_k = √(L/C)/R. Beyond their circuit: θ, the loss of the piezoelectric coupling
-itself (a complex charge coefficient, which turns the circle of the admittance), and a, complex, a
-drift of the analyser's gain; both are 0 unless fitted.
+f_k = 1/(2π √(LC)), Q_k = √(L/C)/R. Beyond their circuit, and 0 unless fitted: θ, the loss of the
+piezoelectric coupling itself (a complex charge coefficient, which turns the circle of the
+admittance); a, complex, a drift of the analyser's gain; and softening, by which f_k and Q_k are
+those at the largest motion of the sweep, u = 1, while at less motion the stiffness is larger by
+the share g (1 − u²) and the loss 1/Q_k smaller by h (1 − u²).
 """
 
 from __future__ import annotations
@@ -23,21 +25,27 @@ _LARGEST = np.array([30.0, 30.0, 0.0])
 @dataclass(frozen=True)
 class Layout:
     """Which parameter stands where: ln C0 and tan δ, then ln f, ln Q, ln C of each branch, then
-    the coupling's loss, then real and imaginary part of a drift."""
+    the coupling's loss, g and h of softening, real and imaginary part of a drift."""
 
     branches: int
     coupling_loss: bool = False
+    softening: bool = False
     drift: bool = False
 
     @property
     def size(self) -> int:
         """How many parameters there are."""
-        return self.loss + self.coupling_loss + 2 * self.drift
+        return self.soft + 2 * self.softening + 2 * self.drift
 
     @property
     def loss(self) -> int:
         """Where the coupling's loss stands, if it is fitted."""
         return 2 + 3 * self.branches
+
+    @property
+    def soft(self) -> int:
+        """Where g and h of softening stand, if it is fitted."""
+        return self.loss + self.coupling_loss
 
     def branch(self, k: int) -> slice:
         """Where ln f, ln Q and ln C of branch k stand."""
@@ -45,11 +53,19 @@ class Layout:
 
 
 def circuit_curve(
-    layout: Layout, p: si.FloatArray, frequency: si.HertzArray
+    layout: Layout,
+    p: si.FloatArray,
+    frequency: si.HertzArray,
+    motion: si.DimensionlessArray | None = None,
 ) -> tuple[si.ComplexArray, si.ComplexArray]:
-    """The admittance (points,) and its derivatives (parameters, points) at parameters `p`."""
+    """The admittance (points,) and its derivatives (parameters, points) at parameters `p`.
+
+    `motion` (points,), from 0 to 1, is that of a layout with softening at these frequencies.
+    """
     omega = 2 * np.pi * frequency
-    slopes = np.empty((layout.size, frequency.size), dtype=complex)
+    stiller = np.zeros(frequency.size) if motion is None else 1 - motion**2
+    stiffer, sharper = p[layout.soft : layout.soft + 2] if layout.softening else (0.0, 0.0)
+    slopes = np.zeros((layout.size, frequency.size), dtype=complex)
     static = np.exp(min(p[0], 0.0))
     slopes[0] = 1j * omega * static * (1 - 1j * p[1])
     slopes[1] = omega * static
@@ -60,14 +76,18 @@ def circuit_curve(
         # A fit on its way may try anything; what it may end at is far inside of these.
         log_frequency, log_quality, log_capacitance = np.clip(p[layout.branch(k)], -60, _LARGEST)
         ratio = frequency * np.exp(-log_frequency)
-        lag = 1j * ratio * np.exp(-log_quality)
-        below = 1 - ratio**2 + lag
+        full = 1j * ratio * np.exp(-log_quality)
+        lag = full * (1 - sharper * stiller)
+        below = 1 - ratio**2 + lag + stiffer * stiller
         term = turn * 1j * omega * np.exp(log_capacitance) / below
         total += term
         first = 2 + 3 * k
         slopes[first] = -term / below * (2 * ratio**2 - lag)
         slopes[first + 1] = term / below * lag
         slopes[first + 2] = term
+        if layout.softening:
+            slopes[layout.soft] -= term / below * stiller
+            slopes[layout.soft + 1] += term / below * full * stiller
     if layout.coupling_loss:
         slopes[layout.loss] = (total - slopes[0]) * -2j / (1 - 1j * loss)
     if layout.drift:
@@ -77,6 +97,15 @@ def circuit_curve(
         slopes[-2], slopes[-1] = total * place, 1j * total * place
         total = total * gain
     return total, slopes
+
+
+def relative_motion(
+    static: si.ComplexArray, frequency: si.HertzArray, admittance: si.ComplexArray
+) -> si.DimensionlessArray:
+    """How far a body moves at each frequency under one voltage, over the farthest (points,): the
+    motional current by its frequency. `static` is the admittance of the held body."""
+    size = np.abs(admittance - static) / frequency
+    return np.asarray(size / size.max())
 
 
 def poles(

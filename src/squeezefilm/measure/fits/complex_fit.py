@@ -28,6 +28,9 @@ SMALL_MISFIT = 0.01
 """Misfit beyond noise, of |data| on average, up to which a model is called adequate: what bench
 analysers and fixtures leave uncertain in the best of cases (assumed)."""
 
+ROUGH_MISFIT = 0.03
+"""Misfit up to which a model that is not adequate still gives its numbers roughly (assumed)."""
+
 _LARGE_MISFIT_SOMEWHERE = 0.06
 _PASSES = 3
 
@@ -262,6 +265,12 @@ def adequacy_of(fit: ComplexFit, frequency: si.HertzArray, what: str) -> Adequac
             "widened for it."
         )
         return Adequacy(True, residual, noise, where, sentence)
+    if fit.misfit <= ROUGH_MISFIT and beyond <= 2 * _LARGE_MISFIT_SOMEWHERE:
+        sentence = (
+            f"{left} It describes the sweep only roughly (it misses most {where}): its resonances "
+            "can be used, the intervals are no bound."
+        )
+        return Adequacy(False, residual, noise, where, sentence)
     sentence = (
         f"{left} It does not describe the sweep: it misses most {where}. Do not use its numbers "
         "before you know why: another mode, a drift of the analyser, a fixture that was not "

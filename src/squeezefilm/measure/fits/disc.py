@@ -14,7 +14,7 @@ from squeezefilm.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic_prior import PARAMETERS, ceramic_prior, compliances
 from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, adequacy_of, fit_complex
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.impedance import require_passive, sweep_peaks
+from squeezefilm.measure.fits.sweep_reading import require_passive, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
 

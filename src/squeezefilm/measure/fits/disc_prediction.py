@@ -13,7 +13,7 @@ from squeezefilm.errors import ConvergenceError
 from squeezefilm.measure.fits.ceramic_prior import compliances
 from squeezefilm.measure.fits.disc import DiscConstants
 from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.impedance import SweepPeaks, sweep_peaks
+from squeezefilm.measure.fits.sweep_reading import SweepPeaks, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.plate.ring.ceramic_disc import disc_admittance, weak_constants
 

@@ -11,9 +11,16 @@ from scipy import optimize
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.measure.fits.branches import Layout, circuit_curve, poles, start_at
+from squeezefilm.measure.fits.branches import (
+    Layout,
+    circuit_curve,
+    poles,
+    relative_motion,
+    start_at,
+)
 from squeezefilm.measure.fits.complex_fit import ComplexFit, adequacy_of, fit_complex
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.plate.circuit import EquivalentCircuit
 
@@ -21,7 +28,6 @@ MOST_BRANCHES = 8
 # So many richer circuits in a row that are no better, and no more are tried: two modes of five that
 # are told only together take three steps.
 _PATIENCE = 6
-_FEWEST_POINTS = 16
 # A branch that is flatter than this is no resonance but what a band shows of other things.
 _LEAST_QUALITY = 4.0
 _LEAST_RISE = 1e-3
@@ -47,14 +53,12 @@ class Branch:
 
 
 @dataclass(frozen=True)
-class SweepPeaks:
-    """What can be read off a sweep without any model: the largest conductance (S) and the largest
-    resistance (Ω), the real parts of Y and of 1/Y, and the frequencies (Hz) of both."""
+class Softening:
+    """What a body does when it moves farther, from rest to the largest motion of a sweep at one
+    voltage: by which share its resonance falls, and by which share its loss 1/Q is larger."""
 
-    conductance_frequency: si.Hertz
-    conductance: si.Siemens
-    resistance_frequency: si.Hertz
-    resistance: si.Ohm
+    frequency_fall: Estimate
+    loss_rise: Estimate
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,9 +67,11 @@ class ImpedanceFit:
     `branches` rising in frequency, of which `main` is the number of the strongest.
 
     `coupling_loss` is the loss tangent θ of the piezoelectric coupling itself (motional currents
-    are turned by (1 − iθ)²), None where the sweep does not ask for one. `drift` is the change of
-    the analyser's complex gain from the first to the last point where it
-    was fitted too. `layout` and `fit` are what was fitted, for `admittance`.
+    are turned by (1 − iθ)²), None where the sweep does not ask for one. With `softening`, found in
+    the same way, the branch is that of the largest motion in the sweep; None for a body that is
+    linear as far as the sweep tells. `motion` (points,) at `frequency` (Hz) is relative to the
+    largest. `drift` is the change of the analyser's complex gain from the first to the last point
+    where it was fitted too. `layout` and `fit` are what was fitted, for `admittance`.
     """
 
     static_capacitance: Estimate
@@ -73,10 +79,13 @@ class ImpedanceFit:
     branches: tuple[Branch, ...]
     main: int
     coupling_loss: Estimate | None
+    softening: Softening | None
     drift: complex | None
     adequacy: Adequacy
     layout: Layout
     fit: ComplexFit
+    frequency: si.HertzArray
+    motion: si.DimensionlessArray
 
     @property
     def strongest(self) -> Branch:
@@ -98,9 +107,11 @@ class ImpedanceFit:
 
     @si.checked_numbers
     def admittance(self, frequency: Annotated[si.HertzArray, si.Above(0.0)]) -> si.ComplexArray:
-        """The circuit's admittance (S) at frequencies (Hz), without the analyser's drift."""
+        """The circuit's admittance (S) at frequencies (Hz), without the analyser's drift; one that
+        softens moves as it did in the sweep."""
         layout = replace(self.layout, drift=False)
-        return circuit_curve(layout, self.fit.parameters[: layout.size], frequency)[0]
+        motion = np.interp(frequency, self.frequency, self.motion)
+        return circuit_curve(layout, self.fit.parameters[: layout.size], frequency, motion)[0]
 
     @property
     def observations(self) -> tuple[Observation, ...]:
@@ -125,7 +136,8 @@ def fit_impedance(
 
     Without `branches`: one more as long as what is left is smoother than noise and the Bayesian
     information criterion falls by more than 10, at most 8; a loss of the coupling itself is asked
-    for in the same way. `drift` fits a complex gain that changes
+    for in the same way, and after it a branch that softens and loses more the farther it moves, by
+    the square of its motion (for a sweep at one voltage). `drift` fits a complex gain that changes
     in proportion to the point's number too; a resonance that drifts during the sweep cannot be
     told from another Q. All points have the same relative noise, which is estimated from the data;
     missing points do no harm. Intervals are of 95 %, to first order in the noise; where the circuit
@@ -140,87 +152,16 @@ def fit_impedance(
     return _told(sweep, fit, layout)
 
 
-def require_passive(sweep: ImpedanceSweep) -> None:
-    """Refuse what is no sweep of a passive, capacitive body. Raises `InputError`.
-
-    Off resonance, here the tenth of the points at either end, a body is a capacitor: its
-    admittance leads by nearly 90°. Resonances and noise leave a real part that is positive on
-    average.
-    """
-    y, f = sweep.admittance, sweep.frequency
-    if y.ndim != 1 or f.shape != y.shape or y.size < _FEWEST_POINTS:
-        raise InputError(
-            f"the sweep has {y.size} points; a fit needs at least {_FEWEST_POINTS}, on both sides "
-            "of a resonance",
-            quantity="admittance",
-        )
-    if not (np.all(np.isfinite(y)) and np.all(np.isfinite(f)) and np.all(y != 0)):
-        raise InputError(
-            "the sweep has points that are not finite or have no admittance at all; leave them "
-            "out, missing points do no harm",
-            quantity="admittance",
-        )
-    if f[0] <= 0 or np.any(np.diff(f) <= 0):
-        raise InputError(
-            "the frequencies do not rise; sort the points and join those at one frequency",
-            quantity="frequency",
-        )
-    unit = y / np.abs(y)
-    rim = max(2, y.size // 10)
-    ends = np.concatenate([unit[:rim], unit[-rim:]])
-    lead = math.degrees(math.atan2(float(np.median(ends.imag)), float(np.median(ends.real))))
-    if float(np.mean(unit.real)) < 0:
-        raise InputError(
-            f"the sweep gives out power: the real part of its admittance is negative at "
-            f"{int(np.sum(y.real < 0))} of {y.size} points, and away from resonance the admittance "
-            f"leads by {lead:.0f}° where a capacitor's leads by up to 90°. The phase was probably "
-            "recorded with an offset of 180°; look at it, and if so write correct = "
-            '"phase 180 deg" in the TOML beside the recording',
-            quantity="admittance",
-        )
-    if lead < 0:
-        raise InputError(
-            f"away from resonance the admittance leads by {lead:.0f}°, as that of a coil; a "
-            "ceramic is a capacitor there and leads by up to 90°. The phase was probably recorded "
-            "with the wrong sign, or as that of the admittance; look at it, and if so write "
-            'correct = "phase sign" in the TOML beside the recording',
-            quantity="admittance",
-        )
-
-
-def sweep_peaks(sweep: ImpedanceSweep) -> SweepPeaks:
-    """The largest conductance and resistance, by a parabola through the three highest points of
-    the inverse of each, which is one near a resonance. Noise makes them too large by some of it.
-    Raises `InputError` as `fit_impedance` does.
-    """
-    require_passive(sweep)
-    at_series = _peak(sweep.frequency, sweep.admittance.real)
-    at_parallel = _peak(sweep.frequency, (1 / sweep.admittance).real)
-    return SweepPeaks(*at_series, *at_parallel)
-
-
-def _peak(frequency: si.HertzArray, values: si.FloatArray) -> tuple[float, float]:
-    top = int(np.argmax(values))
-    near = slice(max(top - 1, 0), top + 2)
-    if values[near].size < 3 or np.any(values[near] <= 0):
-        return float(frequency[top]), float(values[top])
-    x = frequency[near] - frequency[top]
-    a, b, c = np.polyfit(x, 1 / values[near], 2)
-    if a <= 0 or not x[0] <= -b / (2 * a) <= x[-1]:
-        return float(frequency[top]), float(values[top])
-    return float(frequency[top] - b / (2 * a)), float(1 / (c - b**2 / (4 * a)))
-
-
 def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> tuple[ComplexFit, Layout]:
     """The fit of as many branches as were asked for, or as the sweep asks for."""
     counts = range(1, MOST_BRANCHES + 1) if branches is None else (branches,)
     best: tuple[ComplexFit, Layout] | None = None
     since = 0
     for count in counts:
-        for lossy in (False, True):
+        for layout in _layouts(count, drift):
             if best is not None and (best[0].correlation == 1.0 or since == _PATIENCE):
                 return best
-            more = _fitted(sweep, Layout(count, lossy, drift))
+            more = _fitted(sweep, layout)
             if more is not None and (best is None or _better(more, best)):
                 best, since = more, 0
             else:
@@ -228,6 +169,14 @@ def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> tuple[C
     if best is None:
         raise _no_resonance(sweep, branches or 1)
     return best
+
+
+def _layouts(count: int, drift: bool) -> tuple[Layout, ...]:
+    """Circuits of that many branches, the plainer first; only one branch can soften."""
+    plain, lossy = Layout(count, drift=drift), Layout(count, coupling_loss=True, drift=drift)
+    if count > 1:
+        return plain, lossy
+    return plain, lossy, replace(lossy, softening=True)
 
 
 def _better(more: tuple[ComplexFit, Layout], best: tuple[ComplexFit, Layout]) -> bool:
@@ -261,10 +210,10 @@ def _fitted(sweep: ImpedanceSweep, layout: Layout) -> tuple[ComplexFit, Layout] 
     own, quality = _starts(f, y, count)
     if own is None:
         return None
+    start = start_at(layout, f, y, own, quality)
+    motion = _motion(sweep, start)
     try:
-        fit = fit_complex(
-            lambda p: circuit_curve(layout, p, f), start_at(layout, f, y, own, quality), y
-        )
+        fit = fit_complex(lambda p: circuit_curve(layout, p, f, motion), start, y)
     except ConvergenceError:
         return None
     logs = np.array([fit.parameters[layout.branch(k)] for k in range(count)])
@@ -277,7 +226,16 @@ def _fitted(sweep: ImpedanceSweep, layout: Layout) -> tuple[ComplexFit, Layout] 
     strong = quality * np.exp(np.clip(logs[:, 2] - fit.parameters[0], -60, 30)) > _LEAST_RISE
     if not np.all(inside & sharp & strong) or not np.all(np.diag(fit.covariance) > 0):
         return None
+    # Softer by a third is no correction of a linear circuit any more.
+    if layout.softening and np.any(np.abs(fit.parameters[layout.soft :][:2]) > [0.3, 0.95]):
+        return None
     return _in_order(fit, layout, frequency), layout
+
+
+def _motion(sweep: ImpedanceSweep, p: si.FloatArray) -> si.DimensionlessArray:
+    """The motion at each point over the largest, with the static branch of parameters `p`."""
+    held = 2j * np.pi * sweep.frequency * math.exp(p[0]) * (1 - 1j * p[1])
+    return relative_motion(held, sweep.frequency, sweep.admittance)
 
 
 def _starts(
@@ -306,24 +264,20 @@ def _in_order(fit: ComplexFit, layout: Layout, frequency: si.HertzArray) -> Comp
     for k, at in enumerate(np.argsort(frequency)):
         order[layout.branch(k)] = np.arange(layout.size)[layout.branch(int(at))]
     both = np.ix_(order, order)
-    return ComplexFit(
-        fit.parameters[order],
-        fit.covariance[both],
-        fit.information[both],
-        fit.residual,
-        fit.noise,
-        fit.spread,
-        fit.correlation,
-        fit.degrees_of_freedom,
+    return replace(
+        fit,
+        parameters=fit.parameters[order],
+        covariance=fit.covariance[both],
+        information=fit.information[both],
     )
 
 
 def _told(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> ImpedanceFit:
     p = fit.parameters
     capacitances = [p[layout.branch(k)][2] for k in range(layout.branches)]
-    count = f"the circuit of {layout.branches} branches"
+    what = f"The circuit of {layout.branches} branches"
     if layout.branches == 1:
-        count = "the circuit of one branch"
+        what = f"The circuit of one branch{' that softens' if layout.softening else ''}"
     return ImpedanceFit(
         static_capacitance=fit.estimate(lambda p: math.exp(p[0]), "F"),
         loss_tangent=fit.estimate(lambda p: float(p[1]), "1"),
@@ -332,10 +286,21 @@ def _told(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> ImpedanceFi
         coupling_loss=(
             fit.estimate(lambda p: float(p[layout.loss]), "1") if layout.coupling_loss else None
         ),
+        softening=_softening(fit, layout) if layout.softening else None,
         drift=complex(p[-2], p[-1]) if layout.drift else None,
-        adequacy=adequacy_of(fit, sweep.frequency, count[0].upper() + count[1:]),
+        adequacy=adequacy_of(fit, sweep.frequency, what),
         layout=layout,
         fit=fit,
+        frequency=sweep.frequency,
+        motion=_motion(sweep, p),
+    )
+
+
+def _softening(fit: ComplexFit, layout: Layout) -> Softening:
+    g, h = layout.soft, layout.soft + 1
+    return Softening(
+        frequency_fall=fit.estimate(lambda p: 1 - 1 / math.sqrt(1 + float(p[g])), "1"),
+        loss_rise=fit.estimate(lambda p: 1 / (1 - float(p[h])) - 1, "1"),
     )
 
 
@@ -370,13 +335,14 @@ def _branch(fit: ComplexFit, layout: Layout, k: int) -> Branch:
 
 def parallel_resonance(layout: Layout, p: si.FloatArray, k: int) -> si.Hertz:
     """Where the susceptance of the circuit without its losses vanishes above branch k (Hz): with
-    one branch fs √(1 + C1/C0)."""
+    one branch fs √(1 + C1/C0). There one that softens is nearly at rest, and as stiff as that."""
     at = [layout.branch(j) for j in range(layout.branches)]
     squares = np.exp([2 * p[j][0] for j in at])
     weights = np.exp([p[j][2] - p[0] for j in at])
     own = float(squares[k])
     if layout.branches == 1:
-        return math.sqrt(own * (1 + float(weights[0])))
+        stiffer = float(p[layout.soft]) if layout.softening else 0.0
+        return math.sqrt(own * (1 + stiffer + float(weights[0])))
 
     def susceptance(square: float) -> float:
         return float(1 + np.sum(weights * squares / (squares - square)))

@@ -9,20 +9,15 @@ from squeezefilm.measure.fits.branches import Layout, circuit_curve, poles, star
 from squeezefilm.plate.circuit import EquivalentCircuit
 
 FREQUENCY = np.linspace(35e3, 46e3, 240)
-LAYOUT = Layout(2, coupling_loss=True, drift=True)
-P = np.array(
+LAYOUT = Layout(2, coupling_loss=True, softening=True, drift=True)
+MOTION = np.linspace(0, 1, FREQUENCY.size)
+P = np.concatenate(
     [
-        np.log(3e-9),
-        0.01,
-        np.log(38e3),
-        np.log(80),
-        np.log(2e-10),
-        np.log(41e3),
-        np.log(120),
-        np.log(1e-10),
-        0.015,
-        0.03,
-        -0.02,
+        np.log([3e-9]),
+        [0.01],
+        np.log([38e3, 80, 2e-10]),
+        np.log([41e3, 120, 1e-10]),
+        [0.015, 0.01, 0.2, 0.03, -0.02],
     ]
 )
 
@@ -45,11 +40,11 @@ def test_one_branch_is_the_circuit_of_butterworth_and_van_dyke() -> None:
 
 
 def test_derivatives_are_those_of_differences() -> None:
-    slopes = circuit_curve(LAYOUT, P, FREQUENCY)[1]
+    slopes = circuit_curve(LAYOUT, P, FREQUENCY, MOTION)[1]
     for k in range(LAYOUT.size):
         step = 1e-6 * np.eye(LAYOUT.size)[k]
-        rise = circuit_curve(LAYOUT, P + step, FREQUENCY)[0]
-        rise = rise - circuit_curve(LAYOUT, P - step, FREQUENCY)[0]
+        rise = circuit_curve(LAYOUT, P + step, FREQUENCY, MOTION)[0]
+        rise = rise - circuit_curve(LAYOUT, P - step, FREQUENCY, MOTION)[0]
         assert np.abs(rise / 2e-6 - slopes[k]).max() < 1e-6 * np.abs(slopes[k]).max(), k
 
 

@@ -22,7 +22,7 @@ from squeezefilm.measure.fits.disc_prediction import (
     RadialPrediction,
     predict_radial_mode,
 )
-from squeezefilm.measure.fits.impedance import sweep_peaks
+from squeezefilm.measure.fits.sweep_reading import sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
 

@@ -9,8 +9,9 @@ import pytest
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.branches import Layout, circuit_curve
-from squeezefilm.measure.fits.impedance import fit_impedance, parallel_resonance, sweep_peaks
+from squeezefilm.measure.fits.branches import Layout, circuit_curve, relative_motion
+from squeezefilm.measure.fits.impedance import fit_impedance, parallel_resonance
+from squeezefilm.measure.fits.sweep_reading import sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 
 FREQUENCY = np.linspace(25.5e3, 32.5e3, 401)
@@ -113,6 +114,39 @@ def test_a_coupling_that_loses_is_told() -> None:
     low, high = fit.coupling_loss.interval
     assert low < 0.02 < high
     assert len(fit.branches) == 1
+
+
+def softened(g: float, h: float, noise: float) -> ImpedanceSweep:
+    """A sweep of a branch that softens, its motion and its curve made to agree."""
+    layout = Layout(1, coupling_loss=True, softening=True)
+    held = 2j * np.pi * FREQUENCY * np.exp(TRUTH[0]) * (1 - 1j * TRUTH[1])
+    motion = np.zeros(FREQUENCY.size)
+    for _ in range(80):
+        curve = circuit_curve(layout, np.append(TRUTH, [0.0, g, h]), FREQUENCY, motion)[0]
+        motion = relative_motion(held, FREQUENCY, curve)
+    return ImpedanceSweep(FREQUENCY, noisy(curve, noise))
+
+
+@pytest.mark.parametrize("noise", [1e-4, 5e-3])
+def test_a_branch_that_softens_is_told(noise: float) -> None:
+    fit = fit_impedance(softened(0.008, 0.3, noise))
+    assert fit.softening is not None
+    # From rest to the largest motion: f falls by 1 − 1/√1.008, 1/Q rises by 1/0.7 − 1.
+    assert fit.softening.frequency_fall.value == pytest.approx(0.00398, abs=3e-4)
+    assert fit.softening.loss_rise.value == pytest.approx(0.43, abs=0.05)
+    assert fit.strongest.series_resonance.value == pytest.approx(28.1e3, rel=3e-4)
+    assert fit.strongest.quality_factor.value == pytest.approx(75, rel=0.03)
+    assert "softens" in fit.adequacy.sentence
+    again = fit.admittance(FREQUENCY)
+    assert again == pytest.approx(softened(0.008, 0.3, 0.0).admittance, rel=0.02)
+    peaks = sweep_peaks(softened(0.008, 0.3, 0.0))
+    assert fit.strongest.parallel_resonance.value == pytest.approx(
+        peaks.resistance_frequency, rel=5e-4
+    )
+
+
+def test_a_linear_branch_is_not_said_to_soften() -> None:
+    assert fit_impedance(PLAIN).softening is None
 
 
 def test_a_drift_is_fitted_on_request_and_otherwise_noticed() -> None:
