@@ -25,7 +25,7 @@ def test_a_sweep_with_little_noise_gives_back_what_it_was_made_of() -> None:
 
 @pytest.mark.parametrize("name", sorted(KINDS))
 def test_intervals_hold_the_truth(name: str) -> None:
-    runs = 20 if name == "double modes" else 60
+    runs = 8 if name == "double modes" else 40
     held, failed = coverage(KINDS[name], runs, seed=7)
     assert failed == 0
     for quantity, one in held.items():
