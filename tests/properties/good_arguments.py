@@ -144,6 +144,11 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.ring.modes.bending_frequency": {"diameters": 2, "degree": 3},
     "plate.ring.modes.annular_modes": {"harmonic": 1, "degree": 3, "count": 1},
     "plate.ring.modes.annular_admittance": {"harmonics": (0,), "degree": 3, "modes": 2},
+    "plate.ring.ceramic_disc.CeramicDisc": {"diameter": 20e-3},
+    "plate.ring.ceramic_disc.disc_admittance": {
+        "constants": np.array([120e9, 75e9, 75e9, 110e9, 21e9, -5.0, 16.0, 12.0, 8e-9, 7e-9]) + 0j,
+        "frequency": np.array([60e3, 70e3]),
+    },
     "plate.ring.pair.pair_motion": {"split": 0.5, "axis": 0.3},
     "plate.ring.pair.crest_speed": {"travelling": 1e-6},
     "plate.solid.screening.screened_modes": {"band": (30e3, 60e3)},

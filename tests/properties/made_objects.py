@@ -47,6 +47,7 @@ from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
 from squeezefilm.plate.layout import Actuator, CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode
 from squeezefilm.plate.ring.body import RingBody
+from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
 from squeezefilm.plate.ring.response import RingResponse, ring_response
 from squeezefilm.plate.ring.section import (
@@ -180,6 +181,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     AnnularSection: disc_section,
     SectorDrive: full_drive,
     RingLayer: lambda: disc_section().layers[0],
+    CeramicDisc: lambda: CeramicDisc(20e-3, 1e-3, 7700.0),
     BeamMode: lambda: beam_response(PLATE).mode,
     Laminate: lambda: plate_laminate(PLATE),
     Layer: lambda: Layer(1e-3, 100e9, 40e9, 8500.0),

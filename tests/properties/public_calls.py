@@ -88,7 +88,8 @@ NOT_CALLED = {
     film.periodic.resolution.refined film.periodic.resolution.collocation_times film.gas.slip_law
     plate.ring.elements.HarmonicSystem
     plate.ring.elements.HarmonicSystem.field plate.ring.elements.RingMesh
-    plate.ring.elements.harmonic_system plate.elements.block_ldl.PartialLDL
+    plate.ring.elements.harmonic_system plate.ring.ceramic_disc.DiscSystem
+    plate.ring.ceramic_disc.disc_system plate.elements.block_ldl.PartialLDL
     plate.elements.block_ldl.partial_ldl plate.elements.mirrored_element.MirroredElement
     plate.elements.box_model.BoxModel
     plate.elements.box_model.Electrode

@@ -1,0 +1,219 @@
+"""Constants of a ceramic disc from the sweep of its first radial mode, with the solved disc."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.materials import VACUUM_PERMITTIVITY
+from squeezefilm.measure.fits.ceramic_prior import PARAMETERS, ceramic_prior, compliances
+from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, adequacy_of, fit_complex
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.sweep_reading import require_passive, sweep_peaks
+from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+from squeezefilm.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
+
+_LEAST_SLENDERNESS = 5.0
+
+
+@dataclass(frozen=True)
+class Combination:
+    """One direction in the parameters, each in units of its standard deviation beforehand.
+
+    `weights` names the parameters that take part, `left` is how much of the standard deviation the
+    data leave: 1 is nothing learnt.
+    """
+
+    weights: dict[str, float]
+    left: si.Dimensionless
+
+
+@dataclass(frozen=True, eq=False)
+class DiscConstants:
+    """What the sweep of a disc's first radial mode says of its ceramic.
+
+    s11 and s12 at constant field (m²/N), Poisson's ratio −s12/s11, d31 (m/V, by convention
+    negative), relative ε33 at constant stress, the Q of s11, loss tangents of d31 and ε33.
+    `from_data` is, for every one of `PARAMETERS`, by how much the sweep narrowed its standard
+    deviation (1: only the prior speaks). `mean_misfit` is mean |ΔY| / mean |Y|.
+    """
+
+    disc: CeramicDisc
+    compliance_11: Estimate
+    compliance_12: Estimate
+    poisson_ratio: Estimate
+    charge_coefficient_31: Estimate
+    free_permittivity_33: Estimate
+    planar_coupling: Estimate
+    quality_factor: Estimate
+    charge_loss: Estimate
+    dielectric_loss: Estimate
+    from_data: dict[str, float]
+    combinations: tuple[Combination, ...]
+    mean_misfit: si.Dimensionless
+    admittance: si.ComplexArray
+    adequacy: Adequacy
+    fit: ComplexFit
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """None: constants of a material are no answers of a display."""
+        return ()
+
+
+def disc_constants(
+    sweep: ImpedanceSweep, disc: CeramicDisc, prior: Prior | None = None
+) -> DiscConstants:
+    """Fit the axisymmetric piezoelectric solution of the free disc to a sweep of its first radial
+    mode, with elastic, piezoelectric and dielectric losses.
+
+    What the mode does not tell (Poisson's ratio, everything along the thickness) is held by
+    `prior`, that of the library's ceramics where none is given, and its uncertainty stays in the
+    intervals. Constants do not depend on frequency within the sweep. Range: discs at least 5 times
+    as wide as thick (`CeramicDisc`), full electrodes, free. Raises `InputError` as `fit_impedance`
+    does, and for a thicker disc.
+    """
+    require_passive(sweep)
+    slender = disc.diameter / disc.thickness
+    if slender < _LEAST_SLENDERNESS:
+        raise InputError(
+            f"the disc is {slender:.3g} times as wide as thick; a radial mode can be told from "
+            f"the others from {_LEAST_SLENDERNESS:.0f} on",
+            quantity="disc",
+        )
+    prior = prior or ceramic_prior()
+    curve = DiscCurve(disc, sweep.frequency)
+    start = _start(sweep, disc, prior)
+    fit = fit_complex(curve, start, sweep.admittance, prior=prior)
+    fitted = curve(fit.parameters)[0]
+    miss = np.mean(np.abs(sweep.admittance - fitted)) / np.mean(np.abs(sweep.admittance))
+    spread = np.sqrt(np.diag(fit.covariance))
+
+    def coupling(p: si.FloatArray) -> float:
+        square = math.exp(2 * p[2] - p[0] - p[3]) / VACUUM_PERMITTIVITY
+        return math.sqrt(2 * square / (1 - p[1]))
+
+    charge = fit.estimate(lambda p: math.exp(p[2]), "m/V")
+    low, high = charge.interval
+    return DiscConstants(
+        disc=disc,
+        compliance_11=fit.estimate(lambda p: math.exp(p[0]), "m2/N"),
+        compliance_12=fit.estimate(lambda p: -float(p[1]) * math.exp(p[0]), "m2/N"),
+        poisson_ratio=fit.estimate(lambda p: float(p[1]), "1"),
+        charge_coefficient_31=replace(charge, value=-charge.value, interval=(-high, -low)),
+        free_permittivity_33=fit.estimate(lambda p: math.exp(p[3]), "1"),
+        planar_coupling=fit.estimate(coupling, "1"),
+        quality_factor=fit.estimate(lambda p: 1 / float(p[4]), "1"),
+        charge_loss=fit.estimate(lambda p: float(p[5]), "1"),
+        dielectric_loss=fit.estimate(lambda p: float(p[6]), "1"),
+        from_data=dict(zip(PARAMETERS, (spread / prior.spread).tolist(), strict=True)),
+        combinations=combinations(fit, prior),
+        mean_misfit=float(miss),
+        admittance=fitted,
+        adequacy=adequacy_of(fit, sweep.frequency, "The solved disc"),
+        fit=fit,
+    )
+
+
+class DiscCurve:
+    """The admittance of a disc at frequencies as a function of the parameters, with derivatives;
+    the last answer is kept, since a fit asks for curve and derivatives one after the other."""
+
+    def __init__(self, disc: CeramicDisc, frequency: si.HertzArray) -> None:
+        self._disc, self._frequency = disc, frequency
+        self._at: bytes = b""
+        self._answer: tuple[si.ComplexArray, si.ComplexArray] | None = None
+
+    def __call__(self, p: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
+        """Admittance (points,) and derivatives (parameters, points)."""
+        if self._answer is None or p.tobytes() != self._at:
+            curve, slopes = disc_admittance(
+                self._disc, weak_constants(*compliances(p)), self._frequency
+            )
+            self._answer = curve, _constant_slopes(p) @ slopes
+            self._at = p.tobytes()
+        return self._answer
+
+
+def _constant_slopes(p: si.FloatArray) -> si.ComplexArray:
+    """Derivatives of the ten constants with the parameters, (parameters, 10), by central
+    differences of a closed form."""
+    rows = []
+    for k in range(p.size):
+        up, down = p.copy(), p.copy()
+        up[k] += 1e-6
+        down[k] -= 1e-6
+        rise = weak_constants(*compliances(up)) - weak_constants(*compliances(down))
+        rows.append(rise / 2e-6)
+    return np.array(rows)
+
+
+def _start(sweep: ImpedanceSweep, disc: CeramicDisc, prior: Prior) -> si.FloatArray:
+    """Sizes read off the sweep by the formulas of a thin disc, the rest from the prior.
+
+    The first radial mode of a thin disc of σ near 0.32 is at η = 2.06 of η = (ω D/2) √(ρ s11
+    (1 − σ²)); its coupling follows k²/(1 − k²) ≈ 2.51 (fp − fs)/fs − 0.78 ((fp − fs)/fs)² (IEEE
+    standard 176-1987, figure of the planar coupling, a fit to it), enough to start from.
+    """
+    p = prior.mean.copy()
+    peaks = sweep_peaks(sweep)
+    series, parallel = peaks.conductance_frequency, peaks.resistance_frequency
+    if not series < parallel:
+        raise InputError(
+            f"the largest resistance ({parallel / 1e3:.5g} kHz) is not above the largest "
+            f"conductance ({series / 1e3:.5g} kHz); give a sweep that holds the first radial mode "
+            "and the parallel resonance above it",
+            quantity="admittance",
+        )
+    velocity = math.pi * series * disc.diameter / 2.06
+    s11 = 1 / (disc.density * velocity**2 * (1 - p[1] ** 2))
+    apart = parallel / series - 1
+    ratio = max(2.51 * apart - 0.78 * apart**2, 0.01)
+    square = ratio / (1 + ratio)
+    # Well above the mode the disc is held in its plane.
+    high = slice(-max(3, sweep.frequency.size // 20), None)
+    capacitance = float(
+        np.median(sweep.admittance.imag[high] / (2 * np.pi * sweep.frequency[high]))
+    )
+    area = math.pi / 4 * disc.diameter**2
+    held = max(capacitance, 1e-15) * disc.thickness / (VACUUM_PERMITTIVITY * area)
+    eps33 = held / (1 - square)
+    d31 = math.sqrt(square * s11 * (1 - p[1]) * eps33 * VACUUM_PERMITTIVITY / 2)
+    p[[0, 2, 3]] = math.log(s11), math.log(d31), math.log(eps33)
+    return p
+
+
+def combinations(fit: ComplexFit, prior: Prior) -> tuple[Combination, ...]:
+    """The directions in which the data speak, best known first: eigenvectors of their information
+    in units of the prior. Those that are left above 0.9 are not listed."""
+    information = fit.information * np.outer(prior.spread, prior.spread)
+    values, vectors = np.linalg.eigh(information)
+    found = []
+    for value, vector in zip(values[::-1], vectors.T[::-1], strict=True):
+        left = 1 / math.sqrt(1 + max(float(value), 0.0))
+        if left > 0.9:
+            break
+        vector = vector * np.sign(vector[np.argmax(np.abs(vector))])
+        weights = {
+            name: float(weight)
+            for name, weight in zip(PARAMETERS, vector, strict=True)
+            if abs(weight) > 0.1
+        }
+        found.append(Combination(weights, left))
+    return tuple(found)
+
+
+@si.checked_numbers
+def disc_by_mass(
+    diameter: Annotated[si.Metre, si.Above(0.0)],
+    thickness: Annotated[si.Metre, si.Above(0.0)],
+    mass: Annotated[si.Kilogram, si.Above(0.0)],
+) -> CeramicDisc:
+    """The disc of a diameter, a thickness (m) and a mass (kg) that was weighed."""
+    volume = math.pi / 4 * diameter**2 * thickness
+    return CeramicDisc(diameter, thickness, mass / volume)

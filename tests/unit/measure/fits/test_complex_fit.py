@@ -1,0 +1,112 @@
+"""The least squares under every fit of an admittance."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.complex_fit import (
+    Model,
+    Prior,
+    adequacy_of,
+    correlation_time,
+    fit_complex,
+    gradient,
+    roughness,
+)
+
+X = np.linspace(0, 1, 200)
+RANDOM = np.random.default_rng(3)
+
+
+def white(size: int) -> si.ComplexArray:
+    return RANDOM.standard_normal(size) + 1j * RANDOM.standard_normal(size)
+
+
+def line(p: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
+    """p0 + i p1 x."""
+    return p[0] + 1j * p[1] * X, np.array([np.ones(X.size), 1j * X])
+
+
+MODEL: Model = line
+
+
+def test_a_line_is_found_with_the_standard_errors_of_a_line() -> None:
+    noise = 0.01
+    data = line(np.array([1.0, 1.0]))[0] + noise * white(X.size)
+    fit = fit_complex(line, np.array([0.5, 0.2]), data, weighing="absolute")
+    size = np.mean(np.abs(data))
+    assert fit.parameters == pytest.approx([1.0, 1.0], abs=4e-3)
+    expected = [noise / math.sqrt(X.size), noise / math.sqrt(np.sum(X**2))]
+    assert np.sqrt(np.diag(fit.covariance)) == pytest.approx(expected, rel=0.15)
+    assert fit.spread == pytest.approx(noise / size, rel=0.15)
+    estimate = fit.estimate(lambda p: float(p[0] ** 2), "1")
+    assert estimate.standard_error == pytest.approx(2 * expected[0], rel=0.15)
+
+
+def test_relative_noise_does_not_pull_the_fit_down() -> None:
+    """Weights of the noisy data would: by the square of the noise, here 0.01."""
+    errors = []
+    for _ in range(40):
+        data = line(np.array([1.0, 1.0]))[0] * (1 + 0.1 * white(X.size))
+        errors.append(fit_complex(line, np.array([1.0, 1.0]), data).parameters[0] - 1)
+    assert np.mean(errors) == pytest.approx(0, abs=4 * np.std(errors) / math.sqrt(40))
+
+
+def test_a_prior_holds_what_the_data_do_not_tell() -> None:
+    def blind(p: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
+        curve, slopes = line(p[:2])
+        return curve, np.vstack([slopes, np.zeros(X.size)])
+
+    data = line(np.array([1.0, 1.0]))[0] * (1 + 0.01 * white(X.size))
+    prior = Prior(np.array([0.0, 0.0, 7.0]), np.array([np.inf, np.inf, 0.5]))
+    fit = fit_complex(blind, np.array([1.0, 1.0, 6.0]), data, prior=prior)
+    assert fit.parameters[2] == pytest.approx(7.0)
+    assert math.sqrt(fit.covariance[2, 2]) == pytest.approx(0.5)
+    assert fit.parameters[0] == pytest.approx(1.0, abs=0.01)
+
+
+def test_noise_is_told_from_what_is_smooth() -> None:
+    smooth = 0.1 * np.exp(6j * X)
+    residual = smooth + 1e-3 * white(X.size)
+    assert roughness(residual) == pytest.approx(1e-3, rel=0.3)
+    assert correlation_time(residual) > 20
+    assert correlation_time(white(400)) == 1.0
+    assert roughness(np.zeros(2, dtype=complex)) == 0.0
+    assert correlation_time(np.zeros(20, dtype=complex)) == 1.0
+
+
+def test_a_misfit_widens_intervals_and_is_said_with_its_place() -> None:
+    good = line(np.array([1.0, 1.0]))[0] * (1 + 1e-3 * white(X.size))
+    bad = good * (1 + 0.2 * np.exp(-(((X - 0.7) / 0.05) ** 2)))
+    fits = [fit_complex(line, np.array([1.0, 1.0]), data) for data in (good, bad)]
+    fine, missed = (adequacy_of(fit, 1e3 * X, "The line") for fit in fits)
+    assert fine.adequate
+    assert "describes the sweep" in fine.sentence
+    assert not missed.adequate
+    assert "0.7 kHz" in missed.where or "0.69" in missed.where
+    assert "does not describe" in missed.sentence
+    assert missed.residual > 5 * missed.noise
+    widths = [fit.covariance[0, 0] / fit.spread**2 for fit in fits]
+    assert widths[1] > 3 * widths[0]
+
+
+def test_a_small_misfit_is_adequate_and_said() -> None:
+    data = line(np.array([1.0, 1.0]))[0] * (1 + 0.008 * np.sin(6 * X))
+    found = adequacy_of(fit_complex(line, np.array([1.0, 1.0]), data), 1e3 * X, "The line")
+    assert found.adequate
+    assert "widened" in found.sentence
+
+
+def test_too_few_points_are_refused() -> None:
+    with pytest.raises(InputError, match="points are too few"):
+        fit_complex(line, np.array([1.0, 1.0]), np.ones(4, dtype=complex))
+
+
+def test_gradients_are_central() -> None:
+    at, steps = np.array([2.0, 3.0]), np.array([1e-3, 1e-3])
+    assert gradient(lambda p: float(p[0] ** 2 * p[1]), at, steps) == pytest.approx([12.0, 4.0])

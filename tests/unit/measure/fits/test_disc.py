@@ -1,0 +1,167 @@
+"""A disc's constants: what is given back, what only the prior says, what is refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.ceramic_prior import PARAMETERS, ceramic_prior, compliances
+from squeezefilm.measure.fits.disc import (
+    Combination,
+    DiscConstants,
+    DiscCurve,
+    combinations,
+    disc_by_mass,
+    disc_constants,
+)
+from squeezefilm.measure.fits.disc_prediction import (
+    Extrapolation,
+    RadialPrediction,
+    predict_radial_mode,
+)
+from squeezefilm.measure.fits.sweep_reading import sweep_peaks
+from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+from squeezefilm.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
+
+DISC = CeramicDisc(30e-3, 2.5e-3, 7700.0)
+FREQUENCY = np.linspace(58e3, 84e3, 121)
+TRUE = ceramic_prior().mean.copy()
+TRUE[[1, 8, 9]] = 0.345, -0.44, 1.15
+TRUE[[4, 5, 6]] = 0.012, 0.015, 0.018
+
+
+def disc_sweep(frequency: np.ndarray = FREQUENCY, noise: float = 0.002) -> ImpedanceSweep:
+    curve = disc_admittance(DISC, weak_constants(*compliances(TRUE)), frequency)[0]
+    white = np.random.default_rng(4).standard_normal((2, curve.size))
+    return ImpedanceSweep(frequency, curve * (1 + noise * (white[0] + 1j * white[1])))
+
+
+@pytest.fixture(scope="module")
+def found() -> DiscConstants:
+    peaks = sweep_peaks(disc_sweep(noise=0))
+    assert FREQUENCY[0] < peaks.conductance_frequency < peaks.resistance_frequency < FREQUENCY[-1]
+    return disc_constants(disc_sweep(), DISC)
+
+
+def test_what_the_mode_tells_is_found_and_the_rest_stays_with_the_prior(
+    found: DiscConstants,
+) -> None:
+    assert found.mean_misfit < 0.004
+    assert found.adequacy.adequate
+    for estimate, true in (
+        (found.poisson_ratio, TRUE[1]),
+        (found.compliance_11, math.exp(TRUE[0])),
+        (found.charge_coefficient_31, -math.exp(TRUE[2])),
+        (found.free_permittivity_33, math.exp(TRUE[3])),
+        (found.quality_factor, 1 / TRUE[4]),
+        (found.charge_loss, TRUE[5]),
+        (found.dielectric_loss, TRUE[6]),
+    ):
+        low, high = estimate.interval
+        assert low < true < high, estimate
+    # Poisson's ratio is left to the prior: the first mode hardly tells it.
+    assert found.from_data["-s12/s11"] > 0.5
+    assert found.from_data["ln |d31|"] < 0.01
+    assert found.from_data["s44/s11"] > 0.9
+    assert found.compliance_12.value < 0
+    assert 0.3 < found.planar_coupling.value < 0.8
+    assert found.observations == ()
+
+
+def test_it_says_which_combinations_the_mode_tells(found: DiscConstants) -> None:
+    assert all(isinstance(one, Combination) for one in found.combinations)
+    left = [one.left for one in found.combinations]
+    assert left == sorted(left)
+    assert left[0] < 1e-3
+    assert set(found.combinations[0].weights) <= set(PARAMETERS)
+    again = combinations(found.fit, ceramic_prior())
+    assert [one.left for one in again] == left
+
+
+def test_derivatives_are_those_of_differences() -> None:
+    curve = DiscCurve(DISC, FREQUENCY[::30])
+    slopes = curve(TRUE)[1]
+    for k, name in enumerate(PARAMETERS):
+        step = 1e-5 * np.eye(TRUE.size)[k]
+        rise = (curve(TRUE + step)[0] - curve(TRUE - step)[0]) / 2e-5
+        assert np.abs(rise - slopes[k]).max() < 1e-4 * np.abs(slopes[k]).max() + 1e-9, name
+
+
+def test_the_prior_is_made_of_the_ceramics_of_the_library() -> None:
+    prior = ceramic_prior()
+    assert len(PARAMETERS) == prior.mean.size == prior.spread.size
+    # PZT-4, -5A, -5H and -8: Poisson's ratio 0.29 to 0.35.
+    assert 0.29 < prior.mean[1] < 0.35
+    assert 0.01 < prior.spread[1] < 0.05
+    s, d, eps = compliances(prior.mean)
+    assert s[0].real > 0 > s[1].real
+    assert d[0].real < 0 < d[1].real
+    assert eps[1].real > 500
+
+
+def test_a_mass_gives_the_density() -> None:
+    assert disc_by_mass(35e-3, 2e-3, 14.8993e-3).density == pytest.approx(7743, abs=1)
+
+
+def test_a_thick_disc_and_a_sweep_without_the_mode_are_refused() -> None:
+    with pytest.raises(InputError, match="times as wide as thick"):
+        disc_constants(disc_sweep(), CeramicDisc(10e-3, 4e-3, 7700.0))
+    above = np.linspace(84e3, 130e3, 60)
+    with pytest.raises(InputError, match="not above the largest conductance"):
+        disc_constants(disc_sweep(above, 0.0), DISC)
+
+
+@pytest.fixture(scope="module")
+def prediction(found: DiscConstants) -> RadialPrediction:
+    return predict_radial_mode(found, disc_sweep(), draws=40)
+
+
+@pytest.mark.slow
+def test_the_second_mode_is_predicted_with_an_interval_that_holds_it(
+    prediction: RadialPrediction,
+) -> None:
+    """The truth is one of constants that do not depend on frequency, which is allowed for."""
+    truth = sweep_peaks(disc_sweep(np.linspace(155e3, 190e3, 400), 0.0))
+    for estimate, true in (
+        (prediction.series_resonance, truth.conductance_frequency),
+        (prediction.parallel_resonance, truth.resistance_frequency),
+        (prediction.peak_conductance, truth.conductance),
+        (prediction.peak_resistance, truth.resistance),
+    ):
+        low, high = estimate.interval
+        assert low < true < high, estimate
+    wide = prediction.series_resonance.interval
+    assert 0.005 < (wide[1] - wide[0]) / prediction.series_resonance.value < 0.08
+
+
+@pytest.mark.slow
+def test_poissons_ratio_limits_the_frequency_and_losses_the_conductance(
+    prediction: RadialPrediction,
+) -> None:
+    frequency = {name: share[0] for name, share in prediction.shares.items()}
+    assert max(frequency, key=lambda name: frequency[name]) == "Poisson's ratio"
+    conductance = {name: share[2] for name, share in prediction.shares.items()}
+    assert max(conductance, key=lambda name: conductance[name]) == "losses at another frequency"
+
+
+@pytest.mark.slow
+def test_its_own_mode_is_predicted_as_it_is(found: DiscConstants) -> None:
+    one = predict_radial_mode(found, disc_sweep(), 1, draws=20)
+    seen = sweep_peaks(disc_sweep(noise=0.0))
+    assert one.series_resonance.value == pytest.approx(seen.conductance_frequency, rel=2e-3)
+    assert one.peak_conductance.value == pytest.approx(seen.conductance, rel=0.05)
+
+
+@pytest.mark.slow
+def test_what_is_assumed_of_the_way_can_be_said(found: DiscConstants) -> None:
+    still = Extrapolation(dispersion=0.0, dispersion_spread=0.0)
+    without = predict_radial_mode(found, disc_sweep(), draws=20, assumed=still)
+    with_it = predict_radial_mode(found, disc_sweep(), draws=20)
+    # A loss of 0.012 over a factor of 2.6 in frequency: 2/π · 0.012 · ln 2.6 / 2 of the frequency.
+    rise = with_it.series_resonance.value / without.series_resonance.value - 1
+    assert rise == pytest.approx(0.012 * math.log(2.63) / math.pi, abs=1e-3)
+    with pytest.raises(InputError, match="number"):
+        predict_radial_mode(found, disc_sweep(), 9)

@@ -1,0 +1,209 @@
+"""Circuits out of sweeps: what is found, chosen, refused and said."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.branches import Layout, circuit_curve, relative_motion
+from squeezefilm.measure.fits.impedance import fit_impedance, parallel_resonance
+from squeezefilm.measure.fits.sweep_reading import sweep_peaks
+from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+
+FREQUENCY = np.linspace(25.5e3, 32.5e3, 401)
+TRUTH = np.array([np.log(3.3e-9), 0.01, np.log(28.1e3), np.log(75.0), np.log(4.6e-10)])
+
+
+def noisy(curve: si.ComplexArray, noise: float, seed: int = 1) -> si.ComplexArray:
+    white = np.random.default_rng(seed).standard_normal((2, curve.size))
+    return np.asarray(curve * (1 + noise * (white[0] + 1j * white[1])))
+
+
+def sweep_of(layout: Layout, truth: si.FloatArray, noise: float = 1e-3) -> ImpedanceSweep:
+    return ImpedanceSweep(FREQUENCY, noisy(circuit_curve(layout, truth, FREQUENCY)[0], noise))
+
+
+PLAIN = sweep_of(Layout(1), TRUTH)
+
+
+def test_a_circuit_is_found_and_its_numbers_belong_together() -> None:
+    fit = fit_impedance(PLAIN)
+    branch = fit.strongest
+    assert (len(fit.branches), fit.coupling_loss, fit.drift) == (1, None, None)
+    assert fit.adequacy.adequate
+    assert branch.series_resonance.value == pytest.approx(28.1e3, rel=1e-4)
+    assert branch.quality_factor.value == pytest.approx(75, rel=0.01)
+    omega = 2 * np.pi * branch.series_resonance.value
+    L, C, R = (
+        getattr(branch, f"motional_{name}").value
+        for name in ("inductance", "capacitance", "resistance")
+    )
+    assert pytest.approx(1) == omega**2 * L * C
+    assert pytest.approx(branch.quality_factor.value) == omega * L / R
+    fs, fp = branch.series_resonance.value, branch.parallel_resonance.value
+    assert fp / fs == pytest.approx(np.sqrt(1 + C / fit.static_capacitance.value))
+    assert branch.coupling_coefficient.value == pytest.approx(np.sqrt(1 - (fs / fp) ** 2))
+    names = {one.answer for one in fit.observations}
+    assert {"resonance_frequency", "parallel_resonance_frequency", "coupling_coefficient"} <= names
+    assert fit.circuit.frequency == fs
+    assert fit.admittance(FREQUENCY) == pytest.approx(PLAIN.admittance, rel=0.02)
+
+
+@pytest.mark.parametrize("noise", [1e-4, 0.02])
+def test_two_modes_are_told_from_one(noise: float) -> None:
+    truth = np.concatenate([TRUTH, [np.log(29.3e3), np.log(90.0), np.log(2e-10)]])
+    fit = fit_impedance(sweep_of(Layout(2), truth, noise))
+    assert [round(one.series_resonance.value / 1e3, 1) for one in fit.branches] == [28.1, 29.3]
+    assert fit.main == 0
+    assert fit.branches[0].parallel_resonance.value < 29.3e3
+    alone = fit_impedance(sweep_of(Layout(2), truth, noise), branches=1)
+    assert not alone.adequacy.adequate
+
+
+def test_five_modes_of_a_wide_band_are_found() -> None:
+    """Two of them improve the fit little by themselves: it must look further than one step."""
+    truth = TRUTH[:2]
+    for f, quality, capacitance in (
+        (20e3, 80, 1.3e-10),
+        (33e3, 60, 3e-11),
+        (45e3, 60, 3e-11),
+        (61e3, 60, 3e-11),
+        (80e3, 90, 7e-11),
+    ):
+        truth = np.append(truth, np.log([f, quality, capacitance]))
+    frequency = np.linspace(10e3, 100e3, 1500)
+    curve = circuit_curve(Layout(5), truth, frequency)[0]
+    fit = fit_impedance(ImpedanceSweep(frequency, noisy(curve, 0.003)))
+    found = [one.series_resonance.value for one in fit.branches]
+    assert found == pytest.approx([20e3, 33e3, 45e3, 61e3, 80e3], rel=1e-3)
+    assert (fit.main, fit.adequacy.adequate) == (0, True)
+
+
+@pytest.mark.parametrize(
+    ("quality", "capacitance", "band", "points"),
+    [
+        (3000.0, 2e-10, (27e3, 31e3), 401),
+        (8.0, 4e-10, (18e3, 45e3), 401),
+        (100.0, 2e-13, (27e3, 29.2e3), 401),
+        (100.0, 2e-10, (27e3, 30e3), 25),
+        (75.0, 2e-10, (28e3, 31e3), 201),
+    ],
+    ids=["sharp", "flat", "weak", "few points", "at the edge of the band"],
+)
+def test_resonances_of_all_sorts_are_found(
+    quality: float, capacitance: float, band: tuple[float, float], points: int
+) -> None:
+    truth = TRUTH.copy()
+    truth[3:] = np.log([quality, capacitance])
+    frequency = np.linspace(*band, points)
+    curve = circuit_curve(Layout(1), truth, frequency)[0]
+    fit = fit_impedance(ImpedanceSweep(frequency, noisy(curve, 1e-4)))
+    assert len(fit.branches) == 1
+    assert fit.strongest.series_resonance.value == pytest.approx(28.1e3, rel=1e-3)
+    assert fit.strongest.quality_factor.value == pytest.approx(quality, rel=0.05)
+
+
+def test_a_coupling_that_loses_is_told() -> None:
+    truth = np.append(TRUTH, 0.02)
+    fit = fit_impedance(sweep_of(Layout(1, coupling_loss=True), truth))
+    assert fit.coupling_loss is not None
+    low, high = fit.coupling_loss.interval
+    assert low < 0.02 < high
+    assert len(fit.branches) == 1
+
+
+def softened(g: float, h: float, noise: float) -> ImpedanceSweep:
+    """A sweep of a branch that softens, its motion and its curve made to agree."""
+    layout = Layout(1, coupling_loss=True, softening=True)
+    held = 2j * np.pi * FREQUENCY * np.exp(TRUTH[0]) * (1 - 1j * TRUTH[1])
+    motion = np.zeros(FREQUENCY.size)
+    for _ in range(80):
+        curve = circuit_curve(layout, np.append(TRUTH, [0.0, g, h]), FREQUENCY, motion)[0]
+        motion = relative_motion(held, FREQUENCY, curve)
+    return ImpedanceSweep(FREQUENCY, noisy(curve, noise))
+
+
+@pytest.mark.parametrize("noise", [1e-4, 5e-3])
+def test_a_branch_that_softens_is_told(noise: float) -> None:
+    fit = fit_impedance(softened(0.008, 0.3, noise))
+    assert fit.softening is not None
+    # From rest to the largest motion: f falls by 1 − 1/√1.008, 1/Q rises by 1/0.7 − 1.
+    assert fit.softening.frequency_fall.value == pytest.approx(0.00398, abs=3e-4)
+    assert fit.softening.loss_rise.value == pytest.approx(0.43, abs=0.05)
+    assert fit.strongest.series_resonance.value == pytest.approx(28.1e3, rel=3e-4)
+    assert fit.strongest.quality_factor.value == pytest.approx(75, rel=0.03)
+    assert "softens" in fit.adequacy.sentence
+    again = fit.admittance(FREQUENCY)
+    assert again == pytest.approx(softened(0.008, 0.3, 0.0).admittance, rel=0.02)
+    peaks = sweep_peaks(softened(0.008, 0.3, 0.0))
+    assert fit.strongest.parallel_resonance.value == pytest.approx(
+        peaks.resistance_frequency, rel=5e-4
+    )
+
+
+def test_a_linear_branch_is_not_said_to_soften() -> None:
+    assert fit_impedance(PLAIN).softening is None
+
+
+def test_a_drift_is_fitted_on_request_and_otherwise_noticed() -> None:
+    drifting = sweep_of(Layout(1, drift=True), np.append(TRUTH, [0.1, 0.05]))
+    fit = fit_impedance(drifting, drift=True)
+    assert fit.drift == pytest.approx(0.1 + 0.05j, abs=5e-3)
+    assert fit.strongest.quality_factor.value == pytest.approx(75, rel=0.01)
+    assert fit.adequacy.adequate
+    assert not fit_impedance(drifting, branches=1).adequacy.adequate
+
+
+@pytest.mark.parametrize(
+    ("turn", "said"),
+    [(lambda y: -y, "offset of 180°"), (np.conj, "wrong sign")],
+)
+def test_a_wrong_phase_is_refused_with_what_to_do(turn: object, said: str) -> None:
+    assert callable(turn)
+    with pytest.raises(InputError, match=said):
+        fit_impedance(dataclasses.replace(PLAIN, admittance=turn(PLAIN.admittance)))
+
+
+@pytest.mark.parametrize(
+    ("frequency", "admittance", "said"),
+    [
+        (FREQUENCY[:9], PLAIN.admittance[:9], "at least 16"),
+        (FREQUENCY[::-1], PLAIN.admittance, "do not rise"),
+        (FREQUENCY, np.where(FREQUENCY > 30e3, np.nan, PLAIN.admittance), "not finite"),
+        (FREQUENCY, 2j * np.pi * FREQUENCY * 3e-9 * (1 - 0.01j), "could not be found"),
+    ],
+)
+def test_what_cannot_be_fitted_is_refused(
+    frequency: si.HertzArray, admittance: si.ComplexArray, said: str
+) -> None:
+    with pytest.raises(InputError, match=said):
+        fit_impedance(ImpedanceSweep(frequency, admittance))
+
+
+def test_more_branches_than_there_are_can_be_asked_for_but_not_too_many() -> None:
+    with pytest.raises(InputError, match="branches"):
+        fit_impedance(PLAIN, branches=9)
+
+
+def test_peaks_are_read_without_a_model() -> None:
+    peaks = sweep_peaks(sweep_of(Layout(1), TRUTH, 0.0))
+    fit = fit_impedance(PLAIN).strongest
+    assert peaks.conductance_frequency == pytest.approx(fit.series_resonance.value, rel=2e-4)
+    assert peaks.resistance_frequency == pytest.approx(fit.parallel_resonance.value, rel=2e-4)
+    assert peaks.conductance == pytest.approx(1 / fit.motional_resistance.value, rel=0.02)
+
+
+def test_the_parallel_resonance_lies_between_two_branches() -> None:
+    truth = np.concatenate([TRUTH, [np.log(29.3e3), np.log(90.0), np.log(2e-10)]])
+    first, second = (parallel_resonance(Layout(2), truth, k) for k in (0, 1))
+    assert 28.1e3 < first < 29.3e3 < second
+    # There the susceptance of the circuit without loss vanishes.
+    lossless = truth.copy()
+    lossless[[1, 3, 6]] = 0.0, 30.0, 30.0
+    for at in (first, second):
+        y = circuit_curve(Layout(2), lossless, np.array([at, 1.001 * at]))[0]
+        assert abs(y[0]) < 1e-6 * abs(y[1])
