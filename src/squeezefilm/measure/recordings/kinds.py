@@ -36,12 +36,14 @@ class ImpedanceSweep:
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse:
     """Displacement per volt (m/V, complex) at one place against `frequency` (Hz), both (points,);
-    `voltage` (V) is the drive's amplitude during the sweep, `coherence` (0 to 1) where recorded."""
+    `voltage` (V) is the drive's amplitude during the sweep, `coherence` (0 to 1) where recorded,
+    `place` where on the plate (x, y in m) where told."""
 
     frequency: si.HertzArray
     displacement_per_volt: si.ComplexArray
     voltage: si.Volt | None = None
     coherence: si.DimensionlessArray | None = None
+    place: tuple[si.Metre, si.Metre] | None = None
     told: Told = field(default_factory=Told)
 
 
@@ -101,13 +103,15 @@ class RawSignals:
 @dataclass(frozen=True, eq=False)
 class FrictionBench:
     """Strokes of a finger or probe: `time` (s), `normal_force` and `tangential_force` (N),
-    `position` (m) and `vibration_amplitude` (m, zero to peak), all (points,)."""
+    `position` (m) and `vibration_amplitude` (m, zero to peak), all (points,); `frequency` (Hz) of
+    the vibration where told."""
 
     time: si.SecondArray
     normal_force: si.NewtonArray
     tangential_force: si.NewtonArray
     position: si.MetreArray
     vibration_amplitude: si.MetreArray
+    frequency: si.Hertz | None = None
     told: Told = field(default_factory=Told)
 
 
