@@ -13,7 +13,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.modal_circle import ModalCircle, modal_circle
-from squeezefilm.measure.fits.separable import SeparableFit, fit_separable, inverse_of
+from squeezefilm.measure.fits.nonlinear import inverse_of
+from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
 
 MOST_MODES = 12

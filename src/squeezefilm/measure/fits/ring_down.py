@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 
@@ -11,12 +11,8 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
-from squeezefilm.measure.fits.separable import (
-    SeparableFit,
-    fit_separable,
-    interval_around,
-    inverse_of,
-)
+from squeezefilm.measure.fits.nonlinear import NonlinearFit, fit_nonlinear, inverse_of
+from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.recordings.kinds import RingDown
 
 _FEWEST_POINTS = 40
@@ -28,7 +24,6 @@ _BLOCKS = 64
 _CHANCE = 1e-3
 # A decay is fitted until it is down to this share of its start, by the first look at it.
 _KEPT = 2e-3
-_NONLINEAR_STEPS = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,37 +233,27 @@ class _Bent:
     Numbers: f0, rate, amplitude, phase, r (in sizes), s (in sizes squared), constant, slope.
     """
 
-    numbers: si.FloatArray
-    covariance: si.FloatArray
+    fit: NonlinearFit
     model: si.FloatArray
-    freedom: int
     chance: float
 
     @classmethod
-    def of(cls, decay: _Decay, fit: SeparableFit) -> _Bent:
-        cosine, sine = fit.weights[:2]
+    def of(cls, decay: _Decay, straight: SeparableFit) -> _Bent:
+        cosine, sine = straight.weights[:2]
         swing, phase = float(np.hypot(cosine, sine)), float(np.arctan2(-sine, cosine))
-        start = np.array([*fit.shape, swing, phase, 0.0, 0.0, *fit.weights[2:]])
-        numbers, model, jacobian = _least_squares(partial(_bent_decay, decay.t), decay.w, start)
-        left = decay.w - model
-        freedom = decay.w.size - numbers.size
-        squares = float(left @ left)
-        before = float(fit.residual @ fit.residual)
-        scale = np.linalg.norm(jacobian, axis=0)
-        scale[scale == 0] = 1.0
-        inverse = np.linalg.pinv(jacobian / scale)
-        widening = correlation_factor(_Blocks(decay.t, float(numbers[0])).of(left))
-        covariance = squares / freedom * (inverse @ inverse.T) / np.outer(scale, scale)
+        start = np.array([*straight.shape, swing, phase, 0.0, 0.0, *straight.weights[2:]])
+        steps = np.array([1e-8 * start[0], 1e-5 * start[1], *np.full(6, 1e-5)])
+        fit = fit_nonlinear(lambda at: _bent_decay(decay.t, at) - decay.w, start, steps)
         from scipy.special import fdtrc
 
-        gain = max((before - squares) / 2 / (squares / freedom), 0.0)
-        return cls(
-            numbers, covariance * widening**2, model, freedom, float(fdtrc(2, freedom, gain))
-        )
+        squares, before = (float(row @ row) for row in (fit.residual, straight.residual))
+        gain = max((before - squares) / 2 / (squares / fit.freedom), 0.0)
+        widening = correlation_factor(_Blocks(decay.t, float(fit.numbers[0])).of(fit.residual))
+        model = decay.w + fit.residual
+        return cls(fit.with_widening(widening), model, float(fdtrc(2, fit.freedom, gain)))
 
     def estimate(self, i: int, unit: str, factor: float, level: float) -> Estimate:
-        error = float(np.sqrt(self.covariance[i, i])) * factor
-        return interval_around(float(self.numbers[i]) * factor, error, self.freedom, unit, level)
+        return self.fit.estimate(lambda at: factor * float(at[i]), unit, level=level)
 
 
 def _bent_decay(t: si.SecondArray, numbers: si.FloatArray) -> si.FloatArray:
@@ -287,51 +272,6 @@ def _bent_decay(t: si.SecondArray, numbers: si.FloatArray) -> si.FloatArray:
 
     turned = 2 * np.pi * f * (t + s * (primitive(swing) - primitive(a)) / rate)
     return np.asarray(a * np.cos(turned + phase) + constant + slope * (t / t[-1] - 0.5))
-
-
-def _least_squares(
-    model: partial[si.FloatArray], wanted: si.FloatArray, start: si.FloatArray
-) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
-    """Levenberg and Marquardt on few numbers, derivatives by differences."""
-    numbers, found = start.copy(), model(start)
-    least, damping = float(np.sum((wanted - found) ** 2)), 1e-3
-    jacobian = _slopes(model, numbers, found)
-    for _ in range(_NONLINEAR_STEPS):
-        scale = np.linalg.norm(jacobian, axis=0)
-        scale[scale == 0] = 1.0
-        normal = (jacobian / scale).T @ (jacobian / scale)
-        toward = (jacobian / scale).T @ (wanted - found)
-        moved = False
-        while damping < 1e9:
-            step = np.linalg.solve(normal + damping * np.eye(numbers.size), toward) / scale
-            with np.errstate(all="ignore"):
-                other = model(numbers + step)
-                squares = float(np.sum((wanted - other) ** 2))
-            if squares <= least:
-                moved = True
-                break
-            damping *= 10
-        if not moved:
-            break
-        gain, least = least - squares, squares
-        numbers, found = numbers + step, other
-        damping = max(damping / 10, 1e-9)
-        if gain < 1e-9 * least:
-            break
-        jacobian = _slopes(model, numbers, found)
-    return numbers, found, jacobian
-
-
-def _slopes(
-    model: partial[si.FloatArray], numbers: si.FloatArray, found: si.FloatArray
-) -> si.FloatArray:
-    rows = []
-    for i, one in enumerate(numbers):
-        step = np.zeros(numbers.size)
-        # Frequency and rate in shares of themselves; all else is of order one.
-        step[i] = 1e-9 * one if i == 0 else 1e-6 * (abs(one) if i == 1 else 1.0)
-        rows.append((model(numbers + step) - found) / step[i])
-    return np.stack(rows, axis=1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,13 +17,13 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.misfit import correlation_factor
+from squeezefilm.measure.fits.nonlinear import propagated
 
 Columns = Callable[[si.FloatArray], tuple[si.Array, si.Array]]
 """From the bending numbers (p,) to the columns (points, m) and their derivatives (p, points, m)."""
 
 _MOST_STEPS = 60
 _SETTLED = 1e-10
-_STEP = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,59 +73,16 @@ class SeparableFit:
         positive: bool = False,
         level: si.Dimensionless = 0.95,
     ) -> Estimate:
-        """A number that follows from shape and weights, with its interval by the delta method.
-
-        `positive` numbers get theirs on a logarithmic scale, so that it never reaches zero. Holds
-        where the number bends little within its own interval.
-        """
-        scale = np.sqrt(np.diag(self.covariance))
-        here = self.numbers
-
-        def value(numbers: si.FloatArray) -> float:
-            found = of(*self.split(numbers))
-            return float(np.log(found)) if positive else float(found)
-
-        middle, gradient = value(here), np.zeros(here.size)
-        for i in np.flatnonzero(scale > 0):
-            step = np.zeros(here.size)
-            step[i] = scale[i] * _STEP
-            gradient[i] = (value(here + step) - value(here - step)) / (2 * step[i])
-        error = float(np.sqrt(max(gradient @ self.covariance @ gradient, 0.0)))
-        return interval_around(middle, error, self.freedom, unit, level, logarithmic=positive)
-
-
-def interval_around(
-    value: float,
-    standard_error: float,
-    freedom: int,
-    unit: str,
-    level: si.Dimensionless = 0.95,
-    *,
-    logarithmic: bool = False,
-) -> Estimate:
-    """A value with Student's interval for its degrees of freedom; of the value's logarithm where
-    `logarithmic`."""
-    from scipy.special import stdtrit
-
-    reach = float(stdtrit(max(freedom, 1), 0.5 + level / 2)) * standard_error
-    low, high = value - reach, value + reach
-    if logarithmic:
-        with np.errstate(over="ignore"):
-            value, low, high = (float(np.exp(one)) for one in (value, low, high))
-        return Estimate(value, value * standard_error, (low, high), unit, level)
-    return Estimate(value, standard_error, (low, high), unit, level)
-
-
-def inverse_of(estimate: Estimate, unit: str, factor: float = 1.0) -> Estimate:
-    """`factor` over an estimate, such as Q from a loss factor: the interval's ends change places.
-
-    An interval that reaches zero has no end above: it is infinite.
-    """
-    low, high = estimate.interval
-    value = factor / estimate.value
-    ends = factor / high, factor / low if low > 0 else float("inf")
-    error = abs(value) * estimate.standard_error / abs(estimate.value)
-    return Estimate(value, error, ends, unit, estimate.level)
+        """A number that follows from shape and weights: see `propagated`."""
+        return propagated(
+            lambda numbers: of(*self.split(numbers)),
+            self.numbers,
+            self.covariance,
+            self.freedom,
+            unit,
+            positive=positive,
+            level=level,
+        )
 
 
 def fit_separable(
