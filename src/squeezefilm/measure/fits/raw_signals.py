@@ -123,7 +123,9 @@ def _recorded(recording: RawSignals) -> tuple[si.SecondArray, si.VoltArray, si.M
                 "the signals are not evenly sampled, or a fifth of them is missing; give an even "
                 "row of times"
             )
-        t, v, x = even, np.interp(even, t, v), np.interp(even, t, x)
+        from scipy.interpolate import CubicSpline
+
+        t, v, x = even, CubicSpline(t, v)(even), CubicSpline(t, x)(even)
     if not np.any(v - v.mean()):
         raise InputError("the voltage does not change; there is nothing to respond to")
     return t, v, x

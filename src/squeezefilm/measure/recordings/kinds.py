@@ -43,8 +43,8 @@ class FrequencyResponse:
     displacement_per_volt: si.ComplexArray
     voltage: si.Volt | None = None
     coherence: si.DimensionlessArray | None = None
-    place: tuple[si.Metre, si.Metre] | None = None
     told: Told = field(default_factory=Told)
+    place: tuple[si.Metre, si.Metre] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +111,8 @@ class FrictionBench:
     tangential_force: si.NewtonArray
     position: si.MetreArray
     vibration_amplitude: si.MetreArray
-    frequency: si.Hertz | None = None
     told: Told = field(default_factory=Told)
+    frequency: si.Hertz | None = None
 
 
 @dataclass(frozen=True, eq=False)
