@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.line_points import LinePoints
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import Columns, SeparableFit, fit_separable
 from squeezefilm.measure.recordings.kinds import LineScan
@@ -105,7 +106,8 @@ def fit_line_scan(
     (real values) the sign is turned at every deep minimum of a size. With `drift` the amplitude may
     change in proportion to the place along the scan, as when the plate warms while it is scanned.
     The model is that of an even thin plate: a plate with ceramics on it bends its wave, and the
-    fit then says by how much; nodal lines are then taken from the recorded points around each.
+    fit then says by how much, and half wavelength, nodal lines and amplitude are taken from the
+    recorded points around each (`LinePoints`).
 
     Raises `InputError` for fewer than 12 points or three to a half wavelength. Source: Cremer,
     Heckl, Petersson, Structure-Borne Sound, 3rd ed., section 3.6 (decay of bending waves).
@@ -268,7 +270,7 @@ class _FittedLine:
         nodes = _minima(dense, wave)
         lobe = _best_antinode(dense, wave, nodes)
         model = fit.model * self.size
-        return LineScanFit(
+        found = LineScanFit(
             recording=self.recording,
             position=self.x,
             model=model,
@@ -293,13 +295,30 @@ class _FittedLine:
             phase_reversed=self.phase_reversed,
             adequacy=self.adequacy,
         )
+        return found if self.adequacy.adequate else self._by_points(found)
+
+    def _by_points(self, found: LineScanFit) -> LineScanFit:
+        """What the points around each node and antinode say, in place of a wave that does not
+        fit."""
+        points = LinePoints(self.x, self.w, found.half_wavelength.value, self.level)
+        spacing, antinode = points.spacing, points.antinode
+        if spacing is None or antinode is None:
+            return found
+        said = (
+            " Half wavelength (their mean distance), nodal lines and amplitude are therefore those "
+            "of the points around each; loss and ratio of waves mean little."
+        )
+        return replace(
+            found,
+            half_wavelength=spacing,
+            nodal_lines=points.nodes,
+            antinode=antinode[0],
+            antinode_amplitude=antinode[1],
+            adequacy=replace(self.adequacy, sentence=self.adequacy.sentence + said),
+        )
 
     def _node(self, node: float) -> Estimate:
-        """Where the size is least, near a node: one step of Newton's from there on |w|²."""
-        if not self.adequacy.adequate:
-            around = self._around(node)
-            if around is not None:
-                return around
+        """Where the fitted size is least, near a node: a step of Newton's from there on |w|²."""
         step = 1e-3 / self.fit.shape[0]
         places = node + step * np.array([-1.0, 0.0, 1.0])
 
@@ -308,32 +327,6 @@ class _FittedLine:
             return node - step * float((high - low) / (2 * (high - 2 * middle + low)))
 
         return self.fit.estimate(least, "m", level=self.level)
-
-    def _around(self, node: float) -> Estimate | None:
-        """A node by the points around it: a straight line with a cubic bend through them."""
-        reach = 0.35 * np.pi / self.fit.shape[0]
-        near = np.abs(self.x - node) < reach
-        if near.sum() < 6:
-            return None
-        w = self.w[near]
-        if self.line.complex:
-            # Along the direction in which the wave swings through its node.
-            swing = np.angle(np.sum((w - w.mean()) ** 2)) / 2
-            w = (w * np.exp(-1j * swing)).real
-        scale = float(np.max(np.abs(w)))
-        place = (self.x[near] - node) / reach
-
-        def bent(_: si.FloatArray) -> tuple[si.Array, si.Array]:
-            return np.vander(place, 4, increasing=True), np.empty((0, place.size, 4))
-
-        local = fit_separable(bent, w / scale, np.empty(0))
-
-        def crossing(_: si.FloatArray, weights: si.Array) -> float:
-            roots = np.polynomial.Polynomial(weights.real).roots()
-            real = roots.real[np.abs(roots.imag) < 1e-9 * (1 + np.abs(roots.real))]
-            return node + reach * float(real[np.argmin(np.abs(real))])
-
-        return local.estimate(crossing, "m", level=self.level)
 
     def _ratio(self) -> Estimate:
         """(a + b)/|a − b| by its inverse, which is finite: 0 for a pure standing wave."""
