@@ -69,20 +69,25 @@ class FrequencyResponseFit:
     def observations(self) -> tuple[Observation, ...]:
         """What a calibration may use: resonance, Q and amplitude per volt of the strongest mode.
 
-        The amplitude is the largest of the whole response near that mode, neighbours included, as
-        the library's `amplitude_per_volt` is.
+        The amplitude is the largest of the whole response near that mode, as the library's
+        `amplitude_per_volt` is. Whether the remainder beside the mode is its neighbours' or the
+        instrument's nobody can tell: half of what it adds or takes is in the standard error.
         """
         under = {} if self.recording.voltage is None else {"voltage": self.recording.voltage}
         if self.recording.place is not None:
             under |= dict(zip("xy", self.recording.place, strict=True))
         first, largest = self.modes[0], self.largest_per_volt
-        return tuple(
-            Observation(name, one.value, one.standard_error, under)
-            for name, one in (
-                ("resonance_frequency", first.frequency),
-                ("quality_factor", first.quality_factor),
-                ("amplitude_per_volt", largest),
-            )
+        remainder = (largest.value - first.amplitude_per_volt.value) / 2
+        error = float(np.hypot(largest.standard_error, remainder))
+        return (
+            *(
+                Observation(name, one.value, one.standard_error, under)
+                for name, one in (
+                    ("resonance_frequency", first.frequency),
+                    ("quality_factor", first.quality_factor),
+                )
+            ),
+            Observation("amplitude_per_volt", largest.value, error, under),
         )
 
 

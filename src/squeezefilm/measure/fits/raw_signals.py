@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.misfit import adequacy_of
+from squeezefilm.measure.fits.modal_circle import modal_circle
 from squeezefilm.measure.fits.separable import fit_separable
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, RawSignals
 
@@ -20,6 +21,9 @@ _SEGMENTS = 16
 _DRIVEN = 1e-2
 _COHERENT = 0.8
 _TAPER = 0.02
+# Frequencies within a half-power band, so that a Hann window takes less than 1 % of its peak:
+# (1/3)(1.5 Δf Q/f)² (Bendat and Piersol, Random Data, section 8.5).
+_RESOLVED = 9.0
 # What overlapping Hann windows by half costs of averages (Welch 1967).
 _OVERLAP_COST = 1.056
 
@@ -58,8 +62,8 @@ def fit_raw_signals(
 ) -> RawSignalsFit:
     """H1 = S_vx/S_vv (m/V) and its coherence by Welch's averages; an instrument's scale and delay.
 
-    Hann windows of `segment` (s; a sixteenth of the recording by default, which must be well above
-    Q/f of the sharpest resonance) overlapping by half, over the `band` (Hz) or where the drive has
+    Hann windows of `segment` (s; by default a sixteenth of the recording, up to a quarter where a
+    sharp resonance needs it) overlapping by half, over the `band` (Hz) or where the drive has
     1 % of its greatest density. Noise at the output is averaged away, noise on the recorded
     voltage makes H1 too small. With `instrument` the motion is taken to follow the voltage, as that
     of a calibrator or of the electric signal itself looped back: x(t) = s v(t − τ), fitted to the
@@ -68,8 +72,6 @@ def fit_raw_signals(
     """
     t, v, x = _recorded(recording)
     rate = (t.size - 1) / float(t[-1] - t[0])
-    from scipy import signal
-
     length = t.size // _SEGMENTS if segment is None else int(segment * rate)
     if not 32 <= length <= t.size // 2:
         raise InputError(
@@ -77,7 +79,29 @@ def fit_raw_signals(
             f"{t.size} points; it must hold at least 32 and at most half of them",
             quantity="segment",
         )
-    settings = {"fs": rate, "window": "hann", "nperseg": length, "detrend": "linear"}
+    found = _averaged(recording, (v, x, rate), length, band)
+    while segment is None and 8 * length <= t.size and _resolution(found) < _RESOLVED:
+        length *= 2
+        found = _averaged(recording, (v, x, rate), length, band)
+    if not instrument:
+        return replace(found, adequacy=_coherent(found, length / rate))
+    f = found.response.frequency
+    return _as_instrument(found, (v, x, rate), (float(f[0]), float(f[-1])), level)
+
+
+def _averaged(
+    recording: RawSignals,
+    signals: tuple[si.VoltArray, si.MetreArray, float],
+    length: int,
+    band: tuple[si.Hertz, si.Hertz] | None,
+) -> RawSignalsFit:
+    """H1 and coherence by segments of a length in points."""
+    from scipy import signal
+
+    v, x, rate = signals
+    settings: dict[str, Any] = {
+        "fs": rate, "window": "hann", "nperseg": length, "detrend": "linear"
+    }  # fmt: skip
     f, drive = signal.welch(v, **settings)
     _, motion = signal.welch(x, **settings)
     _, cross = signal.csd(v, x, **settings)
@@ -89,15 +113,21 @@ def fit_raw_signals(
         raise InputError("fewer than 3 frequencies are driven; widen the band or the excitation")
     H = cross[driven] / drive[driven]
     coherence = np.clip(np.abs(cross) ** 2 / (drive * motion + 1e-300), 0.0, 1.0)[driven]
-    averages = (2 * t.size / length - 1) / _OVERLAP_COST
+    averages = (2 * v.size / length - 1) / _OVERLAP_COST
     error = np.abs(H) * np.sqrt((1 - coherence) / (2 * np.maximum(coherence, 1e-12) * averages))
     response = FrequencyResponse(f[driven], H, coherence=coherence, told=recording.told)
-    found = RawSignalsFit(
-        recording, response, error, averages, None, None, _coherent(f[driven], coherence)
-    )
-    if not instrument:
-        return found
-    return _as_instrument(found, (v, x, rate), (float(f[driven][0]), float(f[driven][-1])), level)
+    unknown = Adequacy(False, float("nan"), float("nan"), "", "")
+    return RawSignalsFit(recording, response, error, averages, None, None, unknown)
+
+
+def _resolution(found: RawSignalsFit) -> float:
+    """How many frequencies lie within the half-power band of the strongest resonance; infinite
+    where there is none."""
+    f = found.response.frequency
+    circle = modal_circle(f, np.asarray(found.response.displacement_per_volt))
+    if circle is None or not f[0] < circle.frequency < f[-1] or circle.roundness > 0.2:
+        return float("inf")
+    return circle.frequency / abs(circle.quality_factor) / float(f[1] - f[0])
 
 
 def _recorded(recording: RawSignals) -> tuple[si.SecondArray, si.VoltArray, si.MetreArray]:
@@ -131,8 +161,10 @@ def _recorded(recording: RawSignals) -> tuple[si.SecondArray, si.VoltArray, si.M
     return t, v, x
 
 
-def _coherent(f: si.HertzArray, coherence: si.DimensionlessArray) -> Adequacy:
-    """Whether the motion comes from the drive."""
+def _coherent(found: RawSignalsFit, segment: si.Second) -> Adequacy:
+    """Whether the motion comes from the drive, and segments are long enough for what resonates."""
+    f, coherence = found.response.frequency, found.response.coherence
+    assert coherence is not None
     noise = float(np.sqrt(1 - np.mean(coherence)))
     where = f"at {si.format_quantity(f[int(np.argmin(coherence))], si.Unit('Hz'))}"
     middle = float(np.median(coherence))
@@ -145,7 +177,15 @@ def _coherent(f: si.HertzArray, coherence: si.DimensionlessArray) -> Adequacy:
             " Most of the motion does not come from the drive: average longer, drive more, or look "
             "for hum and clipping."
         )
-    return Adequacy(middle >= _COHERENT, noise, noise, where, sentence)
+    resolved = _resolution(found)
+    if resolved < _RESOLVED:
+        shown = si.format_quantity(segment, si.Unit("s"), 3)
+        sentence += (
+            f" Segments of {shown} are too short for the resonance, whose half-power band holds "
+            f"{resolved:.1f} frequencies where {_RESOLVED:g} keep its Q within 1 %: it reads too "
+            "low. Record longer, or ask for longer segments."
+        )
+    return Adequacy(middle >= _COHERENT and resolved >= _RESOLVED, noise, noise, where, sentence)
 
 
 def _as_instrument(
