@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, get_args
 
@@ -13,7 +13,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
-from squeezefilm.measure.fits.modal_circle import modal_circle
+from squeezefilm.measure.fits.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.fits.nonlinear import NonlinearFit, fit_nonlinear, inverse_of
 from squeezefilm.measure.recordings.kinds import VoltageSweeps
 
@@ -51,7 +51,8 @@ class VoltageSweepsFit:
     (1/m): negative where the plate softens. 1/Q = (1/Q0)(1 + `damping_rise` a) (1/m).
     `frequency` (f0, Hz), `quality_factor` (Q0) and `amplitude_per_volt` (m/V, at resonance) are
     those of vanishing amplitudes. Above `critical_amplitude` (m) at the resonance a sweep jumps;
-    None where the backbone is not told from none. `warming` (share of f0 from one sweep to the
+    None where the backbone is not told from none. `phase_reversed` says that the phase was recorded
+    with the other sign, and the fit is of the complex conjugate. `warming` (share of f0 from one sweep to the
     next) where drift was asked for. `model` and `residual` (m, complex) go with the finite points
     of all sweeps in a row.
     """
@@ -66,6 +67,7 @@ class VoltageSweepsFit:
     warming: Estimate | None
     critical_amplitude: si.Metre | None
     jumps: tuple[Jump, ...]
+    phase_reversed: bool
     model: si.ComplexArray
     residual: si.ComplexArray
     adequacy: Adequacy
@@ -124,6 +126,7 @@ class _Points:
     order: si.FloatArray
     size: si.Metre
     volts: si.Volt
+    phase_reversed: bool = False
 
     @classmethod
     def of(cls, recording: VoltageSweeps) -> _Points:
@@ -154,18 +157,26 @@ class _Points:
                 "voltages: sweep at two or more"
             )
         size = float(np.max(np.abs(x)))
-        return cls(f, x / size, V / V.max(), place - place.mean(), size, float(V.max()))
+        found = cls(f, x / size, V / V.max(), place - place.mean(), size, float(V.max()))
+        circle = found.circle
+        if circle is not None and circle.quality_factor < 0:
+            return replace(found, u=found.u.conj(), phase_reversed=True)
+        return found
+
+    @cached_property
+    def circle(self) -> ModalCircle | None:
+        """The lowest sweep's, up and down in one row, so that it meets rising frequencies."""
+        low = self.v == self.v.min()
+        order = np.argsort(self.f[low], kind="stable")
+        return modal_circle(self.f[low][order], self.u[low][order] / self.v.min())
 
     @cached_property
     def start(self) -> si.FloatArray:
         """f0 as 1, loss, backbone, its loss, g, R (real and imaginary), drift; from the lowest
         sweep's circle and the highest one's peak."""
-        low = self.v == self.v.min()
-        # Up and down in one row, so that the circle meets rising frequencies.
-        order = np.argsort(self.f[low], kind="stable")
-        f, u = self.f[low][order], self.u[low][order] / self.v.min()
-        circle = modal_circle(f, u)
-        if circle is None or not f[0] < circle.frequency < f[-1]:
+        low, circle = self.v == self.v.min(), self.circle
+        f, u = self.f[low], self.u[low] / self.v.min()
+        if circle is None or not f.min() < circle.frequency < f.max():
             return np.array([float(f[np.argmax(np.abs(u))]), 0.02, 0, 0, 0.02, 0, 0, 0, 0])
         loss = min(abs(1 / circle.quality_factor), 0.3)
         peak = u[np.argmin(np.abs(f - circle.frequency))]
@@ -241,6 +252,10 @@ class _Fitted:
             left * size,
             lambda i: f"at {si.format_quantity(f[i], si.Unit('Hz'), 5)} and "
             f"{si.format_quantity(points.v[self.used][i] * volts, si.Unit('V'), 3)}",
+            said="The phase was recorded with the other sign (it rises through the resonance); the "
+            "fit is of the complex conjugate. "
+            if points.phase_reversed
+            else "",
             remedy="Narrow the band to the one mode, wait between sweeps until the plate is cold, "
             "or ask for the drift.",
         )
@@ -260,6 +275,7 @@ class _Fitted:
             warming=estimate(8, 1.0, "1") if self.duffing.drift else None,
             critical_amplitude=_critical(backbone, float(fit.numbers[1]), power),
             jumps=_jumps(recording, size * float(np.sqrt(np.mean(np.abs(left) ** 2)))),
+            phase_reversed=points.phase_reversed,
             model=(points.u - step) * size,
             residual=step * size,
             adequacy=adequacy,
