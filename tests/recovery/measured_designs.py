@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.frequency_response import fit_frequency_response
+from squeezefilm.measure.fits.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.grid_scan import fit_grid_scan
 from squeezefilm.measure.fits.line_scan import fit_line_scan
 from squeezefilm.measure.fits.raw_signals import fit_raw_signals
@@ -195,7 +195,9 @@ def bent_ring_down(wrong: Wrong, random: Random) -> Checked:
 _SWEPT: dict[tuple[int, bool], tuple[SofteningResonance, list[Any], list[float], list[str]]] = {}
 
 
-def _swept(number: int, drift: bool) -> tuple[SofteningResonance, list[Any], list[float], list[str]]:
+def _swept(
+    number: int, drift: bool
+) -> tuple[SofteningResonance, list[Any], list[float], list[str]]:
     """One of eight softening resonances, swept without noise: the slow part, kept."""
     if (number, drift) not in _SWEPT:
         random = np.random.default_rng(number)
@@ -285,9 +287,7 @@ def friction_bench(wrong: Wrong, random: Random) -> Checked:
     assert fit.force_exponent is not None
     found = {
         f"relative friction at {1e6 * level:g} µm": (one, float(true))
-        for level, one, true in zip(
-            levels[1:], fit.relative_friction, relative[1:], strict=True
-        )
+        for level, one, true in zip(levels[1:], fit.relative_friction, relative[1:], strict=True)
     }
     return found | {
         "speed exponent": (fit.speed_exponent, 0.1),
@@ -302,11 +302,12 @@ WRONGS = {
     "phase reversed": REVERSED,
 }  # fmt: skip
 
+_ALL = "noise, drift, double mode, missing points, phase reversed"
 _MADE: Mapping[str, tuple[Callable[[Wrong, Random], Checked], str]] = {
-    "frequency response": (frequency_response, "noise, drift, double mode, missing points, phase reversed"),
+    "frequency response": (frequency_response, _ALL),
     "line scan": (line_scan, "noise, drift, missing points, phase reversed"),
     "line scan without phase": (size_of_a_line, "noise, missing points"),
-    "grid scan": (grid_scan, "noise, drift, double mode, missing points, phase reversed"),
+    "grid scan": (grid_scan, _ALL),
     "ring-down": (ring_down, "noise, drift, double mode, missing points"),
     "ring-down that depends on its amplitude": (bent_ring_down, "noise, missing points"),
     "voltage sweeps": (voltage_sweeps, "noise, drift, missing points, phase reversed"),

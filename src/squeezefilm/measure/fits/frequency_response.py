@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -12,6 +11,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.misfit import adequacy_of
+from squeezefilm.measure.fits.modal_band import ModalBand, band_poles
 from squeezefilm.measure.fits.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.fits.nonlinear import inverse_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
@@ -118,7 +118,7 @@ def fit_frequency_response(
     if reversed_phase:
         H = H.conj()
     size = float(np.max(np.abs(H)))
-    band = _Band.over(f)
+    band = ModalBand.over(f)
     fit = (
         _as_many_as_needed(band, H / size, start)
         if modes is None
@@ -130,49 +130,6 @@ def fit_frequency_response(
             band.delayed, H / size, np.append(fit.shape[: 2 * count], 0.0), real_weights=True
         )
     return _FittedResponse(recording, band, H, fit, size, reversed_phase, delay, level).read()
-
-
-@dataclass(frozen=True, eq=False)
-class _Band:
-    """The frequencies of a recording, and the columns of modes over them.
-
-    A mode's numbers are f_k over `middle`, less 1, and its loss 1/Q_k; a delay's is 2πτ `width`.
-    """
-
-    f: si.HertzArray
-    middle: si.Hertz
-    width: si.Hertz
-
-    @classmethod
-    def over(cls, f: si.HertzArray) -> _Band:
-        return cls(f, float((f[0] + f[-1]) / 2), float(f[-1] - f[0]))
-
-    @cached_property
-    def place(self) -> si.FloatArray:
-        return (self.f - self.middle) / self.width
-
-    def columns(self, shape: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
-        """Modes, a constant and a slope; their derivatives by every number of `shape`."""
-        count = shape.size // 2
-        matrix = np.empty((self.f.size, count + 2), dtype=complex)
-        bent = np.zeros((2 * count, self.f.size, count + 2), dtype=complex)
-        squared = (self.f / self.middle) ** 2
-        for k in range(count):
-            own, loss = 1 + shape[2 * k], shape[2 * k + 1]
-            below = own**2 * (1 + 1j * loss) - squared
-            matrix[:, k] = own**2 / below
-            bent[2 * k, :, k] = -2 * own * squared / below**2
-            bent[2 * k + 1, :, k] = -1j * own**4 / below**2
-        matrix[:, count] = 1.0
-        matrix[:, count + 1] = self.place
-        return matrix, bent
-
-    def delayed(self, shape: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
-        """The same behind a delay, the last number of `shape`."""
-        matrix, bent = self.columns(shape[:-1])
-        turn = np.exp(-1j * shape[-1] * self.f / self.width)[:, None]
-        late = -1j * (self.f / self.width)[:, None] * turn * matrix
-        return turn * matrix, np.concatenate([turn * bent, late[None]])
 
 
 def _recorded(recording: FrequencyResponse) -> tuple[si.HertzArray, si.ComplexArray]:
@@ -213,15 +170,11 @@ def _first_mode(f: si.HertzArray, H: si.ComplexArray) -> tuple[bool, tuple[float
     return loss < 0, (circle.frequency, min(abs(loss), 0.5))
 
 
-def _starts(band: _Band, modes: list[tuple[float, float]]) -> si.FloatArray:
-    return np.array([one for f, loss in modes for one in (f / band.middle - 1, loss)])
-
-
 def _as_many_as_needed(
-    band: _Band, H: si.ComplexArray, start: tuple[float, float]
+    band: ModalBand, H: si.ComplexArray, start: tuple[float, float]
 ) -> SeparableFit:
     """One mode more as long as what is left calls for it."""
-    best = fit_separable(band.columns, H, _starts(band, [start]))
+    best = fit_separable(band.columns, H, band.shape_of([start]))
     while best.shape.size // 2 < _TRIED_MODES:
         count = best.shape.size // 2 + 1
         if 2 * H.size <= 2 * (2 * count + 2) + 8:
@@ -239,7 +192,7 @@ def _criterion(fit: SeparableFit, points: int) -> float:
     return float(2 * points * np.log(squares) + fit.covariance.shape[0] * np.log(2 * points))
 
 
-def _one_more(band: _Band, H: si.ComplexArray, fit: SeparableFit) -> SeparableFit | None:
+def _one_more(band: ModalBand, H: si.ComplexArray, fit: SeparableFit) -> SeparableFit | None:
     """The fit with a mode more, which starts where the residual is largest."""
     found = modal_circle(band.f, fit.residual)
     at = float(band.f[np.argmax(np.abs(fit.residual))])
@@ -249,7 +202,7 @@ def _one_more(band: _Band, H: si.ComplexArray, fit: SeparableFit) -> SeparableFi
         candidates.append((found.frequency, min(abs(1 / found.quality_factor), 0.2)))
     fits = []
     for one in candidates:
-        start = np.append(fit.shape, _starts(band, [one]))
+        start = np.append(fit.shape, band.shape_of([one]))
         fitted = fit_separable(band.columns, H, start, reach=band.width / band.middle)
         # A mode with gain, or as broad as the band, is none.
         losses, places = fitted.shape[1::2], fitted.shape[::2]
@@ -259,14 +212,14 @@ def _one_more(band: _Band, H: si.ComplexArray, fit: SeparableFit) -> SeparableFi
 
 
 def _with_modes(
-    band: _Band, H: si.ComplexArray, start: tuple[float, float], count: int
+    band: ModalBand, H: si.ComplexArray, start: tuple[float, float], count: int
 ) -> SeparableFit:
     """The fit with a number of modes that was asked for."""
-    fit = fit_separable(band.columns, H, _starts(band, [start]))
+    fit = fit_separable(band.columns, H, band.shape_of([start]))
     if count > _PEAKS_SUFFICE:
-        poles = _poles(band, H, count)
+        poles = band_poles(band, H, count)
         if len(poles) == count:
-            return fit_separable(band.columns, H, _starts(band, poles))
+            return fit_separable(band.columns, H, band.shape_of(poles))
     while fit.shape.size // 2 < count:
         more = _one_more(band, H, fit)
         if more is None:
@@ -279,69 +232,12 @@ def _with_modes(
     return fit
 
 
-def _poles(band: _Band, H: si.ComplexArray, count: int) -> list[tuple[float, float]]:
-    """Poles by sdypy-EMA's least-squares complex-frequency fit; those that the residual needs most.
-
-    Takes an even row of frequencies, so that what was recorded is interpolated for it.
-    """
-    import contextlib
-    import io
-    import warnings
-
-    from sdypy import EMA
-
-    f = np.linspace(band.f[0], band.f[-1], max(2 * band.f.size, 400))
-    even = np.interp(f, band.f, H.real) + 1j * np.interp(f, band.f, H.imag)
-    # Its polynomials take frequencies from zero: the band is shifted down, which moves no width.
-    shifted = f - f[0]
-    with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
-        warnings.simplefilter("ignore")
-        model = EMA.Model(
-            even[None, :],
-            shifted,
-            lower=0,
-            upper=float(shifted[-1]),
-            pol_order_high=min(6 * count, 60),
-            frf_type="receptance",
-        )
-        model.get_poles(method="lscf", show_progress=False)
-    found: list[tuple[float, float]] = []
-    for row in model.all_poles:
-        for pole in np.ravel(row):
-            own, width = abs(pole.imag) / (2 * np.pi) + f[0], -2 * pole.real / (2 * np.pi)
-            if band.f[0] < own < band.f[-1] and 0 < width < band.width:
-                found.append((float(own), float(width / own)))
-    return _chosen(band, H, found, count)
-
-
-def _chosen(
-    band: _Band, H: si.ComplexArray, poles: list[tuple[float, float]], count: int
-) -> list[tuple[float, float]]:
-    """One pole after the other, each the one that leaves least of the response."""
-    chosen: list[tuple[float, float]] = []
-    remainder = band.columns(np.empty(0))[0]
-    columns = [band.columns(_starts(band, [one]))[0][:, 0] for one in poles]
-    for _ in range(min(count, len(poles))):
-        basis = np.linalg.qr(remainder)[0]
-        left = H - basis @ (basis.conj().T @ H)
-        gains = []
-        for column in columns:
-            own = column - basis @ (basis.conj().T @ column)
-            size = np.linalg.norm(own)
-            least = 1e-3 * np.linalg.norm(column)
-            gains.append(abs(np.vdot(own, left)) / size if size > least else 0.0)
-        best = int(np.argmax(gains))
-        chosen.append(poles[best])
-        remainder = np.column_stack([remainder, columns[best]])
-    return chosen
-
-
 @dataclass(frozen=True, eq=False)
 class _FittedResponse:
     """A fit in its own numbers, to be read off."""
 
     recording: FrequencyResponse
-    band: _Band
+    band: ModalBand
     response: si.ComplexArray
     fit: SeparableFit
     size: float
@@ -353,7 +249,7 @@ class _FittedResponse:
         count = self.fit.shape.size // 2
         strength = [abs(self.fit.weights[k] / self.fit.shape[2 * k + 1]) for k in range(count)]
         order = sorted(range(count), key=lambda k: -strength[k])
-        model = self.fit.model * self.size
+        model = np.asarray(self.fit.model * self.size, dtype=complex)
         return FrequencyResponseFit(
             recording=self.recording,
             frequency=self.band.f,
@@ -402,13 +298,13 @@ class _FittedResponse:
         """The largest size of the fitted response within the strongest mode's band."""
         columns = self.band.delayed if self.delay else self.band.columns
         own, loss = self.band.middle * (1 + self.fit.shape[2 * k]), self.fit.shape[2 * k + 1]
-        near = _Band(
+        near = ModalBand(
             own * (1 + loss * np.linspace(-1, 1, 81)), self.band.middle, self.band.width
         )
         dense = near.delayed if self.delay else near.columns
         at = int(np.argmax(np.abs(dense(self.fit.shape)[0] @ self.fit.weights)))
         # At the place of a maximum its shift changes the value to second order only.
-        point = _Band(near.f[at : at + 1], self.band.middle, self.band.width)
+        point = ModalBand(near.f[at : at + 1], self.band.middle, self.band.width)
         columns = point.delayed if self.delay else point.columns
         return self.fit.estimate(
             lambda shape, weights: float(abs((columns(shape)[0] @ weights)[0])) * self.size,

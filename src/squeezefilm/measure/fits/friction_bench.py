@@ -93,9 +93,7 @@ class FrictionBenchFit:
                     one.standard_error,
                     at | {"vibration_amplitude": float(amplitude)},
                 )
-                for amplitude, one in zip(
-                    self.amplitudes[1:], self.relative_friction, strict=True
-                )
+                for amplitude, one in zip(self.amplitudes[1:], self.relative_friction, strict=True)
             ),
         )
 
@@ -250,13 +248,13 @@ class _Fitted:
 
     def straight(self, row: si.FloatArray) -> Estimate:
         """A weighted sum of the fitted numbers."""
-        error = float(np.sqrt(max(row @ self.fit.covariance @ row, 0.0)))
+        error = np.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
         value = float(row @ self.fit.weights)
         return interval_around(value, error, self.fit.freedom, "1", self.level)
 
     def exponential(self, row: si.FloatArray) -> Estimate:
         """e to such a sum."""
-        error = float(np.sqrt(max(row @ self.fit.covariance @ row, 0.0)))
+        error = np.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
         value, freedom = float(row @ self.fit.weights), self.fit.freedom
         return interval_around(value, error, freedom, "1", self.level, logarithmic=True)
 

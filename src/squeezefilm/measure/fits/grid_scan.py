@@ -89,9 +89,7 @@ def fit_grid_scan(
     if not np.any(w):
         raise InputError("the grid scan is zero everywhere; nothing moved or nothing was recorded")
     names, matrix = _matrix(shapes, good)
-    likeness = {
-        name: _likeness(row, w) for name, row in zip(names, matrix.T, strict=True)
-    }
+    likeness = {name: _likeness(row, w) for name, row in zip(names, matrix.T, strict=True)}
     label = max(likeness, key=likeness.__getitem__)
     own = names.index(label)
     columns = matrix
@@ -140,7 +138,7 @@ def shapes_at(
     for i in range(modes.count):
         spline = RectBivariateSpline(modes.x, modes.y, modes.shapes[i])
         w, largest = spline.ev(x, y), float(np.max(np.abs(modes.shapes[i])))
-        there = float(spline.ev(*lobe))
+        there = float(spline.ev(np.array([lobe[0]]), np.array([lobe[1]]))[0])
         label = "in plane" if (own := modes.labels[i]) is None else "({},{})".format(*own)
         name = f"{label} at {si.format_quantity(modes.frequencies[i], si.Unit('Hz'))}"
         found[name] = w / (there if abs(there) > 0.05 * largest else largest)

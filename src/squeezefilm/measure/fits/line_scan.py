@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -13,7 +12,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.line_points import LinePoints
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.separable import Columns, SeparableFit, fit_separable
+from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.recordings.kinds import LineScan
 
 _FEWEST_POINTS = 12
@@ -207,8 +206,8 @@ def _recorded(recording: LineScan) -> tuple[si.MetreArray, si.Array]:
         raise InputError("the line scan is zero everywhere; nothing moved or nothing was recorded")
     if np.iscomplexobj(w) and np.any(w.imag):
         return x, w
-    w = np.asarray(w.real, dtype=float)
-    return x, _signed(w) if np.all(w >= 0) else w
+    real = np.asarray(w.real, dtype=float)
+    return x, _signed(real) if np.all(real >= 0) else real
 
 
 def _signed(size: si.FloatArray) -> si.FloatArray:
@@ -223,7 +222,7 @@ def _signed(size: si.FloatArray) -> si.FloatArray:
                 if size[i - 1] > size[i + 1]:
                     signs[-1] = -sign
                 sign = -sign
-    return size * np.array(signs)
+    return np.asarray(size * np.array(signs))
 
 
 def _wave_number(line: _Line, x: si.MetreArray, w: si.Array) -> float:
@@ -264,7 +263,9 @@ class _FittedLine:
     def read(self) -> LineScanFit:
         fit, level = self.fit, self.level
         dense = np.linspace(
-            self.x[0], self.x[-1], 1 + _DENSE * int(np.ceil(fit.shape[0] * self.line.length / np.pi))
+            self.x[0],
+            self.x[-1],
+            1 + _DENSE * int(np.ceil(fit.shape[0] * self.line.length / np.pi)),
         )
         wave = np.abs(self.at(dense, fit.shape, fit.weights))
         nodes = _minima(dense, wave)
@@ -281,8 +282,9 @@ class _FittedLine:
             nodal_lines=tuple(self._node(float(one)) for one in nodes),
             antinode=lobe,
             antinode_amplitude=fit.estimate(
-                lambda shape, weights: self.size
-                * float(np.abs(self.at(np.array([lobe]), shape, weights)[0])),
+                lambda shape, weights: (
+                    self.size * float(np.abs(self.at(np.array([lobe]), shape, weights)[0]))
+                ),
                 "m",
                 positive=True,
                 level=level,
@@ -355,7 +357,9 @@ class _FittedLine:
         )
         angle = float(np.angle(own))
         low, high = turned.interval
-        return Estimate(angle, turned.standard_error, (angle + low, angle + high), "rad", self.level)
+        return Estimate(
+            angle, turned.standard_error, (angle + low, angle + high), "rad", self.level
+        )
 
 
 def _minima(x: si.MetreArray, size: si.FloatArray) -> si.MetreArray:

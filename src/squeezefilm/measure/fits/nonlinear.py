@@ -1,4 +1,4 @@
-"""Least squares of a few numbers, all of which bend the curve, and numbers that follow from them."""
+"""Least squares of numbers that all bend the curve, and what follows from fitted numbers."""
 
 from __future__ import annotations
 

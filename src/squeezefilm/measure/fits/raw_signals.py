@@ -1,4 +1,4 @@
-"""Time signals of drive and vibrometer: response, coherence, and what the instrument itself does."""
+"""Time signals of drive and vibrometer: response, coherence, and what the instrument adds."""
 
 from __future__ import annotations
 

@@ -76,7 +76,8 @@ def fit_ring_down(
     w = a(t) cos φ(t) + constant + slope, first with a = A e^{−πft/Q}; where the residual calls for
     it at a chance below 1 in 1000, with da/dt = −(πf/Q0) a (1 + r a) and f = f0(1 + s a²), which
     have closed forms. `modes` = 2 has a second decay that beats with the first (both linear);
-    without `modes` it is fitted where neither describes what was recorded, and it does. Valid while the plate rings freely: cut off what was recorded before the drive stopped. Raises
+    without `modes` it is fitted where neither describes what was recorded, and it does. Valid
+    while the plate rings freely: cut off what was recorded before the drive stopped. Raises
     `InputError` for fewer than 40 points or 5 periods, or another number of modes.
     """
     if modes is not None:
@@ -267,8 +268,8 @@ def _bent_decay(t: si.SecondArray, numbers: si.FloatArray) -> si.FloatArray:
 
     def primitive(a: si.FloatLike) -> si.FloatLike:
         if abs(r) * swing < 1e-3:
-            return np.asarray(a) ** 2 / 2 - r * np.asarray(a) ** 3 / 3
-        return a / r - np.log1p(r * np.asarray(a)) / r**2
+            return np.asarray(np.asarray(a) ** 2 / 2 - r * np.asarray(a) ** 3 / 3)
+        return np.asarray(np.asarray(a) / r - np.log1p(r * np.asarray(a)) / r**2)
 
     turned = 2 * np.pi * f * (t + s * (primitive(swing) - primitive(a)) / rate)
     return np.asarray(a * np.cos(turned + phase) + constant + slope * (t / t[-1] - 0.5))
@@ -313,8 +314,8 @@ class _FittedDecay:
             frequency=frequency,
             quality_factor=quality,
             amplitude=amplitude,
-            damping_rise=bent and bent.estimate(4, "1/m", 1 / size, level),
-            frequency_rise=bent and bent.estimate(5, "1/m2", size**-2, level),
+            damping_rise=bent.estimate(4, "1/m", 1 / size, level) if bent is not None else None,
+            frequency_rise=bent.estimate(5, "1/m2", size**-2, level) if bent is not None else None,
             second=self._straight(1)[:2] if self.two else None,
             envelope_time=self.blocks.time,
             envelope=np.abs(w),

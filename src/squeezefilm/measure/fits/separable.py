@@ -1,4 +1,4 @@
-"""Least squares of curves that are linear in most of their numbers: amplitudes, but for a few shapes.
+"""Least squares of curves that are linear in most of their numbers, and bent by a few.
 
 A resonance, a wave along a line and a decay in time are sums of columns with unknown weights; only
 frequency, wave number or loss bend the columns. The weights are eliminated at every step
@@ -52,7 +52,7 @@ class SeparableFit:
 
     @property
     def _complex(self) -> bool:
-        return self.covariance.shape[0] > self.shape.size + self.weights.size
+        return bool(self.covariance.shape[0] > self.shape.size + self.weights.size)
 
     def with_widening(self, widening: float) -> SeparableFit:
         """The same fit with standard errors `widening` times those of independent noise."""

@@ -52,9 +52,9 @@ class VoltageSweepsFit:
     `frequency` (f0, Hz), `quality_factor` (Q0) and `amplitude_per_volt` (m/V, at resonance) are
     those of vanishing amplitudes. Above `critical_amplitude` (m) at the resonance a sweep jumps;
     None where the backbone is not told from none. `phase_reversed` says that the phase was recorded
-    with the other sign, and the fit is of the complex conjugate. `warming` (share of f0 from one sweep to the
-    next) where drift was asked for. `model` and `residual` (m, complex) go with the finite points
-    of all sweeps in a row.
+    with the other sign, and the fit is of the complex conjugate. `warming` (share of f0 from one
+    sweep to the next) where drift was asked for. `model` and `residual` (m, complex) go with the
+    finite points of all sweeps in a row.
     """
 
     recording: VoltageSweeps
@@ -157,7 +157,14 @@ class _Points:
                 "voltages: sweep at two or more"
             )
         size = float(np.max(np.abs(x)))
-        found = cls(f, x / size, V / V.max(), place - place.mean(), size, float(V.max()))
+        found = cls(
+            f,
+            np.asarray(x / size, dtype=complex),
+            V / V.max(),
+            place - place.mean(),
+            size,
+            float(V.max()),
+        )
         circle = found.circle
         if circle is not None and circle.quality_factor < 0:
             return replace(found, u=found.u.conj(), phase_reversed=True)
@@ -209,7 +216,8 @@ class _Duffing:
         lossy = 1 + 1j * loss * (1 + rise * a)
         D = (own * back) ** 2 * lossy - (points.f / self.own) ** 2
         slope = own**2 * (2 * back * bent * lossy + back**2 * 1j * loss * rise * a)
-        return D, slope, points.u - R * points.v, g * points.v
+        x = points.u - R * points.v
+        return tuple(np.asarray(one, dtype=complex) for one in (D, slope, x, g * points.v))
 
     def steps_to_curve(self, at: si.FloatArray) -> tuple[si.ComplexArray, si.FloatArray]:
         """How far each point is from the curve, to first order, and how far from a fold: the
@@ -225,7 +233,7 @@ class _Duffing:
         determinant = a * d - b * c
         safe = np.where(np.abs(determinant) > 1e-12, determinant, 1e-12)
         step = ((d * E.real - b * E.imag) + 1j * (a * E.imag - c * E.real)) / safe
-        return step, determinant / np.abs(D) ** 2
+        return np.asarray(step), np.asarray(determinant.real / np.abs(D) ** 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,8 +258,10 @@ class _Fitted:
         adequacy = adequacy_of(
             used,
             left * size,
-            lambda i: f"at {si.format_quantity(f[i], si.Unit('Hz'), 5)} and "
-            f"{si.format_quantity(points.v[self.used][i] * volts, si.Unit('V'), 3)}",
+            lambda i: (
+                f"at {si.format_quantity(f[i], si.Unit('Hz'), 5)} and "
+                f"{si.format_quantity(points.v[self.used][i] * volts, si.Unit('V'), 3)}"
+            ),
             said="The phase was recorded with the other sign (it rises through the resonance); the "
             "fit is of the complex conjugate. "
             if points.phase_reversed
@@ -364,7 +374,9 @@ def _jumps(recording: VoltageSweeps, noise: si.Metre) -> tuple[Jump, ...]:
         rise = np.abs(np.diff(a))
         at = int(np.argmax(rise))
         beside = np.delete(rise[max(at - 2, 0) : at + 3], min(at, 2))
-        if rise[at] > max(_JUMP * a.max(), _ABOVE_NOISE * noise) and rise[at] > _ABRUPT * np.median(beside):
+        if rise[at] > max(_JUMP * a.max(), _ABOVE_NOISE * noise) and rise[at] > _ABRUPT * np.median(
+            beside
+        ):
             middle = float((f[at] + f[at + 1]) / 2)
             found.append(Jump(volts, direction, middle, float(a[at]), float(a[at + 1])))
     return tuple(found)

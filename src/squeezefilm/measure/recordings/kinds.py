@@ -1,4 +1,5 @@
-"""The kinds of recordings of a bench, in SI units and zero-to-peak amplitudes, whatever the file was in."""
+"""The kinds of recordings of a bench, in SI units and zero-to-peak amplitudes, whatever the file
+was in."""
 
 from __future__ import annotations
 

@@ -130,9 +130,7 @@ class _Bench:
                 f, mode.resonance_frequency, mode.quality_factor
             )
         own, quality, strength = self.fixture
-        return np.asarray(
-            found + strength * mode.amplitude_per_volt * _one_mode(f, own, quality)
-        )
+        return np.asarray(found + strength * mode.amplitude_per_volt * _one_mode(f, own, quality))
 
     @cached_property
     def band(self) -> si.HertzArray:
@@ -186,7 +184,7 @@ class _Bench:
         if line is None:
             # A measured stator: some wavelengths of its track.
             x = np.linspace(0.0, 6 * half, 6 * _PER_HALF_WAVELENGTH)
-            w = -1j * mode.amplitude_per_volt * np.cos(np.pi * x / half)
+            w: si.Array = -1j * mode.amplitude_per_volt * np.cos(np.pi * x / half)
         else:
             ends = float(line.position[0]), float(line.position[-1])
             count = int(_PER_HALF_WAVELENGTH * (ends[1] - ends[0]) / half) + 2
@@ -194,7 +192,7 @@ class _Bench:
             shape = np.interp(x, line.position, line.deflection)
             w = -1j * mode.amplitude_per_volt * shape
         if mode.solid is not None:
-            w = self._solved_line(x)
+            w = np.asarray(self._solved_line(x))
         if self.options.mechanism == "unmodelled mode":
             # What holds the plate lets it rock.
             w = w + self.fixture[2] * 0.3 * mode.amplitude_per_volt * (x / x[-1] - 0.3)
@@ -212,10 +210,11 @@ class _Bench:
         """Displacement per volt (m/V) along the line through the best antinode."""
         assert self.mode.solid is not None
         response, at = self.mode.solid.driven_at()
+        lengthwise = getattr(self.truth.display.actuator, "lines_across", "length") == "length"
         across = np.array([self.mode.lobe[1]])
-        if getattr(self.truth.display.actuator, "lines_across", "length") == "length":
-            return response.motion(at, x, across)[:, 0]
-        return response.motion(at, np.array([self.mode.lobe[0]]), x)[0]
+        if lengthwise:
+            return np.asarray(response.motion(at, x, across)[:, 0])
+        return np.asarray(response.motion(at, np.array([self.mode.lobe[0]]), x)[0])
 
     def grid_scan(self) -> kinds.GridScan:
         assert self.mode.solid is not None
@@ -325,22 +324,19 @@ class _Bench:
         spread = self.options.stroke_spread * random.standard_normal(number.size)
         # A law may have no friction left, which no bench reads as zero.
         coefficient = np.maximum(coefficient, 1e-3) * np.exp(sweat + spread)
-        planned = PlannedStrokes(self._levels[number], speeds[pick[0]], forces[pick[1]], coefficient)
+        planned = PlannedStrokes(
+            self._levels[number], speeds[pick[0]], forces[pick[1]], coefficient
+        )
         found = recorded_strokes(
             planned, random, noise=self.options.noise, frequency=self.mode.resonance_frequency
         )
         keep = self.kept(found.time.size)
         return kinds.FrictionBench(
-            *(
-                column[keep]
-                for column in (
-                    found.time,
-                    found.normal_force,
-                    found.tangential_force,
-                    found.position,
-                    found.vibration_amplitude,
-                )
-            ),
+            time=found.time[keep],
+            normal_force=found.normal_force[keep],
+            tangential_force=found.tangential_force[keep],
+            position=found.position[keep],
+            vibration_amplitude=found.vibration_amplitude[keep],
             told=self.told("friction bench"),
             frequency=found.frequency,
         )

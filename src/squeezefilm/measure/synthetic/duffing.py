@@ -56,9 +56,7 @@ class SofteningResonance(NamedTuple):
             found[i] = -1j * force / self.stiffness(f, a)
         return found
 
-    def ringing(
-        self, time: si.SecondArray, amplitude: si.Metre, phase: si.Radian
-    ) -> si.MetreArray:
+    def ringing(self, time: si.SecondArray, amplitude: si.Metre, phase: si.Radian) -> si.MetreArray:
         """Displacement (m) at rising times (s) after the drive stopped at an amplitude (m).
 
         da/dt = −(πf0/Q0) a (1 + r a), marched by Runge and Kutta's fourth order, the phase with it.
