@@ -326,7 +326,7 @@ class _FittedLine:
 
         def least(shape: si.FloatArray, weights: si.Array) -> float:
             low, middle, high = np.abs(self.at(places, shape, weights)) ** 2
-            return node - step * float((high - low) / (2 * (high - 2 * middle + low)))
+            return float(node - step * (high - low) / (2 * (high - 2 * middle + low)))
 
         return self.fit.estimate(least, "m", level=self.level)
 

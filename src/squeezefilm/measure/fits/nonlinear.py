@@ -76,7 +76,7 @@ def propagated(
         step = np.zeros(numbers.size)
         step[i] = scale[i] * _STEP
         gradient[i] = (value(numbers + step) - value(numbers - step)) / (2 * step[i])
-    error = float(np.sqrt(max(gradient @ covariance @ gradient, 0.0)))
+    error = np.sqrt(max(float(gradient @ covariance @ gradient), 0.0))
     return interval_around(value(numbers), error, freedom, unit, level, logarithmic=positive)
 
 
