@@ -75,8 +75,7 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
         )
     speed = _speed(t, position)
     size = np.abs(speed)
-    usual = float(np.median(size[size > 0.3 * np.percentile(size, 95)]))
-    pressed = float(np.median(normal[normal > 0.3 * np.percentile(normal, 95)]))
+    usual, pressed = _usual(size), _usual(normal)
     sliding = (size > _MOVING * usual) & (normal > _TOUCHING * pressed)
     which = np.where(sliding, np.sign(speed), 0.0)
     # A gap in the recording ends a stroke.
@@ -114,6 +113,12 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
         for part, way in rows
     )
     return Strokes(strokes, used / t.size, changing / t.size)
+
+
+def _usual(values: si.FloatArray) -> float:
+    """The median of what is well above nothing; infinite where nothing is."""
+    large = values[values > max(0.3 * float(np.percentile(values, 95)), 0.0)]
+    return float(np.median(large)) if large.size else float("inf")
 
 
 def _speed(t: si.SecondArray, position: si.MetreArray) -> si.MetrePerSecondArray:

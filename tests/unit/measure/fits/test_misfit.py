@@ -27,9 +27,7 @@ def test_neighbours_that_are_alike_widen_errors_by_what_their_mean_says() -> Non
     assert structure_of(row).significance > 4
     # The mean of such a row has (1 + ρ)/(1 − ρ) times the variance of independent points.
     means = row.reshape(-1, 200).mean(axis=1)
-    assert (
-        0.7 < correlation_factor(row) / np.sqrt(200) / np.std(means) < 1.3
-    )
+    assert 0.7 < correlation_factor(row) / np.sqrt(200) / np.std(means) < 1.3
 
 
 def test_a_wrong_model_is_said_to_be_wrong_and_where() -> None:

@@ -52,6 +52,7 @@ def test_motion_that_does_not_come_from_the_drive_has_no_coherence() -> None:
     assert "does not come from the drive" in fit.adequacy.sentence
 
 
+@pytest.mark.slow
 def test_the_error_of_the_response_is_what_repetitions_scatter() -> None:
     runs = [
         fit_raw_signals(RawSignals(T, *resonant(1.0, seed)), band=(29e3, 31e3), segment=10e-3)

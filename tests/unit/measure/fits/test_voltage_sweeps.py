@@ -42,6 +42,7 @@ def test_the_backbone_is_recovered_with_its_jumps() -> None:
     assert jumps["down"].after < jumps["down"].before
 
 
+@pytest.mark.slow
 def test_jumps_begin_at_the_critical_amplitude() -> None:
     true = SOFT._replace(damping_rise=0.0)
     fit = fit_voltage_sweeps(bench(true))

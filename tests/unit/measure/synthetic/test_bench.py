@@ -1,4 +1,4 @@
-"""The synthetic bench: made by a seed, of a truth that it does not tell, and found again by fits."""
+"""The synthetic bench: made by a seed, of a truth that it does not tell, and found by the fits."""
 
 import json
 
@@ -7,8 +7,8 @@ import pytest
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.frequency_response import fit_frequency_response
+from squeezefilm.measure.fits.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.ring_down import fit_ring_down
 from squeezefilm.measure.fits.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings import kinds
@@ -45,6 +45,7 @@ def test_what_is_wrong_with_the_bench_is_in_its_truth() -> None:
         drawn_truth(load_display("biet2008-stator"), 1, SyntheticOptions(mechanism="uneven glue"))
 
 
+@pytest.mark.slow
 def test_the_fits_find_what_the_bench_is_made_of(stator: SyntheticBench) -> None:
     true = stator.truth.display.actuator
     response = stator.recordings["frequency-response"]
@@ -59,8 +60,8 @@ def test_the_fits_find_what_the_bench_is_made_of(stator: SyntheticBench) -> None
     )
     sweeps = stator.recordings["voltage-sweeps"]
     assert isinstance(sweeps, kinds.VoltageSweeps)
-    largest = true.reference_amplitude / true.reference_voltage * (
-        stator.truth.display.drive.voltage
+    largest = (
+        true.reference_amplitude / true.reference_voltage * (stator.truth.display.drive.voltage)
     )
     backbone = stator.truth.options.backbone / largest**2
     assert fit_voltage_sweeps(sweeps).backbone.value == pytest.approx(backbone, rel=0.3)
@@ -72,6 +73,7 @@ def test_the_fits_find_what_the_bench_is_made_of(stator: SyntheticBench) -> None
     assert [one.value for one in found] == pytest.approx(curve.relative_friction[1:], abs=0.25)
 
 
+@pytest.mark.slow
 def test_recordings_and_files_tell_nothing_of_the_truth(stator: SyntheticBench, tmp_path) -> None:
     paths = write_synthetic_bench(tmp_path / "bench", stator)
     assert {path.stem for path in paths} == stator.recordings.keys()
@@ -89,6 +91,7 @@ def test_recordings_and_files_tell_nothing_of_the_truth(stator: SyntheticBench, 
         write_synthetic_bench(tmp_path / "bench", stator)
 
 
+@pytest.mark.slow
 def test_a_file_has_the_recordings_numbers_in_its_units(stator: SyntheticBench, tmp_path) -> None:
     write_synthetic_bench(tmp_path, stator)
     scan = stator.recordings["line-scan"]
