@@ -6,6 +6,7 @@ finger differs from stroke to stroke. All intervals are of the spread between st
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated
@@ -248,13 +249,13 @@ class _Fitted:
 
     def straight(self, row: si.FloatArray) -> Estimate:
         """A weighted sum of the fitted numbers."""
-        error = np.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
+        error = math.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
         value = float(row @ self.fit.weights)
         return interval_around(value, error, self.fit.freedom, "1", self.level)
 
     def exponential(self, row: si.FloatArray) -> Estimate:
         """e to such a sum."""
-        error = np.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
+        error = math.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
         value, freedom = float(row @ self.fit.weights), self.fit.freedom
         return interval_around(value, error, freedom, "1", self.level, logarithmic=True)
 

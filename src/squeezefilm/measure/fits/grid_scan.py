@@ -30,8 +30,8 @@ class GridScanFit:
 
     `likeness` is the modal assurance criterion of the scan with every shape: 1 for the same, 0 for
     an orthogonal one; noise alone would leave `attainable` of a perfect one. `amplitude` (m, zero
-    to peak) and `phase` (rad) are the label's part in the scan where its shape is 1, `parts` every
-    shape's amplitude there. `phase_recorded` is False for real data.
+    to peak) and `phase` (rad) are the label's part in the scan where its shape is 1, `parts` the
+    amplitudes of all shapes that the places tell apart. `phase_recorded` is False for real data.
     """
 
     recording: GridScan
@@ -74,10 +74,11 @@ def fit_grid_scan(
 
     `shapes` by their labels, each (points,), relative motion at the scan's places with 1 where the
     amplitude is asked for (the best antinode): `shapes_at` takes them from solved modes, as many
-    neighbours as may take part. MAC = |φᴴw|²/(φᴴφ wᴴw) (Allemang 2003, Sound and Vibration 37(8)
+    neighbours as may take part (of two that the places cannot tell apart the one more alike the
+    scan). MAC = |φᴴw|²/(φᴴφ wᴴw) (Allemang 2003, Sound and Vibration 37(8)
     14); amplitudes are least squares of all shapes together. With `drift` the strongest part may
-    change in proportion to the order of the points. Raises `InputError` for fewer than 12 points, a
-    shape of another length, or shapes that these places cannot tell apart.
+    change in proportion to the order of the points. Raises `InputError` for fewer than 12 points or
+    a shape of another length.
     """
     good = np.isfinite(recording.x) & np.isfinite(recording.y) & np.isfinite(recording.displacement)
     w = np.asarray(recording.displacement)[good]
@@ -88,10 +89,11 @@ def fit_grid_scan(
         )
     if not np.any(w):
         raise InputError("the grid scan is zero everywhere; nothing moved or nothing was recorded")
-    names, matrix = _matrix(shapes, good)
-    likeness = {name: _likeness(row, w) for name, row in zip(names, matrix.T, strict=True)}
-    label = max(likeness, key=likeness.__getitem__)
-    own = names.index(label)
+    rows = _rows(shapes, good)
+    likeness = {name: _likeness(row, w) for name, row in rows.items()}
+    names, alike = _told_apart(rows, likeness)
+    label, own = names[0], 0
+    matrix = np.column_stack([rows[name] for name in names])
     columns = matrix
     if drift:
         order = np.linspace(-0.5, 0.5, w.size)
@@ -119,7 +121,7 @@ def fit_grid_scan(
         model=model,
         residual=w - model,
         phase_recorded=recorded,
-        adequacy=_adequacy(w, fit.residual * size, x, y, label, likeness[label]),
+        adequacy=_adequacy(w, fit.residual * size, (x, y), label, likeness[label], alike),
     )
 
 
@@ -145,10 +147,10 @@ def shapes_at(
     return found
 
 
-def _matrix(
+def _rows(
     shapes: Mapping[str, si.Array], good: np.ndarray[tuple[int, ...], np.dtype[np.bool]]
-) -> tuple[list[str], si.Array]:
-    """The shapes as columns at the places that count."""
+) -> dict[str, si.Array]:
+    """The shapes at the places that count."""
     if not shapes:
         raise InputError("no shape was given to compare the scan with; solve the plate's modes")
     for name, row in shapes.items():
@@ -157,17 +159,23 @@ def _matrix(
                 f"the shape '{name}' has {np.size(row)} places and the scan {good.size}; take the "
                 "shapes at the scan's own places (shapes_at)"
             )
-    matrix = np.column_stack([np.asarray(row)[good] for row in shapes.values()])
-    names = list(shapes)
-    for i in range(len(names)):
-        for j in range(i):
-            if _likeness(matrix[:, i], matrix[:, j]) > _ALIKE:
-                raise InputError(
-                    f"the scan's places cannot tell '{names[j]}' from '{names[i]}' (modal "
-                    f"assurance criterion {_likeness(matrix[:, i], matrix[:, j]):.2f}); scan more "
-                    "places, or leave one of them out"
-                )
-    return names, matrix
+    return {name: np.asarray(row)[good] for name, row in shapes.items()}
+
+
+def _told_apart(
+    rows: Mapping[str, si.Array], likeness: Mapping[str, float]
+) -> tuple[list[str], dict[str, str]]:
+    """Shapes from the most alike to the least, without those that the places cannot tell from one
+    before; these with that one."""
+    names: list[str] = []
+    alike: dict[str, str] = {}
+    for name in sorted(rows, key=lambda one: -likeness[one]):
+        same = [one for one in names if _likeness(rows[one], rows[name]) > _ALIKE]
+        if same:
+            alike[name] = same[0]
+        else:
+            names.append(name)
+    return names, alike
 
 
 def _likeness(shape: si.Array, other: si.Array) -> float:
@@ -196,17 +204,21 @@ def _phase(fit: SeparableFit, i: int, level: float) -> Estimate:
 def _adequacy(
     w: si.Array,
     residual: si.Array,
-    x: si.MetreArray,
-    y: si.MetreArray,
+    places: tuple[si.MetreArray, si.MetreArray],
     label: str,
     likeness: float,
+    alike: Mapping[str, str],
 ) -> Adequacy:
+    """Whether the shapes describe the scan, and one of them is it."""
+    x, y = places
+    same = ", ".join(f"{name} from {other}" for name, other in alike.items())
     found = adequacy_of(
         w,
         residual,
         lambda i: f"at x = {1e3 * x[i]:.3g} mm, y = {1e3 * y[i]:.3g} mm",
         remedy="Compare with more neighbouring modes, check where the scan's origin lies and which "
         "way its axes run, or doubt the solved plate.",
+        said=f"These places cannot tell {same}; the former is left out. " if same else "",
     )
     if likeness >= SAME_SHAPE or not found.adequate:
         return found

@@ -72,23 +72,25 @@ def band_poles(band: ModalBand, H: si.ComplexArray, count: int) -> list[tuple[fl
 
     f = np.linspace(band.f[0], band.f[-1], max(2 * band.f.size, 400))
     even = np.interp(f, band.f, H.real) + 1j * np.interp(f, band.f, H.imag)
-    # Its polynomials take frequencies from zero: the band is shifted down, which moves no width.
-    shifted = f - f[0]
+    # Its polynomials take frequencies from zero: the band is moved down, which changes no width, to
+    # a fifth of itself above zero, so that no pole is taken for its own mirror image.
+    below = float(f[0]) - band.width / 5
+    shifted = f - below
     with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
         warnings.simplefilter("ignore")
         model = EMA.Model(
             even[None, :],
             shifted,
-            lower=0,
-            upper=float(shifted[-1]),
+            lower=0.99 * float(shifted[0]),
+            upper=1.01 * float(shifted[-1]),
             pol_order_high=min(6 * count, 60),
-            frf_type="receptance",
+            frf_form="receptance",
         )
         model.get_poles(method="lscf", show_progress=False)
     found: list[tuple[float, float]] = []
     for row in model.all_poles:
         for pole in np.ravel(row):
-            own, width = abs(pole.imag) / (2 * np.pi) + f[0], -2 * pole.real / (2 * np.pi)
+            own, width = abs(pole.imag) / (2 * np.pi) + below, -2 * pole.real / (2 * np.pi)
             if band.f[0] < own < band.f[-1] and 0 < width < band.width:
                 found.append((float(own), float(width / own)))
     return _chosen(band, H, found, count)

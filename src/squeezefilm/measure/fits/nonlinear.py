@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -76,7 +77,7 @@ def propagated(
         step = np.zeros(numbers.size)
         step[i] = scale[i] * _STEP
         gradient[i] = (value(numbers + step) - value(numbers - step)) / (2 * step[i])
-    error = np.sqrt(max(float(gradient @ covariance @ gradient), 0.0))
+    error = math.sqrt(max(float(gradient @ covariance @ gradient), 0.0))
     return interval_around(value(numbers), error, freedom, unit, level, logarithmic=positive)
 
 

@@ -75,12 +75,20 @@ def test_an_even_drift_is_taken_out_where_asked_for() -> None:
     [
         ({}, "no shape"),
         ({"a": np.ones(3)}, "3 places"),
-        ({"a": SHAPES["(8,0)"], "b": 2 * SHAPES["(8,0)"]}, "cannot tell"),
     ],
 )
 def test_shapes_that_do_not_serve_are_refused(shapes, words: str) -> None:
     with pytest.raises(InputError, match=words):
         fit_grid_scan(GridScan(X, Y, SHAPES["(8,0)"] + 0j, 33e3), shapes)
+
+
+def test_of_two_shapes_that_the_places_cannot_tell_apart_one_is_left_out_and_said() -> None:
+    shapes = {"a": 2 * SHAPES["(8,0)"] + 0.01 * X, "b": SHAPES["(8,0)"]}
+    fit = fit_grid_scan(GridScan(X, Y, noisy(1e-6 * SHAPES["(8,0)"] + 0j), 33e3), shapes)
+    assert fit.label == "b"
+    assert fit.likeness.keys() == {"a", "b"}
+    assert fit.parts.keys() == {"b"}
+    assert "cannot tell a from b" in fit.adequacy.sentence
 
 
 def test_a_scan_of_nothing_is_refused() -> None:
