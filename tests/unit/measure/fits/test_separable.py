@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.nonlinear import (
     fit_nonlinear,
     interval_around,
@@ -86,4 +87,5 @@ def test_an_interval_of_a_logarithm_never_reaches_zero_and_an_inverse_may_be_ope
 def test_a_product_has_the_error_of_its_factors() -> None:
     covariance = np.diag([0.01**2, 0.02**2])
     found = propagated(lambda n: n[0] * n[1], np.array([2.0, 5.0]), covariance, 1000, "m")
+    assert isinstance(found, Estimate)
     assert found.standard_error == pytest.approx(np.hypot(5 * 0.01, 2 * 0.02), rel=1e-4)
