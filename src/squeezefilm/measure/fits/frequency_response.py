@@ -71,8 +71,11 @@ class FrequencyResponseFit:
 
         The amplitude is the largest of the whole response near that mode, as the library's
         `amplitude_per_volt` is. Whether the remainder beside the mode is its neighbours' or the
-        instrument's nobody can tell: half of what it adds or takes is in the standard error.
+        instrument's nobody can tell: half of what it adds or takes is in the standard error. None
+        where the fit is not adequate.
         """
+        if not self.adequacy.adequate:
+            return ()
         under = {} if self.recording.voltage is None else {"voltage": self.recording.voltage}
         if self.recording.place is not None:
             under |= dict(zip("xy", self.recording.place, strict=True))

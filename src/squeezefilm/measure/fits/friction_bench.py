@@ -7,7 +7,7 @@ finger differs from stroke to stroke. All intervals are of the spread between st
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated
 
@@ -29,6 +29,9 @@ _LEVEL = 0.04
 _MOST_LEVELS = 24
 # Speeds or forces that vary less (one standard deviation of the logarithm) tell of no exponent.
 _VARIED = 0.08
+# Below this share of the friction at the least amplitude a finger as good as floats: what a sensor
+# reads there is its own noise, whose logarithm says nothing.
+_FLOATING = 0.03
 # Where drift makes an interval wider by so much, it went with the amplitude.
 _CONFOUNDED = 3.0
 
@@ -78,11 +81,12 @@ class FrictionBenchFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use: µ without vibration, and µ′/µ at every amplitude."""
+        """What a calibration may use: µ without vibration, and µ′/µ at every amplitude; none where
+        the fit is not adequate."""
         at = {"finger_speed": self.speed, "normal_force": self.normal_force}
         if self.recording.frequency is not None:
             at |= {"frequency": self.recording.frequency}
-        if not self.relative_friction:
+        if not self.relative_friction or not self.adequacy.adequate:
             return ()
         still = self.coefficients[0]
         return (
@@ -132,20 +136,43 @@ def fit_friction_bench(
     dries, and the direction of the stroke (a force sensor's zero). What is left is the spread
     between strokes, of which intervals are made. Amplitude and drift are told apart only where
     amplitudes came in a mixed order: where they did not, `adequacy` says so. Needs more strokes
-    than numbers to fit. Raises `InputError` for too few strokes, more than 24 amplitudes, or a
-    friction that is not above 0.
+    than numbers to fit. Raises `InputError` for too few strokes, more than 24 amplitudes, or no
+    friction at the least amplitude. Amplitudes at which a stroke has none are left out, and said.
     """
     si.require("drift", drift, at_least=0, at_most=MOST_DRIFT)
     strokes = sliding_strokes(recording)
+    strokes, floating = _touching(strokes)
+    found = _Fitted.of(strokes, drift, level).read(recording, strokes)
+    if not floating:
+        return found
+    shown = " and ".join(f"{1e6 * one:.3g} µm" for one in floating)
+    said = (
+        f"At {shown} strokes have next to no friction; what floats has no coefficient "
+        "on a logarithmic scale, and these amplitudes are left out. "
+    )
+    adequacy = replace(found.adequacy, sentence=said + found.adequacy.sentence)
+    return replace(found, adequacy=adequacy)
+
+
+def _touching(strokes: Strokes) -> tuple[Strokes, tuple[si.Metre, ...]]:
+    """The strokes of amplitudes at which all have friction, and the other amplitudes (m).
+
+    Raises `InputError` where the least amplitude is among these.
+    """
     coefficient = strokes.column("coefficient")
-    if np.any(coefficient <= 0):
-        at = strokes.rows[int(np.argmin(coefficient))]
+    levels, number = _levels(strokes.column("amplitude"))
+    own = [coefficient[number == i] for i in range(levels.size)]
+    little = _FLOATING * float(np.median(own[0]))
+    none = [i for i, row in enumerate(own) if np.min(row) <= 0 or np.median(row) < little]
+    if 0 in none:
+        at = strokes.rows[int(np.argmin(np.where(number == 0, coefficient, np.inf)))]
         raise InputError(
-            f"the stroke at {at.time:.4g} s has a friction coefficient of {at.coefficient:.3g}; it "
-            "must be above 0: check the zero and the sign of the tangential force"
+            f"the stroke at {at.time:.4g} s, at the least amplitude, has a friction coefficient of "
+            f"{at.coefficient:.3g}; it must be above 0: check the zero and the sign of the "
+            "tangential force"
         )
-    fitted = _Fitted.of(strokes, drift, level)
-    return fitted.read(recording, strokes)
+    rows = tuple(row for row, i in zip(strokes.rows, number, strict=True) if i not in none)
+    return replace(strokes, rows=rows), tuple(float(levels[i]) for i in none)
 
 
 @dataclass(frozen=True, eq=False)

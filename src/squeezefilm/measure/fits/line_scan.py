@@ -36,8 +36,9 @@ class LineScanFit:
     the waves fade along their way (four times their decay over the wave number: bending waves);
     `phase` (rad) of the antinode against the drive; the last three are None where no phase was
     recorded. `phase_reversed` says that waves grow along their way, which no plate makes: the phase
-    was recorded with the other sign, and the fit is of the complex conjugate. `model` and
-    `residual` (m) are at `position` (m).
+    was recorded with the other sign, and the fit is of the complex conjugate. `by_points`
+    says that half wavelength, nodal lines and amplitude are those of the points around each, as no
+    even wave fits. `model` and `residual` (m) are at `position` (m).
     """
 
     recording: LineScan
@@ -52,12 +53,16 @@ class LineScanFit:
     loss_factor: Estimate | None
     phase: Estimate | None
     phase_reversed: bool
+    by_points: bool
     adequacy: Adequacy
 
     @property
     def observations(self) -> tuple[Observation, ...]:
         """What a calibration may use: half wavelength, and amplitude at the best antinode where
-        the drive's voltage was told."""
+        the drive's voltage was told; by the points where an even wave does not fit. None where
+        neither says anything (no two nodal lines)."""
+        if not self.adequacy.adequate and not self.by_points:
+            return ()
         at = {"frequency": self.recording.frequency}
         half, largest = self.half_wavelength, self.antinode_amplitude
         found = [Observation("half_wavelength", half.value, half.standard_error, at)]
@@ -295,6 +300,7 @@ class _FittedLine:
             else None,
             phase=self._phase(lobe) if self.line.complex else None,
             phase_reversed=self.phase_reversed,
+            by_points=False,
             adequacy=self.adequacy,
         )
         return found if self.adequacy.adequate else self._by_points(found)
@@ -316,6 +322,7 @@ class _FittedLine:
             nodal_lines=points.nodes,
             antinode=antinode[0],
             antinode_amplitude=antinode[1],
+            by_points=True,
             adequacy=replace(self.adequacy, sentence=self.adequacy.sentence + said),
         )
 

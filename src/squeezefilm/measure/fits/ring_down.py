@@ -55,10 +55,12 @@ class RingDownFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use: resonance frequency and Q.
+        """What a calibration may use: resonance frequency and Q; none of a fit that is not adequate.
 
         With losses of 1/Q the free decay rings at the resonance but for a share 1/8Q².
         """
+        if not self.adequacy.adequate:
+            return ()
         return tuple(
             Observation(name, one.value, one.standard_error, {})
             for name, one in (

@@ -74,7 +74,10 @@ class VoltageSweepsFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration of a linear plate may use: values for vanishing amplitudes."""
+        """What a calibration of a linear plate may use: values for vanishing amplitudes; none where
+        the fit is not adequate."""
+        if not self.adequacy.adequate:
+            return ()
         return tuple(
             Observation(name, one.value, one.standard_error, {"voltage": 0.0})
             for name, one in (

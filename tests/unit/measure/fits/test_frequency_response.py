@@ -48,6 +48,7 @@ def test_a_second_mode_is_found_or_its_lack_is_said() -> None:
     alone = fit_frequency_response(recording, modes=1)
     assert not alone.adequacy.adequate
     assert "kHz" in alone.adequacy.where
+    assert alone.observations == ()
     low, high = alone.modes[0].frequency.interval
     assert low < PEAK[0] < high
 

@@ -118,6 +118,19 @@ def test_without_a_level_of_no_vibration_nothing_is_relative() -> None:
     assert len(fit.coefficients) >= 3
 
 
+def test_an_amplitude_that_leaves_no_friction_is_left_out_and_said() -> None:
+    _, recording = bench()
+    floating = recording.vibration_amplitude == LEVELS[3]
+    pull = np.where(floating, 0.0, recording.tangential_force)
+    noise = 2e-3 * np.random.default_rng(6).standard_normal(pull.size)
+    fit = fit_friction_bench(dataclasses.replace(recording, tangential_force=pull + noise))
+    assert fit.amplitudes == pytest.approx(LEVELS[:3], abs=1e-9)
+    assert "At 2 µm" in fit.adequacy.sentence
+    always = dataclasses.replace(recording, tangential_force=np.abs(recording.tangential_force))
+    with pytest.raises(InputError, match="zero and the sign"):
+        fit_friction_bench(always)
+
+
 def test_what_is_no_sliding_is_refused() -> None:
     _, recording = bench()
     still = dataclasses.replace(recording, position=np.zeros(recording.time.size))

@@ -39,6 +39,7 @@ def test_a_beat_is_two_modes_or_a_misfit_that_is_said() -> None:
     alone = fit_ring_down(recording, modes=1)
     assert not alone.adequacy.adequate
     assert "ms after the start" in alone.adequacy.where
+    assert alone.observations == ()
 
 
 def test_a_loss_that_rises_with_the_amplitude_is_found_and_said() -> None:

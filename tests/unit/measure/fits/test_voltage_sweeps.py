@@ -95,6 +95,7 @@ def test_another_mode_in_the_band_is_a_misfit() -> None:
     fit = fit_voltage_sweeps(dataclasses.replace(recording, sweeps=sweeps))
     assert not fit.adequacy.adequate
     assert "kHz" in fit.adequacy.where
+    assert fit.observations == ()
 
 
 def test_a_phase_of_the_other_sign_is_noticed() -> None:
