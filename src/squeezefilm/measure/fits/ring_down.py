@@ -55,7 +55,7 @@ class RingDownFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use: resonance frequency and Q; none of a fit that is not adequate.
+        """What a calibration may use: resonance frequency and Q; none of an inadequate fit.
 
         With losses of 1/Q the free decay rings at the resonance but for a share 1/8Q².
         """
