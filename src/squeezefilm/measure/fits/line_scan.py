@@ -34,11 +34,12 @@ class LineScanFit:
     lines, at `antinode` (m); `standing_wave_ratio` of the waves that run forward and backward at
     the middle of the line, (a + b)/|a − b|: infinite for a pure standing wave; `loss_factor` by how
     the waves fade along their way (four times their decay over the wave number: bending waves);
-    `phase` (rad) of the antinode against the drive; the last three are None where no phase was
-    recorded. `phase_reversed` says that waves grow along their way, which no plate makes: the phase
-    was recorded with the other sign, and the fit is of the complex conjugate. `by_points`
-    says that half wavelength, nodal lines and amplitude are those of the points around each, as no
-    even wave fits. `model` and `residual` (m) are at `position` (m).
+    `phase` (rad) of the antinode against the drive. The last three are None where no phase was
+    recorded, ratio and loss also where no even wave fits. `phase_reversed` says that waves grow
+    along their way, which no plate makes: the phase was recorded with the other sign, and the fit
+    is of the complex conjugate. `by_points` says that half wavelength, nodal lines and amplitude
+    are those of the points around each, as no even wave fits. `model` and `residual` (m) are at
+    `position` (m).
     """
 
     recording: LineScan
@@ -130,8 +131,8 @@ def fit_line_scan(
         w,
         fit.residual * size,
         lambda i: f"{1e3 * x[i]:.3g} mm along the line",
-        remedy="Scan more finely, away from ceramics' edges, or compare the shape with the solved "
-        "plate's (a grid scan).",
+        remedy="A plate with ceramics on it, or one that also bends across the line, has no one "
+        "wave: compare its shape with the solved plate's (a grid scan).",
         said="The phase was recorded with the other sign (waves would grow along their way); the "
         "fit is of the complex conjugate. "
         if grows
@@ -314,7 +315,7 @@ class _FittedLine:
             return found
         said = (
             " Half wavelength (their mean distance), nodal lines and amplitude are therefore those "
-            "of the points around each; loss and ratio of waves mean little."
+            "of the points around each; loss and ratio of waves are not given."
         )
         return replace(
             found,
@@ -322,6 +323,8 @@ class _FittedLine:
             nodal_lines=points.nodes,
             antinode=antinode[0],
             antinode_amplitude=antinode[1],
+            standing_wave_ratio=None,
+            loss_factor=None,
             by_points=True,
             adequacy=replace(self.adequacy, sentence=self.adequacy.sentence + said),
         )

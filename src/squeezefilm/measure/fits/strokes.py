@@ -20,6 +20,7 @@ _SHORTEST: si.Second = 0.1
 _TRIMMED = 0.15
 # An amplitude counts as kept within this share of the largest.
 _SAME_AMPLITUDE = 0.05
+_FEWEST_OF_A_STROKE = 10
 
 
 class Stroke(NamedTuple):
@@ -56,18 +57,7 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
     part. The coefficient is the mean tangential over the mean normal force, so that noise on the
     normal force does not bias it. Raises `InputError` for a recording without two such strokes.
     """
-    columns = [
-        np.asarray(one, dtype=float)
-        for one in (
-            recording.time,
-            recording.normal_force,
-            recording.tangential_force,
-            recording.position,
-            recording.vibration_amplitude,
-        )
-    ]
-    good = np.all(np.isfinite(columns), axis=0)
-    t, normal, tangential, position, amplitude = (one[good] for one in columns)
+    t, normal, tangential, position, amplitude = _finite(recording)
     if t.size < _FEWEST_POINTS or np.any(np.diff(t) <= 0):
         raise InputError(
             f"the friction bench has {t.size} usable points; at least {_FEWEST_POINTS} are wanted, "
@@ -81,20 +71,16 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
     # A gap in the recording ends a stroke.
     gap = np.diff(t) > 10 * np.median(np.diff(t))
     edges = np.flatnonzero((np.diff(which) != 0) | gap) + 1
-    rows, used, changing = [], 0, 0
     tolerated = _SAME_AMPLITUDE * max(float(np.max(amplitude)), 1e-12)
+    rows, used, changing = [], 0, 0
     for part in np.split(np.arange(t.size), edges):
         if which[part[0]] == 0 or t[part[-1]] - t[part[0]] < _SHORTEST:
             continue
-        cut = int(_TRIMMED * part.size)
-        part = part[cut : part.size - cut]
-        even = _longest_even(amplitude[part], tolerated)
-        changing += part.size - (even.stop - even.start)
-        part = part[even]
-        if part.size < 10:
-            continue
-        used += part.size
-        rows.append((part, which[part[0]]))
+        even = _even_part(part, amplitude, tolerated)
+        changing += part.size - 2 * int(_TRIMMED * part.size) - even.size
+        if even.size >= _FEWEST_OF_A_STROKE:
+            used += even.size
+            rows.append((even, which[part[0]]))
     if len(rows) < 2:
         raise InputError(
             f"the friction bench has {len(rows)} sliding strokes of at least 0.1 s at an even "
@@ -115,6 +101,21 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
     return Strokes(strokes, used / t.size, changing / t.size)
 
 
+def _finite(recording: FrictionBench) -> tuple[si.FloatArray, ...]:
+    """Time, both forces, position and amplitude where all are finite."""
+    columns = np.array(
+        [
+            recording.time,
+            recording.normal_force,
+            recording.tangential_force,
+            recording.position,
+            recording.vibration_amplitude,
+        ],
+        dtype=float,
+    )
+    return tuple(columns[:, np.all(np.isfinite(columns), axis=0)])
+
+
 def _usual(values: si.FloatArray) -> float:
     """The median of what is well above nothing; infinite where nothing is."""
     large = values[values > max(0.3 * float(np.percentile(values, 95)), 0.0)]
@@ -129,11 +130,13 @@ def _speed(t: si.SecondArray, position: si.MetreArray) -> si.MetrePerSecondArray
     return np.convolve(padded, np.ones(width) / width, mode="valid")
 
 
-def _longest_even(amplitude: si.MetreArray, tolerated: float) -> slice:
-    """The longest stretch without a step of the amplitude, as a slice."""
-    edges = [0, *(np.flatnonzero(np.abs(np.diff(amplitude)) > tolerated) + 1), amplitude.size]
+def _even_part(part: si.IntArray, amplitude: si.MetreArray, tolerated: float) -> si.IntArray:
+    """The points of a stroke without its ends, where the amplitude is even for longest."""
+    cut = int(_TRIMMED * part.size)
+    part = part[cut : part.size - cut]
+    own = amplitude[part]
+    edges = [0, *(np.flatnonzero(np.abs(np.diff(own)) > tolerated) + 1), own.size]
     longest = int(np.argmax(np.diff(edges)))
-    start, stop = int(edges[longest]), int(edges[longest + 1])
-    if np.ptp(amplitude[start:stop]) > 4 * tolerated:
-        return slice(start, start)
-    return slice(start, stop)
+    found = slice(edges[longest], edges[longest + 1])
+    # An amplitude that creeps has no step, and is still none.
+    return part[found] if np.ptp(own[found]) <= 4 * tolerated else part[:0]

@@ -48,6 +48,7 @@ def test_the_papers_plate_is_no_even_wave_and_is_read_by_its_points() -> None:
     fit = fit_line_scan(LineScan(X, w, mode.resonance_frequency, 15.0))
     assert not fit.adequacy.adequate
     assert fit.by_points
+    assert fit.loss_factor is None
     assert "points around" in fit.adequacy.sentence
     assert len(fit.observations) == 2
     for node, own in zip(fit.nodal_lines, mode.line.nodal_positions, strict=True):
