@@ -10,6 +10,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.modal_band import ModalBand, band_poles
 from squeezefilm.measure.fits.modal_circle import ModalCircle, modal_circle
@@ -94,6 +95,7 @@ class FrequencyResponseFit:
         )
 
 
+@guarded_fit
 def fit_frequency_response(
     recording: FrequencyResponse,
     *,
@@ -152,6 +154,8 @@ def _recorded(recording: FrequencyResponse) -> tuple[si.HertzArray, si.ComplexAr
             "the frequency response has no phase (its imaginary part is zero everywhere); record "
             "magnitude and phase, or real and imaginary part"
         )
+    if not f[-1] > f[0]:
+        raise InputError("the response is of one frequency only; sweep over the resonance")
     if f[-1] > _WIDEST * f[0]:
         raise InputError(
             f"the response runs from {si.format_quantity(f[0], si.Unit('Hz'))} to "

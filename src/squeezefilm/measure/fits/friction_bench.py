@@ -16,6 +16,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.nonlinear import interval_around
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
@@ -123,6 +124,7 @@ class FrictionBenchFit:
         return self._fitted.exponential(row)
 
 
+@guarded_fit
 def fit_friction_bench(
     recording: FrictionBench,
     *,

@@ -11,6 +11,7 @@ from scipy.interpolate import RectBivariateSpline
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.recordings.kinds import GridScan
@@ -63,6 +64,7 @@ class GridScanFit:
         )
 
 
+@guarded_fit
 def fit_grid_scan(
     recording: GridScan,
     shapes: Mapping[str, si.Array],

@@ -108,6 +108,8 @@ class LinePoints:
             return None
         x, w = self._smooth
         between = (x > self.nodes[0].value) & (x < self.nodes[-1].value)
+        if not between.any():
+            return None
         place = float(x[between][np.argmax(np.abs(w[between]))])
         fit = self._around(place)
         if fit is None:

@@ -10,6 +10,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.line_points import LinePoints
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
@@ -96,6 +97,7 @@ class LineScanFit:
         return Estimate(late / omega, error, ends, "s", self.phase.level)
 
 
+@guarded_fit
 def fit_line_scan(
     recording: LineScan,
     *,
@@ -382,5 +384,6 @@ def _best_antinode(x: si.MetreArray, size: si.FloatArray, nodes: si.MetreArray) 
     """The largest size between the outermost nodes: free ends move further than a finger meets."""
     if nodes.size >= 2:
         between = (x > nodes[0]) & (x < nodes[-1])
-        x, size = x[between], size[between]
+        if between.any():
+            x, size = x[between], size[between]
     return float(x[int(np.argmax(size))])

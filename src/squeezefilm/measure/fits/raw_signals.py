@@ -10,6 +10,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.modal_circle import modal_circle
 from squeezefilm.measure.fits.separable import fit_separable
@@ -52,6 +53,7 @@ class RawSignalsFit:
         return ()
 
 
+@guarded_fit
 def fit_raw_signals(
     recording: RawSignals,
     *,

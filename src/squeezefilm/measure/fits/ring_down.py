@@ -10,6 +10,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
 from squeezefilm.measure.fits.nonlinear import NonlinearFit, fit_nonlinear, inverse_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
@@ -70,6 +71,7 @@ class RingDownFit:
         )
 
 
+@guarded_fit
 def fit_ring_down(
     recording: RingDown, *, modes: int | None = None, level: si.Dimensionless = 0.95
 ) -> RingDownFit:

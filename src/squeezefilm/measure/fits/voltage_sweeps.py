@@ -12,6 +12,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
 from squeezefilm.measure.fits.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.fits.nonlinear import NonlinearFit, fit_nonlinear, inverse_of
@@ -93,6 +94,7 @@ class VoltageSweepsFit:
         return self.frequency.value * (1 + self.backbone.value * amplitude**power)
 
 
+@guarded_fit
 def fit_voltage_sweeps(
     recording: VoltageSweeps,
     *,
@@ -138,6 +140,8 @@ class _Points:
                 f"{len(recording.sweeps)} sweeps have {len(recording.directions)} directions; say "
                 "of each whether it went up or down"
             )
+        if not recording.sweeps:
+            raise InputError("there is no sweep; give sweeps at two or more voltages")
         rows = []
         for number, sweep in enumerate(recording.sweeps):
             if not sweep.voltage or sweep.voltage <= 0:
