@@ -1,0 +1,372 @@
+"""Friction against amplitude, speed and force, out of the strokes of a bench.
+
+The unit of evidence is a stroke: thousands of samples of one stroke tell of that stroke only, and a
+finger differs from stroke to stroke. All intervals are of the spread between strokes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.misfit import adequacy_of
+from squeezefilm.measure.fits.nonlinear import interval_around
+from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+from squeezefilm.measure.fits.strokes import Strokes, sliding_strokes
+from squeezefilm.measure.recordings.kinds import FrictionBench, FrictionCurve
+
+MOST_DRIFT = 4
+
+# Amplitudes nearer than this share of the largest are one level.
+_LEVEL = 0.04
+_MOST_LEVELS = 24
+# Speeds or forces that vary less (one standard deviation of the logarithm) tell of no exponent.
+_VARIED = 0.08
+# Below this share of the friction at the least amplitude a finger as good as floats: what a sensor
+# reads there is its own noise, whose logarithm says nothing.
+_FLOATING = 0.03
+# Where drift makes an interval wider by so much, it went with the amplitude.
+_CONFOUNDED = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionBenchFit:
+    """µ of a finger by amplitude, at the bench's usual `speed` (m/s) and `normal_force` (N).
+
+    `amplitudes` (m) are the levels; `coefficients` µ at each, as it was in the middle of the
+    session; `relative_friction` µ′/µ at each but the first, over the level without vibration (empty
+    where there was none). `speed_exponent` and `force_exponent` are d ln µ/d ln v and
+    d ln µ/d ln F without vibration, None where the bench hardly varied them. `drift` (1) is how
+    much ln µ rose from the first stroke to the last, all else being equal. `between_strokes` is
+    the standard deviation of ln µ between strokes that should be alike.
+    """
+
+    recording: FrictionBench
+    strokes: Strokes
+    amplitudes: si.MetreArray
+    speed: si.MetrePerSecond
+    normal_force: si.Newton
+    coefficients: tuple[Estimate, ...]
+    relative_friction: tuple[Estimate, ...]
+    speed_exponent: Estimate | None
+    force_exponent: Estimate | None
+    drift: Estimate | None
+    between_strokes: si.Dimensionless
+    adequacy: Adequacy
+    _fitted: _Fitted
+
+    @property
+    def curve(self) -> FrictionCurve | None:
+        """The curve µ′/µ(amplitude) with its spread between strokes, as others compare it; None
+        without a level of no vibration, or where the recording does not tell the frequency."""
+        if not self.relative_friction or self.recording.frequency is None:
+            return None
+        values = np.array([1.0, *(one.value for one in self.relative_friction)])
+        return FrictionCurve(
+            vibration_amplitude=self.amplitudes,
+            relative_friction=values,
+            spread=values * self.between_strokes,
+            frequency=self.recording.frequency,
+            normal_force=self.normal_force,
+            speed=self.speed,
+            told=self.recording.told,
+        )
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """What a calibration may use: µ without vibration, and µ′/µ at every amplitude; none where
+        the fit is not adequate."""
+        at = {"finger_speed": self.speed, "normal_force": self.normal_force}
+        if self.recording.frequency is not None:
+            at |= {"frequency": self.recording.frequency}
+        if not self.relative_friction or not self.adequacy.adequate:
+            return ()
+        still = self.coefficients[0]
+        return (
+            Observation("friction_coefficient", still.value, still.standard_error, at),
+            *(
+                Observation(
+                    "relative_friction",
+                    one.value,
+                    one.standard_error,
+                    at | {"vibration_amplitude": float(amplitude)},
+                )
+                for amplitude, one in zip(self.amplitudes[1:], self.relative_friction, strict=True)
+            ),
+        )
+
+    def friction_at(
+        self, amplitude: si.Metre, speed: si.MetrePerSecond, normal_force: si.Newton
+    ) -> Estimate:
+        """µ at an amplitude (m), speed (m/s) and force (N), its mean over strokes, with interval.
+
+        Linear between levels of amplitude, a power of speed and force; in the middle of the
+        session. Raises `InputError` outside the amplitudes, and for a speed or force beyond those
+        of the strokes by more than a fifth.
+        """
+        for name, value, known, unit in (
+            ("amplitude", amplitude, self.amplitudes, "m"),
+            ("speed", speed, self.strokes.column("speed"), "m/s"),
+            ("normal_force", normal_force, self.strokes.column("force"), "N"),
+        ):
+            slack = 1e-9 if name == "amplitude" else 0.2 * float(np.max(known))
+            low, high = float(np.min(known)) - slack, float(np.max(known)) + slack
+            si.require(name, value, si.Unit(unit), at_least=max(low, 0.0), at_most=high)
+        row = self._fitted.row(amplitude, speed, normal_force)
+        return self._fitted.exponential(row)
+
+
+@guarded_fit
+def fit_friction_bench(
+    recording: FrictionBench,
+    *,
+    drift: Annotated[int, si.AtLeast(0), si.AtMost(MOST_DRIFT)] = 2,
+    level: si.Dimensionless = 0.95,
+) -> FrictionBenchFit:
+    """µ and µ′/µ against amplitude (m), speed (m/s) and force (N), drift of the finger taken out.
+
+    ln µ of every stroke is a level for its amplitude, exponents of speed and force (and how these
+    change with the amplitude), a polynomial of degree `drift` in time for a finger that sweats or
+    dries, and the direction of the stroke (a force sensor's zero). What is left is the spread
+    between strokes, of which intervals are made. Amplitude and drift are told apart only where
+    amplitudes came in a mixed order: where they did not, `adequacy` says so. Needs more strokes
+    than numbers to fit. Raises `InputError` for too few strokes, more than 24 amplitudes, or no
+    friction at the least amplitude. Amplitudes at which a stroke has none are left out, and said.
+    """
+    si.require("drift", drift, at_least=0, at_most=MOST_DRIFT)
+    strokes = sliding_strokes(recording)
+    strokes, floating = _touching(strokes)
+    found = _Fitted.of(strokes, drift, level).read(recording, strokes)
+    if not floating:
+        return found
+    shown = " and ".join(f"{1e6 * one:.3g} µm" for one in floating)
+    said = (
+        f"At {shown} strokes have next to no friction; what floats has no coefficient "
+        "on a logarithmic scale, and these amplitudes are left out. "
+    )
+    adequacy = replace(found.adequacy, sentence=said + found.adequacy.sentence)
+    return replace(found, adequacy=adequacy)
+
+
+def _touching(strokes: Strokes) -> tuple[Strokes, tuple[si.Metre, ...]]:
+    """The strokes of amplitudes at which all have friction, and the other amplitudes (m).
+
+    Raises `InputError` where the least amplitude is among these.
+    """
+    coefficient = strokes.column("coefficient")
+    levels, number = _levels(strokes.column("amplitude"))
+    own = [coefficient[number == i] for i in range(levels.size)]
+    little = _FLOATING * float(np.median(own[0]))
+    none = [i for i, row in enumerate(own) if np.min(row) <= 0 or np.median(row) < little]
+    if 0 in none:
+        at = strokes.rows[int(np.argmin(np.where(number == 0, coefficient, np.inf)))]
+        raise InputError(
+            f"the stroke at {at.time:.4g} s, at the least amplitude, has a friction coefficient of "
+            f"{at.coefficient:.3g}; it must be above 0: check the zero and the sign of the "
+            "tangential force"
+        )
+    rows = tuple(row for row, i in zip(strokes.rows, number, strict=True) if i not in none)
+    return replace(strokes, rows=rows), tuple(float(levels[i]) for i in none)
+
+
+@dataclass(frozen=True, eq=False)
+class _Design:
+    """What ln µ of a stroke is made of: columns by level, speed, force, time and direction."""
+
+    levels: si.MetreArray
+    number: si.IntArray
+    speed: si.MetrePerSecond
+    force: si.Newton
+    speeds_vary: bool
+    forces_vary: bool
+    matrix: si.FloatArray
+    drift: int
+
+    @classmethod
+    def of(cls, strokes: Strokes, drift: int) -> _Design:
+        amplitude = strokes.column("amplitude")
+        levels, number = _levels(amplitude)
+        speed, force = (np.log(strokes.column(name)) for name in ("speed", "force"))
+        middle = float(np.exp(np.mean(speed))), float(np.exp(np.mean(force)))
+        vary = bool(np.std(speed) > _VARIED), bool(np.std(force) > _VARIED)
+        share = levels[number] / max(levels[-1], 1e-15)
+        columns = [(number == i).astype(float) for i in range(levels.size)]
+        for deviation, varied in ((speed - speed.mean(), vary[0]), (force - force.mean(), vary[1])):
+            if varied:
+                columns.append(deviation)
+                if levels.size > 1:
+                    columns.append(deviation * share)
+        t = strokes.column("time")
+        place = 2 * (t - t[0]) / max(t[-1] - t[0], 1e-12) - 1
+        # Orthogonal over the strokes, so that levels are those of the session's middle.
+        basis = np.polynomial.legendre.legvander(place, drift)[:, 1:]
+        columns += list((basis - basis.mean(axis=0)).T)
+        direction = strokes.column("direction")
+        if np.ptp(direction) > 0:
+            columns.append(direction - direction.mean())
+        return cls(levels, number, *middle, *vary, np.stack(columns, axis=1), drift)
+
+    @cached_property
+    def drift_at(self) -> int:
+        """The first column of the drift."""
+        exponents = self.speeds_vary + self.forces_vary
+        return self.levels.size + exponents * (2 if self.levels.size > 1 else 1)
+
+
+def _levels(amplitude: si.MetreArray) -> tuple[si.MetreArray, si.IntArray]:
+    """The amplitudes that were set, and which of them each stroke had."""
+    order = np.argsort(amplitude, kind="stable")
+    steps = np.diff(amplitude[order]) > _LEVEL * max(float(amplitude.max()), 1e-12)
+    number = np.empty(amplitude.size, dtype=np.int64)
+    number[order] = np.concatenate([[0], np.cumsum(steps)])
+    count = int(number.max()) + 1
+    if count > _MOST_LEVELS:
+        raise InputError(
+            f"the strokes have {count} different amplitudes; at most {_MOST_LEVELS} are fitted: "
+            "hold the amplitude at set levels"
+        )
+    return np.array([amplitude[number == i].mean() for i in range(count)]), number
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """ln µ by its design."""
+
+    design: _Design
+    fit: SeparableFit
+    data: si.FloatArray
+    level: float
+
+    @classmethod
+    def of(cls, strokes: Strokes, drift: int, level: float) -> _Fitted:
+        design = _Design.of(strokes, drift)
+        data = np.log(strokes.column("coefficient"))
+        if len(strokes.rows) < design.matrix.shape[1] + 2:
+            raise InputError(
+                f"{len(strokes.rows)} strokes were recorded; {design.levels.size} amplitudes, "
+                f"drift and what else varied need at least {design.matrix.shape[1] + 2}"
+            )
+        return cls(design, _straight(design.matrix, data), data, level)
+
+    def row(self, amplitude: float, speed: float, force: float) -> si.FloatArray:
+        """The columns' values at a condition, in the middle of the session."""
+        design, row = self.design, np.zeros(self.design.matrix.shape[1])
+        count = design.levels.size
+        for i in range(count):
+            row[i] = np.interp(amplitude, design.levels, np.eye(count)[i])
+        at, share = count, amplitude / max(design.levels[-1], 1e-15)
+        for value, middle, varied in (
+            (speed, design.speed, design.speeds_vary),
+            (force, design.force, design.forces_vary),
+        ):
+            if varied:
+                deviation = np.log(value / middle)
+                row[at] = deviation
+                at += 1
+                if count > 1:
+                    row[at] = deviation * share
+                    at += 1
+        return row
+
+    def straight(self, row: si.FloatArray) -> Estimate:
+        """A weighted sum of the fitted numbers."""
+        error = math.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
+        value = float(row @ self.fit.weights)
+        return interval_around(value, error, self.fit.freedom, "1", self.level)
+
+    def exponential(self, row: si.FloatArray) -> Estimate:
+        """e to such a sum."""
+        error = math.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
+        value, freedom = float(row @ self.fit.weights), self.fit.freedom
+        return interval_around(value, error, freedom, "1", self.level, logarithmic=True)
+
+    def one(self, i: int, other: int | None = None) -> si.FloatArray:
+        row = np.zeros(self.design.matrix.shape[1])
+        row[i] = 1.0
+        if other is not None:
+            row[other] = -1.0
+        return row
+
+    def read(self, recording: FrictionBench, strokes: Strokes) -> FrictionBenchFit:
+        design, count = self.design, self.design.levels.size
+        still = design.levels[0] < _LEVEL * design.levels[-1] or count == 1
+        relative = [self.exponential(self.one(i, 0)) for i in range(1, count)] if still else []
+        after_speed = count + (2 if count > 1 else 1) * design.speeds_vary
+        spread = float(np.sqrt(np.sum(self.fit.residual**2) / self.fit.freedom))
+        return FrictionBenchFit(
+            recording=recording,
+            strokes=strokes,
+            amplitudes=design.levels,
+            speed=design.speed,
+            normal_force=design.force,
+            coefficients=tuple(self.exponential(self.one(i)) for i in range(count)),
+            relative_friction=tuple(relative),
+            speed_exponent=self.straight(self.one(count)) if design.speeds_vary else None,
+            force_exponent=self.straight(self.one(after_speed)) if design.forces_vary else None,
+            drift=self._drift() if design.drift else None,
+            between_strokes=spread,
+            adequacy=self._adequacy(strokes),
+            _fitted=self,
+        )
+
+    def _drift(self) -> Estimate:
+        """From the first stroke to the last."""
+        design, row = self.design, np.zeros(self.design.matrix.shape[1])
+        own = slice(design.drift_at, design.drift_at + design.drift)
+        row[own] = design.matrix[-1, own] - design.matrix[0, own]
+        return self.straight(row)
+
+    def _adequacy(self, strokes: Strokes) -> Adequacy:
+        friction = strokes.column("coefficient")
+        found = adequacy_of(
+            friction,
+            friction - np.exp(self.fit.model),
+            lambda i: f"at {strokes.rows[i].time:.4g} s",
+            remedy="The finger changed otherwise than by a slow drift: ask for a drift of higher "
+            "degree, or leave out what went wrong.",
+        )
+        confounded = self._confounded()
+        if confounded is None:
+            return found
+        sentence = (
+            f"Amplitude and time went together: the drift of the finger makes the interval at "
+            f"{1e6 * self.design.levels[confounded]:.3g} µm more than {_CONFOUNDED:g} times as "
+            "wide. Repeat it with amplitudes in a mixed order. "
+        )
+        where = f"at {1e6 * self.design.levels[confounded]:.3g} µm"
+        return Adequacy(False, found.residual, found.noise, where, sentence + found.sentence)
+
+    def _confounded(self) -> int | None:
+        """The level whose difference from the first one drift widens most, if by too much."""
+        design, count = self.design, self.design.levels.size
+        if not design.drift or count < 2:
+            return None
+        keep = np.ones(design.matrix.shape[1], dtype=bool)
+        keep[design.drift_at : design.drift_at + design.drift] = False
+        # In units of the noise: what the design alone does.
+        whole, without = (np.linalg.pinv(m.T @ m) for m in (design.matrix, design.matrix[:, keep]))
+        ratio = []
+        for i in range(1, count):
+            row = self.one(i, 0)
+            ratio.append(np.sqrt((row @ whole @ row) / (row[keep] @ without @ row[keep])))
+        worst = int(np.argmax(ratio))
+        return worst + 1 if ratio[worst] > _CONFOUNDED else None
+
+
+def _straight(matrix: si.FloatArray, data: si.FloatArray) -> SeparableFit:
+    """Ordinary least squares. Raises `InputError` where columns cannot be told apart."""
+    if np.linalg.matrix_rank(matrix) < matrix.shape[1]:
+        raise InputError(
+            "amplitude, speed, force and time of the strokes went together, so that none can be "
+            "told from the others; vary them in a mixed order, or ask for no drift"
+        )
+    bent = np.empty((0, *matrix.shape))
+    return fit_separable(lambda _: (matrix, bent), data, np.empty(0))

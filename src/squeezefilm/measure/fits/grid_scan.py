@@ -1,0 +1,232 @@
+"""A scan over the face beside solved shapes: which mode it is, and how far it moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.misfit import adequacy_of
+from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+from squeezefilm.measure.recordings.kinds import GridScan
+from squeezefilm.plate.solid.modes import PlateModes
+
+SAME_SHAPE: si.Dimensionless = 0.95
+"""From this criterion on a scan is called the shape it is compared with."""
+
+_FEWEST_POINTS = 12
+# Shapes that a scan's places cannot tell apart.
+_ALIKE = 0.98
+
+
+@dataclass(frozen=True, eq=False)
+class GridScanFit:
+    """A scan as a sum of shapes, the one that it is most alike named `label`.
+
+    `likeness` is the modal assurance criterion of the scan with every shape: 1 for the same, 0 for
+    an orthogonal one; noise alone would leave `attainable` of a perfect one. `amplitude` (m, zero
+    to peak) and `phase` (rad) are the label's part in the scan where its shape is 1, `parts` the
+    amplitudes of all shapes that the places tell apart. `phase_recorded` is False for real data.
+    """
+
+    recording: GridScan
+    label: str
+    likeness: Mapping[str, si.Dimensionless]
+    attainable: si.Dimensionless
+    amplitude: Estimate
+    phase: Estimate
+    parts: Mapping[str, Estimate]
+    model: si.Array
+    residual: si.Array
+    phase_recorded: bool
+    adequacy: Adequacy
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """What a calibration may use: the amplitude per volt where the voltage was told, if the
+        scan is of the shape that it is compared with."""
+        volts = self.recording.voltage
+        if not volts or self.likeness[self.label] < SAME_SHAPE:
+            return ()
+        return (
+            Observation(
+                "amplitude_per_volt",
+                self.amplitude.value / volts,
+                self.amplitude.standard_error / volts,
+                {"frequency": self.recording.frequency, "voltage": volts},
+            ),
+        )
+
+
+@guarded_fit
+def fit_grid_scan(
+    recording: GridScan,
+    shapes: Mapping[str, si.Array],
+    *,
+    drift: bool = False,
+    level: si.Dimensionless = 0.95,
+) -> GridScanFit:
+    """Which of the `shapes` a scan is, by the modal assurance criterion, and how far it moves.
+
+    `shapes` by their labels, each (points,), relative motion at the scan's places with 1 where the
+    amplitude is asked for (the best antinode): `shapes_at` takes them from solved modes, as many
+    neighbours as may take part (of two that the places cannot tell apart the one more alike the
+    scan). MAC = |φᴴw|²/(φᴴφ wᴴw) (Allemang 2003, Sound and Vibration 37(8)
+    14); amplitudes are least squares of all shapes together. With `drift` the strongest part may
+    change in proportion to the order of the points. Raises `InputError` for fewer than 12 points or
+    a shape of another length.
+    """
+    good = np.isfinite(recording.x) & np.isfinite(recording.y) & np.isfinite(recording.displacement)
+    w = np.asarray(recording.displacement)[good]
+    if w.size < _FEWEST_POINTS:
+        raise InputError(
+            f"the grid scan has {w.size} usable points; comparing shapes needs at least "
+            f"{_FEWEST_POINTS}"
+        )
+    if not np.any(w):
+        raise InputError("the grid scan is zero everywhere; nothing moved or nothing was recorded")
+    rows = _rows(shapes, good)
+    likeness = {name: _likeness(row, w) for name, row in rows.items()}
+    names, alike = _told_apart(rows, likeness)
+    label, own = names[0], 0
+    matrix = np.column_stack([rows[name] for name in names])
+    columns = matrix
+    if drift:
+        order = np.linspace(-0.5, 0.5, w.size)
+        columns = np.column_stack([matrix, matrix[:, own] * order])
+    size = float(np.max(np.abs(w)))
+    # Weights of real shapes in a complex scan are complex; the columns themselves do not bend.
+    bent = np.empty((0, *columns.shape))
+    recorded = np.iscomplexobj(w) and bool(np.any(w.imag))
+    data = w / size if recorded else w.real / size
+    fit = fit_separable(lambda _: (columns, bent), data, np.empty(0))
+    parts = {name: _part(fit, i, size, level) for i, name in enumerate(names)}
+    model = fit.model * size
+    x, y = recording.x[good], recording.y[good]
+    noise = float(np.sum(np.abs(fit.residual) ** 2)) / max(fit.freedom, 1) * 2 * w.size
+    noise = noise if recorded else noise / 2
+    power = float(np.sum(np.abs(data) ** 2))
+    return GridScanFit(
+        recording=recording,
+        label=label,
+        likeness=likeness,
+        attainable=float(np.clip(1 - noise / power, 0.0, 1.0)),
+        amplitude=parts[label],
+        phase=_phase(fit, own, level),
+        parts=parts,
+        model=model,
+        residual=w - model,
+        phase_recorded=recorded,
+        adequacy=_adequacy(w, fit.residual * size, (x, y), label, likeness[label], alike),
+    )
+
+
+def shapes_at(
+    modes: PlateModes, x: si.MetreArray, y: si.MetreArray, lobe: tuple[si.Metre, si.Metre]
+) -> dict[str, si.FloatArray]:
+    """Solved modes' relative motion at places (m, (points,)) of the upper face, 1 at `lobe`.
+
+    By label and frequency, such as "(8,0) at 33.58 kHz"; by cubic splines between the modes'
+    own points. Modes that move in the plane, or not at the lobe, are 1 at their own largest.
+    Raises `InputError` for a place beside the face.
+    """
+    for name, places, end in (("x", x, modes.plate.length), ("y", y, modes.plate.width)):
+        si.require(name, places, si.Unit("m"), at_least=-1e-6, at_most=end + 1e-6)
+    found = {}
+    for i in range(modes.count):
+        spline = RectBivariateSpline(modes.x, modes.y, modes.shapes[i])
+        w, largest = spline.ev(x, y), float(np.max(np.abs(modes.shapes[i])))
+        there = float(spline.ev(np.array([lobe[0]]), np.array([lobe[1]]))[0])
+        label = "in plane" if (own := modes.labels[i]) is None else "({},{})".format(*own)
+        name = f"{label} at {si.format_quantity(modes.frequencies[i], si.Unit('Hz'))}"
+        found[name] = w / (there if abs(there) > 0.05 * largest else largest)
+    return found
+
+
+def _rows(
+    shapes: Mapping[str, si.Array], good: np.ndarray[tuple[int, ...], np.dtype[np.bool]]
+) -> dict[str, si.Array]:
+    """The shapes at the places that count."""
+    if not shapes:
+        raise InputError("no shape was given to compare the scan with; solve the plate's modes")
+    for name, row in shapes.items():
+        if np.shape(row) != good.shape:
+            raise InputError(
+                f"the shape '{name}' has {np.size(row)} places and the scan {good.size}; take the "
+                "shapes at the scan's own places (shapes_at)"
+            )
+    return {name: np.asarray(row)[good] for name, row in shapes.items()}
+
+
+def _told_apart(
+    rows: Mapping[str, si.Array], likeness: Mapping[str, float]
+) -> tuple[list[str], dict[str, str]]:
+    """Shapes from the most alike to the least, without those that the places cannot tell from one
+    before; these with that one."""
+    names: list[str] = []
+    alike: dict[str, str] = {}
+    for name in sorted(rows, key=lambda one: -likeness[one]):
+        same = [one for one in names if _likeness(rows[one], rows[name]) > _ALIKE]
+        if same:
+            alike[name] = same[0]
+        else:
+            names.append(name)
+    return names, alike
+
+
+def _likeness(shape: si.Array, other: si.Array) -> float:
+    """The modal assurance criterion of two shapes; 0 where one does not move."""
+    norm = float(np.sum(np.abs(shape) ** 2) * np.sum(np.abs(other) ** 2))
+    return float(abs(np.vdot(shape, other)) ** 2 / norm) if norm > 0 else 0.0
+
+
+def _part(fit: SeparableFit, i: int, size: float, level: float) -> Estimate:
+    """A shape's amplitude (m)."""
+    if abs(fit.weights[i]) == 0:
+        return Estimate(0.0, 0.0, (0.0, 0.0), "m", level)
+    return fit.estimate(lambda _, weights: size * abs(weights[i]), "m", level=level)
+
+
+def _phase(fit: SeparableFit, i: int, level: float) -> Estimate:
+    own = fit.weights[i]
+    angle = float(np.angle(own))
+    turned = fit.estimate(
+        lambda _, weights: float(np.angle(weights[i] * np.conj(own))), "rad", level=level
+    )
+    low, high = turned.interval
+    return Estimate(angle, turned.standard_error, (angle + low, angle + high), "rad", level)
+
+
+def _adequacy(
+    w: si.Array,
+    residual: si.Array,
+    places: tuple[si.MetreArray, si.MetreArray],
+    label: str,
+    likeness: float,
+    alike: Mapping[str, str],
+) -> Adequacy:
+    """Whether the shapes describe the scan, and one of them is it."""
+    x, y = places
+    same = ", ".join(f"{name} from {other}" for name, other in alike.items())
+    found = adequacy_of(
+        w,
+        residual,
+        lambda i: f"at x = {1e3 * x[i]:.3g} mm, y = {1e3 * y[i]:.3g} mm",
+        remedy="Compare with more neighbouring modes, check where the scan's origin lies and which "
+        "way its axes run, or doubt the solved plate.",
+        said=f"These places cannot tell {same}; the former is left out. " if same else "",
+    )
+    if likeness >= SAME_SHAPE or not found.adequate:
+        return found
+    sentence = (
+        f"No single shape is the scan's: it is most alike {label}, by a modal assurance criterion "
+        f"of {likeness:.2f} where {SAME_SHAPE:g} would call it the same; several modes take part, "
+        "or the place of the scan on the plate is not what was told. "
+    )
+    return Adequacy(False, found.residual, found.noise, found.where, sentence + found.sentence)

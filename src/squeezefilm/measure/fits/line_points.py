@@ -1,0 +1,118 @@
+"""Nodes and antinodes along a line by the points around each, where one even wave does not fit.
+
+A plate with ceramics on it has no single wave number; its nodal lines and antinodes are still
+where they are. A cubic through the points within a third of a half wavelength finds them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.measure.fits.estimate import Estimate
+from squeezefilm.measure.fits.nonlinear import interval_around
+from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+
+_REACH = 0.35
+_FEWEST = 6
+_DENSE = 24
+
+
+@dataclass(frozen=True, eq=False)
+class LinePoints:
+    """A standing wave's displacement `w` (m, real or complex) at rising `x` (m), of about this
+    `half_wavelength` (m)."""
+
+    x: si.MetreArray
+    w: si.Array
+    half_wavelength: si.Metre
+    level: si.Dimensionless = 0.95
+
+    @cached_property
+    def swing(self) -> si.MetreArray:
+        """The displacement along the direction in which most of the line swings."""
+        if not np.iscomplexobj(self.w):
+            return np.asarray(self.w, dtype=float)
+        return np.asarray((self.w * np.exp(-0.5j * np.angle(np.sum(self.w**2)))).real)
+
+    @cached_property
+    def _smooth(self) -> tuple[si.MetreArray, si.MetreArray]:
+        """A dense row of places, and the local cubics' values there."""
+        length = float(self.x[-1] - self.x[0])
+        count = 1 + _DENSE * int(np.ceil(length / self.half_wavelength))
+        dense = np.linspace(self.x[0], self.x[-1], count)
+        values = np.full(count, np.nan)
+        for i, place in enumerate(dense):
+            fit = self._around(float(place))
+            if fit is not None:
+                values[i] = fit.weights[0]
+        good = np.isfinite(values)
+        return dense[good], values[good]
+
+    def _around(self, place: si.Metre) -> SeparableFit | None:
+        """The cubic around a place, over the reach; None for fewer than 6 points there."""
+        reach = _REACH * self.half_wavelength
+        near = np.abs(self.x - place) < reach
+        if near.sum() < _FEWEST:
+            return None
+        matrix = np.vander((self.x[near] - place) / reach, 4, increasing=True)
+        bent = np.empty((0, *matrix.shape))
+        return fit_separable(lambda _: (matrix, bent), self.swing[near], np.empty(0))
+
+    @cached_property
+    def nodes(self) -> tuple[Estimate, ...]:
+        """Where the displacement changes its sign (m)."""
+        x, w = self._smooth
+        found = []
+        for i in np.flatnonzero(np.signbit(w[1:]) != np.signbit(w[:-1])):
+            place = float(x[i] - w[i] * (x[i + 1] - x[i]) / (w[i + 1] - w[i]))
+            fit = self._around(place)
+            if fit is not None:
+                found.append(self._crossing(fit, place))
+        return tuple(found)
+
+    def _crossing(self, fit: SeparableFit, place: si.Metre) -> Estimate:
+        """The zero of a cubic next to its middle."""
+        reach = _REACH * self.half_wavelength
+
+        def crossing(_: si.FloatArray, weights: si.Array) -> float:
+            at = 0.0
+            for _step in range(4):
+                value = np.polynomial.polynomial.polyval(at, weights)
+                slope = weights[1] + 2 * weights[2] * at + 3 * weights[3] * at**2
+                at -= float(value / slope)
+            return place + reach * at
+
+        return fit.estimate(crossing, "m", level=self.level)
+
+    @property
+    def spacing(self) -> Estimate | None:
+        """The mean distance of nodes (m); of six or more without the outermost at each end, which
+        the free edges' near fields move: as the library's half wavelength. None of fewer than 2."""
+        nodes = self.nodes[1:-1] if len(self.nodes) >= 6 else self.nodes
+        if len(nodes) < 2:
+            return None
+        first, last, count = nodes[0], nodes[-1], len(nodes) - 1
+        error = float(np.hypot(first.standard_error, last.standard_error)) / count
+        freedom = 2 * _FEWEST
+        return interval_around((last.value - first.value) / count, error, freedom, "m", self.level)
+
+    @property
+    def antinode(self) -> tuple[si.Metre, Estimate] | None:
+        """Where the displacement is largest between the outermost nodes, and how large (m); None
+        of fewer than 2 nodes."""
+        if len(self.nodes) < 2:
+            return None
+        x, w = self._smooth
+        between = (x > self.nodes[0].value) & (x < self.nodes[-1].value)
+        if not between.any():
+            return None
+        place = float(x[between][np.argmax(np.abs(w[between]))])
+        fit = self._around(place)
+        if fit is None:
+            return None
+        size = fit.estimate(lambda _, weights: float(abs(weights[0])), "m", level=self.level)
+        return place, size

@@ -1,0 +1,389 @@
+"""The wave along a line: half wavelength, nodal lines, damping, standing-wave ratio, amplitude."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.line_points import LinePoints
+from squeezefilm.measure.fits.misfit import adequacy_of
+from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+from squeezefilm.measure.recordings.kinds import LineScan
+
+_FEWEST_POINTS = 12
+_TRIED_NUMBERS = 160
+# Half wavelengths on a line, from one bend to as many as points can tell apart.
+_FEWEST_HALVES = 0.75
+_LEAST_PER_HALF = 3.0
+_DENSE = 24
+# What is meant by a node of a size that was recorded without its sign.
+_DIP = 0.4
+
+
+@dataclass(frozen=True, eq=False)
+class LineScanFit:
+    """The wave along a line at one frequency.
+
+    `half_wavelength` (m); `nodal_lines` where the wave's size is least (m), one for each;
+    `antinode_amplitude` (m, zero to peak) at the largest antinode between the outermost nodal
+    lines, at `antinode` (m); `standing_wave_ratio` of the waves that run forward and backward at
+    the middle of the line, (a + b)/|a − b|: infinite for a pure standing wave; `loss_factor` by how
+    the waves fade along their way (four times their decay over the wave number: bending waves);
+    `phase` (rad) of the antinode against the drive. The last three are None where no phase was
+    recorded, ratio and loss also where no even wave fits. `phase_reversed` says that waves grow
+    along their way, which no plate makes: the phase was recorded with the other sign, and the fit
+    is of the complex conjugate. `by_points` says that half wavelength, nodal lines and amplitude
+    are those of the points around each, as no even wave fits. `model` and `residual` (m) are at
+    `position` (m).
+    """
+
+    recording: LineScan
+    position: si.MetreArray
+    model: si.Array
+    residual: si.Array
+    half_wavelength: Estimate
+    nodal_lines: tuple[Estimate, ...]
+    antinode: si.Metre
+    antinode_amplitude: Estimate
+    standing_wave_ratio: Estimate | None
+    loss_factor: Estimate | None
+    phase: Estimate | None
+    phase_reversed: bool
+    by_points: bool
+    adequacy: Adequacy
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """What a calibration may use: half wavelength, and amplitude at the best antinode where
+        the drive's voltage was told; by the points where an even wave does not fit. None where
+        neither says anything (no two nodal lines)."""
+        if not self.adequacy.adequate and not self.by_points:
+            return ()
+        at = {"frequency": self.recording.frequency}
+        half, largest = self.half_wavelength, self.antinode_amplitude
+        found = [Observation("half_wavelength", half.value, half.standard_error, at)]
+        volts = self.recording.voltage
+        if volts:
+            found.append(
+                Observation(
+                    "amplitude_per_volt",
+                    largest.value / volts,
+                    largest.standard_error / volts,
+                    at | {"voltage": volts},
+                )
+            )
+        return tuple(found)
+
+    def delay(self, expected_phase: si.Radian = -np.pi / 2) -> Estimate:
+        """What the instrument adds (s), if the plate itself has `expected_phase` (rad; −π/2 at a
+        resonance driven by its electrodes, or turned by π where the lobe moves the other way).
+
+        The least of the delays a period apart, between minus and plus a quarter of a period.
+        Raises `InputError` where no phase was recorded.
+        """
+        if self.phase is None:
+            raise InputError("the line scan has no phase, so it tells of no delay")
+        omega = 2 * np.pi * self.recording.frequency
+        late = float((expected_phase - self.phase.value + np.pi / 2) % np.pi - np.pi / 2)
+        error = self.phase.standard_error / omega
+        half = (self.phase.interval[1] - self.phase.interval[0]) / 2 / omega
+        ends = late / omega - half, late / omega + half
+        return Estimate(late / omega, error, ends, "s", self.phase.level)
+
+
+@guarded_fit
+def fit_line_scan(
+    recording: LineScan,
+    *,
+    free_ends: bool = True,
+    drift: bool = False,
+    level: si.Dimensionless = 0.95,
+) -> LineScanFit:
+    """Half wavelength (m), nodal lines (m), loss, standing-wave ratio and amplitude (m) of a line.
+
+    w = F e^{−ikx} + B e^{ikx} + C e^{−k(x − x0)} + D e^{−k(x1 − x)} with k(1 − iη/4): one bending
+    wave number, and with `free_ends` the near fields of edges at both ends of the scan (leave them
+    out along a closed track). Losses and the ratio of waves need a recorded phase; without one
+    (real values) the sign is turned at every deep minimum of a size. With `drift` the amplitude may
+    change in proportion to the place along the scan, as when the plate warms while it is scanned.
+    The model is that of an even thin plate: a plate with ceramics on it bends its wave, and the
+    fit then says by how much, and half wavelength, nodal lines and amplitude are taken from the
+    recorded points around each (`LinePoints`).
+
+    Raises `InputError` for fewer than 12 points or three to a half wavelength. Source: Cremer,
+    Heckl, Petersson, Structure-Borne Sound, 3rd ed., section 3.6 (decay of bending waves).
+    """
+    x, w = _recorded(recording)
+    line = _Line(float(x[0]), float(x[-1]), np.iscomplexobj(w), free_ends, drift)
+    size = float(np.max(np.abs(w)))
+    start = np.zeros(line.count)
+    start[0] = _wave_number(line, x, w / size)
+    fit = fit_separable(partial(line.columns, x), w / size, start, reach=line.reach(start[0]))
+    grows = line.complex and bool(fit.estimate(lambda shape, _: shape[1], "1").interval[1] < 0)
+    if grows:
+        w = w.conj()
+        fit = fit_separable(partial(line.columns, x), w / size, start, reach=line.reach(start[0]))
+    adequacy = adequacy_of(
+        w,
+        fit.residual * size,
+        lambda i: f"{1e3 * x[i]:.3g} mm along the line",
+        remedy="A plate with ceramics on it, or one that also bends across the line, has no one "
+        "wave: compare its shape with the solved plate's (a grid scan).",
+        said="The phase was recorded with the other sign (waves would grow along their way); the "
+        "fit is of the complex conjugate. "
+        if grows
+        else "",
+    )
+    return _FittedLine(recording, line, x, w, fit, size, grows, adequacy, level).read()
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """The columns of waves along a line from `first` to `last` (m).
+
+    The shape is k, then for complex data the decay over k, then the drift's two numbers (one).
+    """
+
+    first: si.Metre
+    last: si.Metre
+    complex: bool
+    free_ends: bool
+    drift: bool
+
+    @property
+    def length(self) -> si.Metre:
+        return self.last - self.first
+
+    @property
+    def count(self) -> int:
+        own = 2 if self.complex else 1
+        return own + (own if self.drift else 0)
+
+    def reach(self, wave_number: float) -> si.FloatArray:
+        """How far the shape may go from its start."""
+        rows = [wave_number / 3] + ([0.25] if self.complex else [])
+        return np.array(rows + [2.0] * (self.count - len(rows)))
+
+    def waves(self, x: si.MetreArray, shape: si.FloatArray) -> si.Array:
+        """The columns (points, waves): forward, backward, and the near fields of the ends."""
+        k, middle = shape[0], (self.first + self.last) / 2
+        if self.complex:
+            turn = (1j * k + k * shape[1]) * (x - middle)
+            rows = [np.exp(-turn), np.exp(turn)]
+        else:
+            rows = [np.cos(k * (x - middle)), np.sin(k * (x - middle))]
+        if self.free_ends:
+            rows += [np.exp(-k * (x - self.first)), np.exp(-k * (self.last - x))]
+        found = np.stack(rows, axis=1)
+        if not self.drift:
+            return found
+        rate = shape[-2] + 1j * shape[-1] if self.complex else shape[-1]
+        return np.asarray(found * (1 + rate * (x - middle) / self.length)[:, None])
+
+    def columns(self, x: si.MetreArray, shape: si.FloatArray) -> tuple[si.Array, si.Array]:
+        """The columns and their derivatives by central differences of them."""
+        bent = []
+        for i in range(shape.size):
+            step = np.zeros(shape.size)
+            step[i] = 1e-6 * (shape[0] if i == 0 else 1.0)
+            above, below = self.waves(x, shape + step), self.waves(x, shape - step)
+            bent.append((above - below) / (2 * step[i]))
+        return self.waves(x, shape), np.stack(bent)
+
+
+def _recorded(recording: LineScan) -> tuple[si.MetreArray, si.Array]:
+    """Rising places and what was recorded as a finite number there; sizes with a sign again."""
+    x, w = np.asarray(recording.position, dtype=float), np.asarray(recording.displacement)
+    good = np.isfinite(x) & np.isfinite(w)
+    order = np.argsort(x[good], kind="stable")
+    x, w = x[good][order], w[good][order]
+    if x.size < _FEWEST_POINTS:
+        raise InputError(
+            f"the line scan has {x.size} usable points; a wave along a line needs at least "
+            f"{_FEWEST_POINTS}, and more than {_LEAST_PER_HALF:g} to a half wavelength"
+        )
+    if not x[-1] > x[0]:
+        raise InputError("the line scan stays at one place; give places along a line")
+    if not np.any(w):
+        raise InputError("the line scan is zero everywhere; nothing moved or nothing was recorded")
+    if np.iscomplexobj(w) and np.any(w.imag):
+        return x, w
+    real = np.asarray(w.real, dtype=float)
+    return x, _signed(real) if np.all(real >= 0) else real
+
+
+def _signed(size: si.FloatArray) -> si.FloatArray:
+    """A size with its sign turned at every deep minimum: a standing wave's displacement."""
+    sign, signs = 1.0, []
+    for i in range(size.size):
+        signs.append(sign)
+        if 0 < i < size.size - 1 and size[i] <= size[i - 1] and size[i] < size[i + 1]:
+            around = size[max(i - 4, 0) : i + 5]
+            if size[i] < _DIP * around.max():
+                # The nearer neighbour in size is on the same side of the node.
+                if size[i - 1] > size[i + 1]:
+                    signs[-1] = -sign
+                sign = -sign
+    return np.asarray(size * np.array(signs))
+
+
+def _wave_number(line: _Line, x: si.MetreArray, w: si.Array) -> float:
+    """The wave number that leaves least, of an even row of them."""
+    spacing = float(np.median(np.diff(x)))
+    most = line.length / max(spacing, line.length / 2000) / _LEAST_PER_HALF
+    if most < 1:
+        raise InputError("the line scan is too coarse for any wave along it; scan more points")
+    halves = np.linspace(_FEWEST_HALVES, most, int(min(_TRIED_NUMBERS, 4 * most + 8)))
+    shape, left = np.zeros(line.count), []
+    for one in halves:
+        shape[0] = np.pi * one / line.length
+        columns = line.waves(x, shape)
+        basis = np.linalg.qr(columns)[0]
+        rest = w - basis @ (basis.conj().T @ w)
+        left.append(float(np.sum(np.abs(rest) ** 2)))
+    return float(np.pi * halves[int(np.argmin(left))] / line.length)
+
+
+@dataclass(frozen=True, eq=False)
+class _FittedLine:
+    """A fit in its own numbers, to be read off."""
+
+    recording: LineScan
+    line: _Line
+    x: si.MetreArray
+    w: si.Array
+    fit: SeparableFit
+    size: float
+    phase_reversed: bool
+    adequacy: Adequacy
+    level: float
+
+    def at(self, x: si.MetreArray, shape: si.FloatArray, weights: si.Array) -> si.Array:
+        """The fitted wave at places (m)."""
+        return np.asarray(self.line.waves(x, shape) @ weights)
+
+    def read(self) -> LineScanFit:
+        fit, level = self.fit, self.level
+        dense = np.linspace(
+            self.x[0],
+            self.x[-1],
+            1 + _DENSE * int(np.ceil(fit.shape[0] * self.line.length / np.pi)),
+        )
+        wave = np.abs(self.at(dense, fit.shape, fit.weights))
+        nodes = _minima(dense, wave)
+        lobe = _best_antinode(dense, wave, nodes)
+        model = fit.model * self.size
+        found = LineScanFit(
+            recording=self.recording,
+            position=self.x,
+            model=model,
+            residual=self.w - model,
+            half_wavelength=fit.estimate(
+                lambda shape, _: np.pi / shape[0], "m", positive=True, level=level
+            ),
+            nodal_lines=tuple(self._node(float(one)) for one in nodes),
+            antinode=lobe,
+            antinode_amplitude=fit.estimate(
+                lambda shape, weights: (
+                    self.size * float(np.abs(self.at(np.array([lobe]), shape, weights)[0]))
+                ),
+                "m",
+                positive=True,
+                level=level,
+            ),
+            standing_wave_ratio=self._ratio() if self.line.complex else None,
+            loss_factor=fit.estimate(lambda shape, _: 4 * shape[1], "1", level=level)
+            if self.line.complex
+            else None,
+            phase=self._phase(lobe) if self.line.complex else None,
+            phase_reversed=self.phase_reversed,
+            by_points=False,
+            adequacy=self.adequacy,
+        )
+        return found if self.adequacy.adequate else self._by_points(found)
+
+    def _by_points(self, found: LineScanFit) -> LineScanFit:
+        """What the points around each node and antinode say, in place of a wave that does not
+        fit."""
+        points = LinePoints(self.x, self.w, found.half_wavelength.value, self.level)
+        spacing, antinode = points.spacing, points.antinode
+        if spacing is None or antinode is None:
+            return found
+        said = (
+            " Half wavelength (their mean distance), nodal lines and amplitude are therefore those "
+            "of the points around each; loss and ratio of waves are not given."
+        )
+        return replace(
+            found,
+            half_wavelength=spacing,
+            nodal_lines=points.nodes,
+            antinode=antinode[0],
+            antinode_amplitude=antinode[1],
+            standing_wave_ratio=None,
+            loss_factor=None,
+            by_points=True,
+            adequacy=replace(self.adequacy, sentence=self.adequacy.sentence + said),
+        )
+
+    def _node(self, node: float) -> Estimate:
+        """Where the fitted size is least, near a node: a step of Newton's from there on |w|²."""
+        step = 1e-3 / self.fit.shape[0]
+        places = node + step * np.array([-1.0, 0.0, 1.0])
+
+        def least(shape: si.FloatArray, weights: si.Array) -> float:
+            low, middle, high = np.abs(self.at(places, shape, weights)) ** 2
+            return float(node - step * (high - low) / (2 * (high - 2 * middle + low)))
+
+        return self.fit.estimate(least, "m", level=self.level)
+
+    def _ratio(self) -> Estimate:
+        """(a + b)/|a − b| by its inverse, which is finite: 0 for a pure standing wave."""
+
+        def inverse(_: si.FloatArray, weights: si.Array) -> float:
+            a, b = np.abs(weights[:2])
+            return float((a - b) / (a + b))
+
+        found = self.fit.estimate(inverse, "1", level=self.level)
+        low, high = found.interval
+        largest = max(abs(low), abs(high))
+        smallest = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
+        value = 1 / abs(found.value) if found.value else float("inf")
+        ends = 1 / largest, 1 / smallest if smallest else float("inf")
+        return Estimate(value, found.standard_error * value**2, ends, "1", self.level)
+
+    def _phase(self, lobe: float) -> Estimate:
+        place = np.array([lobe])
+        own = self.at(place, self.fit.shape, self.fit.weights)[0]
+        turned = self.fit.estimate(
+            lambda shape, weights: float(
+                np.angle(self.at(place, shape, weights)[0] * np.conj(own))
+            ),
+            "rad",
+            level=self.level,
+        )
+        angle = float(np.angle(own))
+        low, high = turned.interval
+        return Estimate(
+            angle, turned.standard_error, (angle + low, angle + high), "rad", self.level
+        )
+
+
+def _minima(x: si.MetreArray, size: si.FloatArray) -> si.MetreArray:
+    """Where the size is least between its neighbours, on a dense row."""
+    inside = (size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:])
+    return np.asarray(x[1:-1][inside])
+
+
+def _best_antinode(x: si.MetreArray, size: si.FloatArray, nodes: si.MetreArray) -> float:
+    """The largest size between the outermost nodes: free ends move further than a finger meets."""
+    if nodes.size >= 2:
+        between = (x > nodes[0]) & (x < nodes[-1])
+        if between.any():
+            x, size = x[between], size[between]
+    return float(x[int(np.argmax(size))])

@@ -1,0 +1,109 @@
+"""Whether what a fit leaves is noise, and what a person is told about it.
+
+Noise differs from point to point; a wrong model leaves neighbours alike. Von Neumann's ratio of
+mean square successive difference to mean square (10.1214/aoms/1177731677) tells one from the
+other without knowing how large the noise is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.measure.fits.estimate import Adequacy
+
+STRUCTURED = 4.0
+"""So many standard deviations below that of noise, the ratio says that neighbours are alike."""
+
+TOLERATED: si.Dimensionless = 0.01
+"""A misfit of this share of what was recorded still counts as a description of it."""
+
+_HOPELESS = 0.5
+_MOST_ALIKE = 0.98
+
+
+class Structure(NamedTuple):
+    """How alike neighbouring residuals are: `correlation` 0 for noise, toward 1 for a misfit,
+    `significance` in standard deviations."""
+
+    correlation: si.Dimensionless
+    significance: si.Dimensionless
+
+
+def structure_of(residual: si.Array) -> Structure:
+    """How alike the neighbours of a row of residuals (points,), real or complex, are."""
+    parts = [residual.real, residual.imag] if np.iscomplexobj(residual) else [residual]
+    squares = sum(float(part @ part) for part in parts)
+    count = len(parts) * residual.size
+    if squares == 0 or residual.size < 6:
+        return Structure(0.0, 0.0)
+    steps = sum(float(np.diff(part) @ np.diff(part)) for part in parts)
+    ratio = steps / squares * residual.size / (residual.size - 1)
+    return Structure(max(1 - ratio / 2, 0.0), (2 - ratio) / (2 / np.sqrt(count)))
+
+
+def correlation_factor(residual: si.Array) -> float:
+    """What standard errors are to be multiplied by where neighbouring residuals are alike.
+
+    √((1 + ρ)/(1 − ρ)) for a correlation ρ that falls geometrically with the distance; 1 where it
+    could be noise.
+    """
+    found = structure_of(residual)
+    if found.significance < STRUCTURED:
+        return 1.0
+    alike = min(found.correlation, _MOST_ALIKE)
+    return float(np.sqrt((1 + alike) / (1 - alike)))
+
+
+def adequacy_of(
+    data: si.Array,
+    residual: si.Array,
+    place: Callable[[int], str],
+    *,
+    remedy: str,
+    said: str = "",
+) -> Adequacy:
+    """Whether a model describes `data` (points,), by what it leaves of them, in order.
+
+    `place` puts a point's number into words ("at 30.5 kHz"), `remedy` says what to do about a
+    misfit, `said` goes before all else. The misfit is what the residual has beyond noise; noise
+    is what differs between neighbours.
+    """
+    size = float(np.mean(np.abs(data))) or 1.0
+    left = float(np.mean(np.abs(residual))) / size
+    found = structure_of(residual)
+    structured = found.significance > STRUCTURED
+    noise = left * float(np.sqrt(max(1 - found.correlation, 0.0))) if structured else left
+    misfit = float(np.sqrt(max(left**2 - noise**2, 0.0)))
+    where = place(_worst(residual))
+    if left > _HOPELESS:
+        sentence = (
+            f"The model leaves {si.percent(left)} of what was recorded undescribed, most of it "
+            f"{where}: its numbers mean nothing. {remedy}"
+        )
+        return Adequacy(False, left, noise, where, said + sentence)
+    if structured and misfit > TOLERATED:
+        sentence = (
+            f"The model does not describe what was recorded: it is off by "
+            f"{si.percent(misfit, 1)} beyond noise, most {where}. Intervals are widened for it, "
+            f"which cannot make a wrong model right. {remedy}"
+        )
+        return Adequacy(False, left, noise, where, said + sentence)
+    sentence = f"The model leaves {si.percent(left, 2)} of what was recorded, as noise would"
+    if structured:
+        sentence = (
+            f"The model describes what was recorded but for {si.percent(misfit, 2)} beyond noise, "
+            f"most {where}; intervals are widened for it"
+        )
+    return Adequacy(True, left, noise, where, said + sentence + ".")
+
+
+def _worst(residual: si.Array) -> int:
+    """Where five residuals in a row are largest on average: a misfit, and not one odd point."""
+    row = np.abs(residual)
+    if row.size < 5:
+        return int(np.argmax(row))
+    return int(np.argmax(np.convolve(row, np.ones(5) / 5, mode="same")))

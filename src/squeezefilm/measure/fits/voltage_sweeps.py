@@ -1,0 +1,389 @@
+"""Sweeps at several voltages: a resonance and losses that change with the amplitude, and jumps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal, get_args
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
+from squeezefilm.measure.fits.modal_circle import ModalCircle, modal_circle
+from squeezefilm.measure.fits.nonlinear import NonlinearFit, fit_nonlinear, inverse_of
+from squeezefilm.measure.recordings.kinds import VoltageSweeps
+
+BackboneLaw = Literal["quadratic", "linear"]
+BACKBONE_LAWS: tuple[BackboneLaw, ...] = get_args(BackboneLaw)
+"""How the frequency follows the amplitude: with its square (Duffing), or in proportion."""
+
+_FEWEST_POINTS = 30
+# A step of the amplitude between neighbours is a jump from this share of the sweep's largest, and
+# where it is so many times as large as the steps next to it.
+_JUMP = 0.2
+_ABRUPT = 3.0
+_ABOVE_NOISE = 6.0
+# Near a fold of the curve a small noise moves a point far: such points say little and bend much.
+_FOLD = 0.15
+
+
+@dataclass(frozen=True)
+class Jump:
+    """Where a sweep jumped: the frequency (Hz) in the middle of the step, and the amplitudes (m)
+    before and after, in the direction of the sweep."""
+
+    voltage: si.Volt
+    direction: str
+    frequency: si.Hertz
+    before: si.Metre
+    after: si.Metre
+
+
+@dataclass(frozen=True, eq=False)
+class VoltageSweepsFit:
+    """A resonance whose frequency and losses depend on the amplitude a (m, zero to peak).
+
+    f = f0 (1 + `backbone` a²) by the law "quadratic" (1/m²), f0 (1 + `backbone` a) by "linear"
+    (1/m): negative where the plate softens. 1/Q = (1/Q0)(1 + `damping_rise` a) (1/m).
+    `frequency` (f0, Hz), `quality_factor` (Q0) and `amplitude_per_volt` (m/V, at resonance) are
+    those of vanishing amplitudes. Above `critical_amplitude` (m) at the resonance a sweep jumps;
+    None where the backbone is not told from none. `phase_reversed` says that the phase was recorded
+    with the other sign, and the fit is of the complex conjugate. `warming` (share of f0 from one
+    sweep to the next) where drift was asked for. `model` and `residual` (m, complex) go with the
+    finite points of all sweeps in a row.
+    """
+
+    recording: VoltageSweeps
+    law: BackboneLaw
+    frequency: Estimate
+    quality_factor: Estimate
+    amplitude_per_volt: Estimate
+    backbone: Estimate
+    damping_rise: Estimate
+    warming: Estimate | None
+    critical_amplitude: si.Metre | None
+    jumps: tuple[Jump, ...]
+    phase_reversed: bool
+    model: si.ComplexArray
+    residual: si.ComplexArray
+    adequacy: Adequacy
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """What a calibration of a linear plate may use: values for vanishing amplitudes; none where
+        the fit is not adequate."""
+        if not self.adequacy.adequate:
+            return ()
+        return tuple(
+            Observation(name, one.value, one.standard_error, {"voltage": 0.0})
+            for name, one in (
+                ("resonance_frequency", self.frequency),
+                ("quality_factor", self.quality_factor),
+                ("amplitude_per_volt", self.amplitude_per_volt),
+            )
+        )
+
+    def resonance_at(self, amplitude: si.Metre) -> si.Hertz:
+        """The backbone: the resonance frequency (Hz) at an amplitude (m)."""
+        power = 2 if self.law == "quadratic" else 1
+        return self.frequency.value * (1 + self.backbone.value * amplitude**power)
+
+
+@guarded_fit
+def fit_voltage_sweeps(
+    recording: VoltageSweeps,
+    *,
+    law: BackboneLaw | None = None,
+    drift: bool = False,
+    level: si.Dimensionless = 0.95,
+) -> VoltageSweepsFit:
+    """How resonance frequency (Hz) and losses depend on the amplitude (m), from sweeps at several
+    voltages (V), up and down.
+
+    At every point [(f(a)/f0)² (1 + i/Q(a)) − (f/f0)²](x − R V) = g V with the amplitude a = |x|
+    that was recorded: no branch has to be chosen, and jumps need no treatment. Residuals are
+    brought back to metres by the curve's own slope (to first order: small noise); points next to a
+    fold are left out. Without a `law` the one that leaves less. With `drift` f0 may move from sweep
+    to sweep in proportion to their order, as a plate that warms. Noise is taken to be the same in
+    metres at every voltage. Raises `InputError` for fewer than 30 points, a sweep without a voltage
+    or phase, or one voltage only. Source: Nayfeh and Mook, Nonlinear Oscillations, section 4.1.
+    """
+    points = _Points.of(recording)
+    if law is not None:
+        si.require_one_of("law", law, BACKBONE_LAWS)
+    tried: tuple[BackboneLaw, ...] = BACKBONE_LAWS if law is None else (law,)
+    looks = [_first_look(points, one, drift) for one in tried]
+    return _fitted(*min(looks, key=_left)).read(recording, level)
+
+
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """All points in a row, amplitudes over the largest and volts over the highest."""
+
+    f: si.HertzArray
+    u: si.ComplexArray
+    v: si.FloatArray
+    order: si.FloatArray
+    size: si.Metre
+    volts: si.Volt
+    phase_reversed: bool = False
+
+    @classmethod
+    def of(cls, recording: VoltageSweeps) -> _Points:
+        if len(recording.sweeps) != len(recording.directions):
+            raise InputError(
+                f"{len(recording.sweeps)} sweeps have {len(recording.directions)} directions; say "
+                "of each whether it went up or down"
+            )
+        if not recording.sweeps:
+            raise InputError("there is no sweep; give sweeps at two or more voltages")
+        rows = []
+        for number, sweep in enumerate(recording.sweeps):
+            if not sweep.voltage or sweep.voltage <= 0:
+                raise InputError(f"sweep {number + 1} has no voltage; say at which it was made")
+            f, H = np.asarray(sweep.frequency, dtype=float), np.asarray(sweep.displacement_per_volt)
+            good = np.isfinite(f) & np.isfinite(H) & (f > 0)
+            V, place = (np.full(int(good.sum()), value) for value in (sweep.voltage, number))
+            rows.append((f[good], H[good] * sweep.voltage, V, place))
+        f, x, V, place = (np.concatenate(one) for one in zip(*rows, strict=True))
+        if f.size < _FEWEST_POINTS:
+            raise InputError(
+                f"the sweeps have {f.size} usable points; a backbone needs at least "
+                f"{_FEWEST_POINTS}"
+            )
+        if not np.any(x.imag):
+            raise InputError("the sweeps have no phase; record magnitude and phase")
+        if np.ptp(V) < 0.05 * V.max():
+            raise InputError(
+                "all sweeps were made at one voltage; what depends on the amplitude shows between "
+                "voltages: sweep at two or more"
+            )
+        size = float(np.max(np.abs(x)))
+        found = cls(
+            f,
+            np.asarray(x / size, dtype=complex),
+            V / V.max(),
+            place - place.mean(),
+            size,
+            float(V.max()),
+        )
+        circle = found.circle
+        if circle is not None and circle.quality_factor < 0:
+            return replace(found, u=found.u.conj(), phase_reversed=True)
+        return found
+
+    @cached_property
+    def circle(self) -> ModalCircle | None:
+        """The lowest sweep's, up and down in one row, so that it meets rising frequencies."""
+        low = self.v == self.v.min()
+        order = np.argsort(self.f[low], kind="stable")
+        return modal_circle(self.f[low][order], self.u[low][order] / self.v.min())
+
+    @cached_property
+    def start(self) -> si.FloatArray:
+        """f0 as 1, loss, backbone, its loss, g, R (real and imaginary), drift; from the lowest
+        sweep's circle and the highest one's peak."""
+        low, circle = self.v == self.v.min(), self.circle
+        f, u = self.f[low], self.u[low] / self.v.min()
+        if circle is None or not f.min() < circle.frequency < f.max():
+            return np.array([float(f[np.argmax(np.abs(u))]), 0.02, 0, 0, 0.02, 0, 0, 0, 0])
+        loss = min(abs(1 / circle.quality_factor), 0.3)
+        peak = u[np.argmin(np.abs(f - circle.frequency))]
+        g = 1j * loss * peak
+        return np.array([circle.frequency, loss, 0, 0, g.real, g.imag, 0, 0, 0])
+
+
+@dataclass(frozen=True, eq=False)
+class _Duffing:
+    """The equation of motion of a law, over the frequency `own` (Hz)."""
+
+    points: _Points
+    law: BackboneLaw
+    own: si.Hertz
+    drift: bool
+
+    @property
+    def power(self) -> int:
+        """Of the amplitude in the backbone."""
+        return 2 if self.law == "quadratic" else 1
+
+    def terms(self, at: si.FloatArray) -> tuple[si.ComplexArray, ...]:
+        """D, a dD/da, x − RV and gV."""
+        shift, loss, bend, rise = at[:4]
+        g, R = at[4] + 1j * at[5], at[6] + 1j * at[7]
+        points = self.points
+        a = np.abs(points.u)
+        own = 1 + shift + (at[8] * points.order if self.drift else 0.0)
+        back, bent = 1 + bend * a**self.power, self.power * bend * a**self.power
+        lossy = 1 + 1j * loss * (1 + rise * a)
+        D = (own * back) ** 2 * lossy - (points.f / self.own) ** 2
+        slope = own**2 * (2 * back * bent * lossy + back**2 * 1j * loss * rise * a)
+        x = points.u - R * points.v
+        return tuple(np.asarray(one, dtype=complex) for one in (D, slope, x, g * points.v))
+
+    def steps_to_curve(self, at: si.FloatArray) -> tuple[si.ComplexArray, si.FloatArray]:
+        """How far each point is from the curve, to first order, and how far from a fold: the
+        determinant of the equation's slopes over that of a linear one."""
+        D, slope, x, wanted = self.terms(at)
+        E, u = D * x - wanted, self.points.u
+        size = np.abs(u)
+        unit = u / np.where(size > 0, size, 1.0)
+        z = slope * x / np.where(size > 0, size, 1.0)
+        # Rows of the 2 × 2 slopes: D δu + z Re(û* δu).
+        a, b = D.real + z.real * unit.real, -D.imag + z.real * unit.imag
+        c, d = D.imag + z.imag * unit.real, D.real + z.imag * unit.imag
+        determinant = a * d - b * c
+        safe = np.where(np.abs(determinant) > 1e-12, determinant, 1e-12)
+        step = ((d * E.real - b * E.imag) + 1j * (a * E.imag - c * E.real)) / safe
+        return np.asarray(step), np.asarray(determinant.real / np.abs(D) ** 2)
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    duffing: _Duffing
+    fit: NonlinearFit
+    used: np.ndarray[tuple[int, ...], np.dtype[np.bool]]
+
+    def read(self, recording: VoltageSweeps, level: float) -> VoltageSweepsFit:
+        points, own, power = self.duffing.points, self.duffing.own, self.duffing.power
+        step, _ = self.duffing.steps_to_curve(self.fit.numbers)
+        count = int(self.used.sum())
+        left = -(self.fit.residual[:count] + 1j * self.fit.residual[count:])
+        fit = self.fit.with_widening(correlation_factor(left))
+        size, volts = points.size, points.volts
+
+        def estimate(i: int, factor: float, unit: str) -> Estimate:
+            return fit.estimate(lambda at: factor * float(at[i]), unit, level=level)
+
+        backbone = estimate(2, size**-power, "1/m2" if power == 2 else "1/m")
+        f, used = points.f[self.used], points.u[self.used] * size
+        adequacy = adequacy_of(
+            used,
+            left * size,
+            lambda i: (
+                f"at {si.format_quantity(f[i], si.Unit('Hz'), 5)} and "
+                f"{si.format_quantity(points.v[self.used][i] * volts, si.Unit('V'), 3)}"
+            ),
+            said="The phase was recorded with the other sign (it rises through the resonance); the "
+            "fit is of the complex conjugate. "
+            if points.phase_reversed
+            else "",
+            remedy="Narrow the band to the one mode, wait between sweeps until the plate is cold, "
+            "or ask for the drift.",
+        )
+        return VoltageSweepsFit(
+            recording=recording,
+            law=self.duffing.law,
+            frequency=fit.estimate(lambda at: own * (1 + float(at[0])), "Hz", level=level),
+            quality_factor=inverse_of(estimate(1, 1.0, "1"), "1"),
+            amplitude_per_volt=fit.estimate(
+                lambda at: size / volts * math.hypot(at[4], at[5]) / abs(at[1]) / (1 + at[0]) ** 2,
+                "m/V",
+                positive=True,
+                level=level,
+            ),
+            backbone=backbone,
+            damping_rise=estimate(3, 1 / size, "1/m"),
+            warming=estimate(8, 1.0, "1") if self.duffing.drift else None,
+            critical_amplitude=_critical(backbone, float(fit.numbers[1]), power),
+            jumps=_jumps(recording, size * float(np.sqrt(np.mean(np.abs(left) ** 2)))),
+            phase_reversed=points.phase_reversed,
+            model=(points.u - step) * size,
+            residual=step * size,
+            adequacy=adequacy,
+        )
+
+
+def _first_look(
+    points: _Points, law: BackboneLaw, drift: bool
+) -> tuple[_Duffing, NonlinearFit, si.FloatArray]:
+    """A law's numbers by the equation as it stands, which leads near from afar, and the steps by
+    which they are varied."""
+    start = points.start.copy()
+    own, start[0] = float(start[0]), 0.0
+    duffing = _Duffing(points, law, own, drift)
+    loss = float(start[1])
+    start[2] = _first_bend(points, own, duffing.power)
+    count = 9 if drift else 8
+    steps = np.array([loss, loss, loss, 1.0, loss, loss, loss, loss, loss])[:count] * 1e-5
+
+    def equation(at: si.FloatArray) -> si.FloatArray:
+        D, _, x, wanted = duffing.terms(at)
+        E = D * x - wanted
+        return np.concatenate([E.real, E.imag])
+
+    return duffing, fit_nonlinear(equation, start[:count], steps), steps
+
+
+def _left(look: tuple[_Duffing, NonlinearFit, si.FloatArray]) -> float:
+    """How far points away from folds are from a law's curve after its first look."""
+    duffing, fit, _ = look
+    step, folded = duffing.steps_to_curve(fit.numbers)
+    return float(np.mean(np.minimum(np.abs(step), 0.2)[folded > _FOLD] ** 2))
+
+
+def _fitted(duffing: _Duffing, fit: NonlinearFit, steps: si.FloatArray) -> _Fitted:
+    """The best numbers of a law; points near a fold are left out by those of the last look."""
+    everything = np.ones(duffing.points.f.size, dtype=bool)
+    for _ in range(2):
+        _, folded = duffing.steps_to_curve(fit.numbers)
+        used = folded > _FOLD
+        if used.sum() < _FEWEST_POINTS:
+            used = everything
+
+        def residual(
+            at: si.FloatArray, used: np.ndarray[tuple[int, ...], np.dtype[np.bool]] = used
+        ) -> si.FloatArray:
+            step, _ = duffing.steps_to_curve(at)
+            return np.concatenate([step.real[used], step.imag[used]])
+
+        fit = fit_nonlinear(residual, fit.numbers, steps)
+    return _Fitted(duffing, fit, used)
+
+
+def _first_bend(points: _Points, own: si.Hertz, power: int) -> float:
+    """The backbone by where the highest sweep has its peak."""
+    high = points.v == 1.0
+    at = int(np.argmax(np.where(high, np.abs(points.u), 0.0)))
+    return float((points.f[at] / own - 1) / np.abs(points.u[at]) ** power)
+
+
+def _critical(backbone: Estimate, loss: float, power: int) -> si.Metre | None:
+    """The amplitude at resonance from which the response is not single-valued.
+
+    For the square law a² = 4/(3√3) · 1/(Q|b|), at the drive at which the curve's slope first
+    stands upright; for the law in proportion no closed form is given.
+    """
+    low, high = backbone.interval
+    if power != 2 or low <= 0 <= high:
+        return None
+    return math.sqrt(4 * abs(loss) / (3 * math.sqrt(3) * abs(backbone.value)))
+
+
+def _jumps(recording: VoltageSweeps, noise: si.Metre) -> tuple[Jump, ...]:
+    """The largest step of each sweep where it is a jump, and none that noise (m) may make."""
+    found = []
+    for sweep, direction in zip(recording.sweeps, recording.directions, strict=True):
+        f, H = np.asarray(sweep.frequency), np.abs(sweep.displacement_per_volt)
+        good = np.isfinite(f) & np.isfinite(H)
+        order = np.argsort(f[good], kind="stable")
+        if direction == "down":
+            order = order[::-1]
+        volts = float(sweep.voltage or 0.0)
+        f, a = f[good][order], H[good][order] * volts
+        if f.size < 5:
+            continue
+        rise = np.abs(np.diff(a))
+        at = int(np.argmax(rise))
+        beside = np.delete(rise[max(at - 2, 0) : at + 3], min(at, 2))
+        if rise[at] > max(_JUMP * a.max(), _ABOVE_NOISE * noise) and rise[at] > _ABRUPT * np.median(
+            beside
+        ):
+            middle = float((f[at] + f[at + 1]) / 2)
+            found.append(Jump(volts, direction, middle, float(a[at]), float(a[at + 1])))
+    return tuple(found)

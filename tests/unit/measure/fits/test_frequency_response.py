@@ -1,0 +1,107 @@
+"""Modes out of a frequency response, beside sdypy-EMA's and the circle's."""
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.frequency_response import fit_frequency_response
+from squeezefilm.measure.fits.modal_band import ModalBand, band_poles
+from squeezefilm.measure.fits.modal_circle import modal_circle
+from squeezefilm.measure.recordings.kinds import FrequencyResponse
+
+F = np.linspace(29e3, 31.5e3, 200)
+PEAK = (30.2e3, 60.0, 2e-9 * np.exp(0.3j))
+NEXT = (30.9e3, 80.0, 0.8e-9)
+
+
+def response(*modes, noise: float = 0.005, seed: int = 1):
+    H = sum(A * f0**2 / (f0**2 * (1 + 1j / Q) - F**2) for f0, Q, A in modes)
+    random = np.random.default_rng(seed)
+    parts = noise * np.abs(H).max() / np.sqrt(2) * random.standard_normal((2, F.size))
+    return H + parts[0] + 1j * parts[1]
+
+
+def test_a_circle_without_noise_is_exact_and_its_diameter_the_amplitude() -> None:
+    circle = modal_circle(F, response(PEAK, noise=0.0) + 3e-9j)
+    assert circle is not None
+    assert circle.frequency == pytest.approx(PEAK[0], rel=1e-8)
+    assert circle.quality_factor == pytest.approx(PEAK[1], rel=1e-6)
+    assert circle.diameter == pytest.approx(abs(PEAK[2]) * PEAK[1], rel=1e-6)
+    assert circle.roundness < 1e-6
+
+
+def test_one_mode_and_what_a_calibration_may_use_of_it() -> None:
+    fit = fit_frequency_response(FrequencyResponse(F, response(PEAK), 2.0, place=(1e-3, 2e-3)))
+    assert len(fit.modes) == 1
+    assert fit.adequacy.adequate
+    assert fit.circle is not None
+    assert fit.circle.frequency == pytest.approx(fit.modes[0].frequency.value, rel=1e-4)
+    answers = {one.answer: one for one in fit.observations}
+    assert answers.keys() == {"resonance_frequency", "quality_factor", "amplitude_per_volt"}
+    assert answers["quality_factor"].value == pytest.approx(60, rel=0.02)
+    assert answers["amplitude_per_volt"].conditions == {"voltage": 2.0, "x": 1e-3, "y": 2e-3}
+
+
+def test_a_second_mode_is_found_or_its_lack_is_said() -> None:
+    recording = FrequencyResponse(F, response(PEAK, NEXT))
+    assert len(fit_frequency_response(recording).modes) == 2
+    alone = fit_frequency_response(recording, modes=1)
+    assert not alone.adequacy.adequate
+    assert "kHz" in alone.adequacy.where
+    assert alone.observations == ()
+    low, high = alone.modes[0].frequency.interval
+    assert low < PEAK[0] < high
+
+
+@pytest.mark.slow
+def test_three_modes_start_from_the_poles_of_sdypy() -> None:
+    modes = ((29.5e3, 180.0, 0.7e-9), (30.2e3, 160.0, 2e-9), (30.9e3, 150.0, 1e-9))
+    H = response(*modes, noise=0.002)
+    poles = band_poles(ModalBand.over(F), H, 3)
+    assert sorted(f for f, _ in poles) == pytest.approx([f for f, _, _ in modes], rel=2e-3)
+    fit = fit_frequency_response(FrequencyResponse(F, H), modes=3)
+    found = sorted((one.frequency.value, one.quality_factor.value) for one in fit.modes)
+    for (f, Q), (own, quality, _) in zip(found, modes, strict=True):
+        assert f == pytest.approx(own, rel=1e-4)
+        assert pytest.approx(quality, rel=0.05) == Q
+
+
+def test_a_phase_of_the_other_sign_is_noticed_and_said() -> None:
+    H = response(PEAK)
+    fit, other = (fit_frequency_response(FrequencyResponse(F, one)) for one in (H, H.conj()))
+    assert not fit.phase_reversed
+    assert other.phase_reversed
+    assert "other sign" in other.adequacy.sentence
+    assert other.modes[0].frequency.value == pytest.approx(fit.modes[0].frequency.value, rel=1e-9)
+
+
+def test_a_delay_is_told_from_a_phase_of_the_mode() -> None:
+    H = response((30.2e3, 60.0, 2e-9), noise=0.002) * np.exp(-2j * np.pi * F * 4e-6)
+    fit = fit_frequency_response(FrequencyResponse(F, H), modes=1, delay=True)
+    assert fit.delay is not None
+    assert fit.delay.interval[0] < 4e-6 < fit.delay.interval[1]
+
+
+def test_points_that_are_no_numbers_are_left_out() -> None:
+    H = response(PEAK)
+    H[50:60] = np.nan
+    fit = fit_frequency_response(FrequencyResponse(F, H))
+    assert fit.frequency.size == F.size - 10
+
+
+@pytest.mark.parametrize(
+    ("f", "H", "words"),
+    [
+        (F[:8], response(PEAK)[:8], "at least 12"),
+        (F, np.abs(response(PEAK)), "no phase"),
+        (np.linspace(1e3, 50e3, 200), response(PEAK), "cut out the band"),
+    ],
+)
+def test_what_cannot_be_fitted_is_refused(f, H, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        fit_frequency_response(FrequencyResponse(f, H))
+
+
+def test_more_modes_than_there_are_are_refused() -> None:
+    with pytest.raises(InputError, match="modes"):
+        fit_frequency_response(FrequencyResponse(F, response(PEAK)), modes=13)

@@ -1,0 +1,123 @@
+"""Sweeps at several voltages: the backbone, the jump up and the jump down."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.voltage_sweeps import fit_voltage_sweeps
+from squeezefilm.measure.recordings.kinds import FrequencyResponse, VoltageSweeps
+from squeezefilm.measure.synthetic.duffing import SofteningResonance
+
+F = np.linspace(31.5e3, 34.5e3, 90)
+SIZE = 2e-6
+SOFT = SofteningResonance(33.2e3, 60.0, SIZE / 15, -0.02 / SIZE**2, 0.05 / SIZE)
+
+
+def bench(true: SofteningResonance = SOFT, noise: float = 0.005, volts=(2.0, 6.0, 15.0)):
+    random, sweeps, ways = np.random.default_rng(1), [], []
+    for V in volts:
+        for way in ("up", "down"):
+            f = F if way == "up" else F[::-1]
+            x = true.swept(f, V)
+            parts = noise * SIZE / np.sqrt(2) * random.standard_normal((2, f.size))
+            sweeps.append(FrequencyResponse(f, (x + parts[0] + 1j * parts[1]) / V, V))
+            ways.append(way)
+    return VoltageSweeps(tuple(sweeps), tuple(ways))
+
+
+def test_the_backbone_is_recovered_with_its_jumps() -> None:
+    fit = fit_voltage_sweeps(bench())
+    assert fit.law == "quadratic"
+    assert fit.adequacy.adequate
+    assert fit.backbone.value == pytest.approx(SOFT.backbone, rel=0.02)
+    assert fit.damping_rise.value == pytest.approx(SOFT.damping_rise, rel=0.3)
+    assert fit.resonance_at(SIZE) == pytest.approx(33.2e3 * 0.98, rel=1e-3)
+    jumps = {jump.direction: jump for jump in fit.jumps}
+    assert {jump.voltage for jump in fit.jumps} == {15.0}
+    # A plate that softens jumps up where it is swept up, and down lower where it is swept down.
+    assert jumps["down"].frequency < jumps["up"].frequency
+    assert jumps["up"].after > jumps["up"].before
+    assert jumps["down"].after < jumps["down"].before
+
+
+@pytest.mark.slow
+def test_jumps_begin_at_the_critical_amplitude() -> None:
+    true = SOFT._replace(damping_rise=0.0)
+    fit = fit_voltage_sweeps(bench(true))
+    assert fit.critical_amplitude is not None
+    # The voltage at which the largest of a fine sweep's steps grows beyond all bounds.
+    fine = np.linspace(32.6e3, 33.3e3, 1500)
+
+    def hysteresis(volts: float) -> float:
+        up, down = true.swept(fine, volts), true.swept(fine[::-1], volts)[::-1]
+        return float(np.max(np.abs(np.abs(up) - np.abs(down))))
+
+    critical = fit.critical_amplitude * 15 / SIZE
+    assert hysteresis(0.9 * critical) < 0.01 * SIZE
+    assert hysteresis(1.15 * critical) > 0.05 * SIZE
+
+
+def test_a_shift_in_proportion_to_the_amplitude_is_another_law() -> None:
+    sweeps = bench()
+    # Every sweep of a linear plate, moved by its own amplitude: x = swept where f is moved back.
+    rows = []
+    for one in sweeps.sweeps:
+        x = np.asarray(one.displacement_per_volt) * one.voltage
+        moved = one.frequency * (1 - 0.02 * np.abs(x) / SIZE) / (1 - 0.02 * np.abs(x / SIZE) ** 2)
+        order = np.argsort(moved)
+        rows.append(FrequencyResponse(moved[order], x[order] / one.voltage, one.voltage))
+    fit = fit_voltage_sweeps(VoltageSweeps(tuple(rows), ("up",) * len(rows)))
+    assert fit.law == "linear"
+    assert fit.backbone.unit == "1/m"
+    assert fit.critical_amplitude is None
+
+
+def test_a_linear_plate_has_no_backbone_and_no_jump() -> None:
+    fit = fit_voltage_sweeps(bench(SOFT._replace(backbone=0.0, damping_rise=0.0)), law="quadratic")
+    assert fit.backbone.interval[0] < 0 < fit.backbone.interval[1]
+    assert fit.jumps == ()
+    assert fit.critical_amplitude is None
+
+
+def test_another_mode_in_the_band_is_a_misfit() -> None:
+    recording = bench()
+    more = 0.3 * SIZE / 15 / 60 / (1 + 1j / 60 - (F / 33.9e3) ** 2)
+    sweeps = tuple(
+        dataclasses.replace(
+            one,
+            displacement_per_volt=one.displacement_per_volt
+            + (more if one.frequency[0] < one.frequency[-1] else more[::-1]),
+        )
+        for one in recording.sweeps
+    )
+    fit = fit_voltage_sweeps(dataclasses.replace(recording, sweeps=sweeps))
+    assert not fit.adequacy.adequate
+    assert "kHz" in fit.adequacy.where
+    assert fit.observations == ()
+
+
+def test_a_phase_of_the_other_sign_is_noticed() -> None:
+    recording = bench()
+    sweeps = tuple(
+        dataclasses.replace(one, displacement_per_volt=one.displacement_per_volt.conj())
+        for one in recording.sweeps
+    )
+    fit = fit_voltage_sweeps(dataclasses.replace(recording, sweeps=sweeps))
+    assert fit.phase_reversed
+    assert fit.quality_factor.value == pytest.approx(60, rel=0.05)
+
+
+def test_what_tells_of_no_amplitude_is_refused() -> None:
+    good = bench()
+    one = good.sweeps[0]
+    for sweeps, ways, words in (
+        ((one,), ("up", "down"), "directions"),
+        ((one, one), ("up", "up"), "one voltage"),
+        ((FrequencyResponse(F, np.ones(90) + 1j),), ("up",), "no voltage"),
+        ((FrequencyResponse(F[:5], np.ones(5) + 1j, 1.0),), ("up",), "at least 30"),
+        ((FrequencyResponse(F, np.ones(90) + 0j, 1.0),), ("up",), "no phase"),
+    ):
+        with pytest.raises(InputError, match=words):
+            fit_voltage_sweeps(VoltageSweeps(sweeps, ways))
