@@ -10,9 +10,13 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.measure.fits.branches import Layout, circuit_curve
+from squeezefilm.measure.fits.circuit.branches import Layout, circuit_curve
+from squeezefilm.measure.fits.circuit.impedance import (
+    ImpedanceFit,
+    fit_impedance,
+    parallel_resonance,
+)
 from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.impedance import ImpedanceFit, fit_impedance, parallel_resonance
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 
 Random = np.random.Generator

@@ -11,7 +11,7 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.measure.fits.impedance import fit_impedance
+from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 
 from .circuit_sweeps import KINDS, compared, coverage, made_sweep
 

@@ -63,7 +63,7 @@ def reproduce(
 
 def _measured_curves(data: Path, out: Path | None, as_json: bool) -> None:
     """What `reproduce --data` does."""
-    from squeezefilm.measure.fits.friction_curve import compare_folder
+    from squeezefilm.measure.fits.friction.friction_curve import compare_folder
     from squeezefilm.report.measured.curves import show_comparisons, write_comparisons
 
     with working(as_json) as step:

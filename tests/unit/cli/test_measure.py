@@ -108,7 +108,7 @@ def test_where_a_fit_is_refused_the_doubts_are_said(
 def test_measured_curves_are_compared_in_place_of_the_claims(
     stands_in: StandsIn, tmp_path: Path
 ) -> None:
-    asked = stands_in("measure.fits.friction_curve:compare_folder", (), tells=False)
+    asked = stands_in("measure.fits.friction.friction_curve:compare_folder", (), tells=False)
     page = stands_in("report.measured.curves:write_comparisons", tmp_path / "page.html")
     done = run("reproduce", "--data", str(tmp_path), "--out", str(tmp_path / "out"))
     assert done.returncode == 0, done.stderr

@@ -19,15 +19,15 @@ from squeezefilm.plate.solid.working import solid_mode
 
 # The module of `measure.fits` and its function; imported when a recording of the kind is fitted.
 FITS: dict[type, tuple[str, str]] = {
-    kinds.ImpedanceSweep: ("impedance", "fit_impedance"),
-    kinds.FrequencyResponse: ("frequency_response", "fit_frequency_response"),
-    kinds.LineScan: ("line_scan", "fit_line_scan"),
-    kinds.GridScan: ("grid_scan", "fit_grid_scan"),
-    kinds.RingDown: ("ring_down", "fit_ring_down"),
-    kinds.VoltageSweeps: ("voltage_sweeps", "fit_voltage_sweeps"),
-    kinds.RawSignals: ("raw_signals", "fit_raw_signals"),
-    kinds.FrictionBench: ("friction_bench", "fit_friction_bench"),
-    kinds.FrictionCurve: ("friction_curve", "compare_friction_curve"),
+    kinds.ImpedanceSweep: ("circuit.impedance", "fit_impedance"),
+    kinds.FrequencyResponse: ("vibration.frequency_response", "fit_frequency_response"),
+    kinds.LineScan: ("vibration.line_scan", "fit_line_scan"),
+    kinds.GridScan: ("vibration.grid_scan", "fit_grid_scan"),
+    kinds.RingDown: ("vibration.ring_down", "fit_ring_down"),
+    kinds.VoltageSweeps: ("vibration.voltage_sweeps", "fit_voltage_sweeps"),
+    kinds.RawSignals: ("vibration.raw_signals", "fit_raw_signals"),
+    kinds.FrictionBench: ("friction.friction_bench", "fit_friction_bench"),
+    kinds.FrictionCurve: ("friction.friction_curve", "compare_friction_curve"),
 }
 
 _NEAR: si.Dimensionless = 0.1

@@ -11,7 +11,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.friction_models import DEFAULT_MODEL
-from squeezefilm.measure.fits.friction_curve import CurveComparison, ModelDifference
+from squeezefilm.measure.fits.friction.friction_curve import CurveComparison, ModelDifference
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import HZ, SPEED, N, printable, shown

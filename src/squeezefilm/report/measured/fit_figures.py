@@ -9,7 +9,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.measure.fits.by_kind import Fit
-from squeezefilm.measure.fits.friction_curve import CurveComparison
+from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import RecordingCheck
 from squeezefilm.report.kit import style

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.measure.fits.by_kind import Fit
-from squeezefilm.measure.fits.friction_curve import CurveComparison
+from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder

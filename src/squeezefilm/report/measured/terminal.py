@@ -10,7 +10,7 @@ from typing import Any
 from squeezefilm import quantities as si
 from squeezefilm.measure.fits.by_kind import Fit
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
-from squeezefilm.measure.fits.friction_curve import CurveComparison
+from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
 from squeezefilm.report.kit.numbers import printable, shown
 from squeezefilm.report.kit.terminal import bullets, heading, plain_console, table

@@ -9,7 +9,7 @@ import pytest
 
 from squeezefilm.errors import InputError
 from squeezefilm.materials import VACUUM_PERMITTIVITY
-from squeezefilm.measure.fits.bar import BarConstants, CeramicBar, bar_constants
+from squeezefilm.measure.fits.ceramic.bar import BarConstants, CeramicBar, bar_constants
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 
 BAR = CeramicBar(12e-3, 3e-3, 1e-3, 7850.0)

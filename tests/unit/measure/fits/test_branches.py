@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.measure.fits.branches import Layout, circuit_curve, poles, start_at
+from squeezefilm.measure.fits.circuit.branches import Layout, circuit_curve, poles, start_at
 from squeezefilm.plate.circuit import EquivalentCircuit
 
 FREQUENCY = np.linspace(35e3, 46e3, 240)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.ceramic_prior import PARAMETERS, ceramic_prior, compliances
-from squeezefilm.measure.fits.disc import (
+from squeezefilm.measure.fits.ceramic.ceramic_prior import PARAMETERS, ceramic_prior, compliances
+from squeezefilm.measure.fits.ceramic.disc import (
     Combination,
     DiscConstants,
     DiscCurve,
@@ -17,7 +17,7 @@ from squeezefilm.measure.fits.disc import (
     disc_by_mass,
     disc_constants,
 )
-from squeezefilm.measure.fits.disc_prediction import (
+from squeezefilm.measure.fits.ceramic.disc_prediction import (
     Extrapolation,
     RadialPrediction,
     predict_radial_mode,

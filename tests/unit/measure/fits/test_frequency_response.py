@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.frequency_response import fit_frequency_response
-from squeezefilm.measure.fits.modal_band import ModalBand, band_poles
-from squeezefilm.measure.fits.modal_circle import modal_circle
+from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
+from squeezefilm.measure.fits.vibration.modal_band import ModalBand, band_poles
+from squeezefilm.measure.fits.vibration.modal_circle import modal_circle
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
 
 F = np.linspace(29e3, 31.5e3, 200)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.friction_bench import fit_friction_bench
-from squeezefilm.measure.fits.strokes import sliding_strokes
+from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
+from squeezefilm.measure.fits.friction.strokes import sliding_strokes
 from squeezefilm.measure.synthetic.strokes import PlannedStrokes, recorded_strokes
 
 LEVELS = np.array([0.0, 0.5e-6, 1e-6, 2e-6])

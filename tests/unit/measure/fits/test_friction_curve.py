@@ -11,7 +11,7 @@ import pytest
 from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import predict
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.friction_curve import CurveComparison, compare_friction_curve
+from squeezefilm.measure.fits.friction.friction_curve import CurveComparison, compare_friction_curve
 from squeezefilm.measure.recordings.kinds import FrictionCurve, Told
 
 AMPLITUDE = np.linspace(0.0, 2e-6, 9)

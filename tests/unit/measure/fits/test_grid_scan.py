@@ -5,7 +5,7 @@ import pytest
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.grid_scan import fit_grid_scan, shapes_at
+from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan, shapes_at
 from squeezefilm.measure.recordings.kinds import GridScan
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.working_mode import working_mode

@@ -9,8 +9,8 @@ import pytest
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.branches import Layout, circuit_curve, relative_motion
-from squeezefilm.measure.fits.impedance import fit_impedance, parallel_resonance
+from squeezefilm.measure.fits.circuit.branches import Layout, circuit_curve, relative_motion
+from squeezefilm.measure.fits.circuit.impedance import fit_impedance, parallel_resonance
 from squeezefilm.measure.fits.sweep_reading import sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 

@@ -5,8 +5,8 @@ import pytest
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.line_points import LinePoints
-from squeezefilm.measure.fits.line_scan import fit_line_scan
+from squeezefilm.measure.fits.vibration.line_points import LinePoints
+from squeezefilm.measure.fits.vibration.line_scan import fit_line_scan
 from squeezefilm.measure.recordings.kinds import LineScan
 from squeezefilm.plate.working_mode import working_mode
 

@@ -7,10 +7,10 @@ import pytest
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.frequency_response import fit_frequency_response
-from squeezefilm.measure.fits.friction_bench import fit_friction_bench
-from squeezefilm.measure.fits.ring_down import fit_ring_down
-from squeezefilm.measure.fits.voltage_sweeps import fit_voltage_sweeps
+from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
+from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
+from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
+from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.synthetic.bench import SyntheticBench, synthetic_bench
 from squeezefilm.measure.synthetic.files import write_synthetic_bench, write_truth

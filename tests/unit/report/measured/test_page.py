@@ -15,7 +15,7 @@ from tests.unit.report.printed import printed
 from squeezefilm.analysis.uncertainty import FrictionBand
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.friction_curve import CurveComparison, ModelDifference
+from squeezefilm.measure.fits.friction.friction_curve import CurveComparison, ModelDifference
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck, Refused
 from squeezefilm.report.kit import style

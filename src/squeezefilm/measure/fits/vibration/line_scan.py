@@ -11,9 +11,9 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
-from squeezefilm.measure.fits.line_points import LinePoints
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+from squeezefilm.measure.fits.vibration.line_points import LinePoints
 from squeezefilm.measure.recordings.kinds import LineScan
 
 _FEWEST_POINTS = 12

@@ -10,8 +10,8 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
-from squeezefilm.measure.fits.ceramic_prior import compliances
-from squeezefilm.measure.fits.disc import DiscConstants
+from squeezefilm.measure.fits.ceramic.ceramic_prior import compliances
+from squeezefilm.measure.fits.ceramic.disc import DiscConstants
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.sweep_reading import SweepPeaks, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep

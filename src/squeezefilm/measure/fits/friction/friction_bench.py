@@ -16,11 +16,11 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.friction.strokes import Strokes, sliding_strokes
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.nonlinear import interval_around
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
-from squeezefilm.measure.fits.strokes import Strokes, sliding_strokes
 from squeezefilm.measure.recordings.kinds import FrictionBench, FrictionCurve
 
 MOST_DRIFT = 4

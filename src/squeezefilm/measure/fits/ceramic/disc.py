@@ -11,7 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.materials import VACUUM_PERMITTIVITY
-from squeezefilm.measure.fits.ceramic_prior import PARAMETERS, ceramic_prior, compliances
+from squeezefilm.measure.fits.ceramic.ceramic_prior import PARAMETERS, ceramic_prior, compliances
 from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, adequacy_of, fit_complex
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.sweep_reading import require_passive, sweep_peaks

@@ -14,8 +14,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
-from squeezefilm.measure.fits.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.fits.nonlinear import NonlinearFit, fit_nonlinear, inverse_of
+from squeezefilm.measure.fits.vibration.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.recordings.kinds import VoltageSweeps
 
 BackboneLaw = Literal["quadratic", "linear"]

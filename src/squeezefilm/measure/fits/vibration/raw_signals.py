@@ -12,8 +12,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.modal_circle import modal_circle
 from squeezefilm.measure.fits.separable import fit_separable
+from squeezefilm.measure.fits.vibration.modal_circle import modal_circle
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, RawSignals
 
 _FEWEST_POINTS = 256

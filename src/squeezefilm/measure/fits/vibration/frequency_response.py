@@ -12,10 +12,10 @@ from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.modal_band import ModalBand, band_poles
-from squeezefilm.measure.fits.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.fits.nonlinear import inverse_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+from squeezefilm.measure.fits.vibration.modal_band import ModalBand, band_poles
+from squeezefilm.measure.fits.vibration.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
 
 MOST_MODES = 12

@@ -11,7 +11,7 @@ from scipy import optimize
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.measure.fits.branches import (
+from squeezefilm.measure.fits.circuit.branches import (
     Layout,
     circuit_curve,
     poles,

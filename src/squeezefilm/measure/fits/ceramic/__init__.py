@@ -1,0 +1,1 @@
+"""Constants of a bare ceramic, bar or disc, from its impedance."""

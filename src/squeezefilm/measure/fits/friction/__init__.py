@@ -1,0 +1,1 @@
+"""What a friction bench recorded: strokes, and friction against amplitude."""

@@ -1,0 +1,1 @@
+"""What a vibrometer recorded: modes, shapes, losses, softening."""
