@@ -218,7 +218,7 @@ def _hints(function: Callable[..., Any], home: object) -> dict[str, Any]:
 
 def _calls_of_class(cls: type[Any], home: object) -> Iterator[PublicCall]:
     name = f"{cls.__module__}.{cls.__qualname__}".removeprefix("squeezefilm.")
-    if cls.__init__ is not object.__init__ and not getattr(cls, "_is_protocol", False):
+    if "__init__" in vars(cls) and not getattr(cls, "_is_protocol", False):
         yield PublicCall(name, cls, None, _hints(cls.__init__, home))
     for key, member in vars(cls).items():
         if key.startswith("_") and key != "__call__":

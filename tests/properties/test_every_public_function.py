@@ -28,7 +28,7 @@ LEFT_OUT = {
     "inside a solver: meshes, matrices and indices, made by calls that are checked": 149,
     "no number but the index of what its other arguments hold, or an array the package made": 14,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": 1,
-    "the check of numbers itself, whose bounds are the code's own, and its messages' text": 3,
+    "the check of numbers itself, whose bounds are the code's own, and its messages' text": 4,
 }
 
 # Calls that neither solve nor need something solved: what the default run draws from.

@@ -98,10 +98,10 @@ class ActiveArea:
 
     @property
     def best_place(self) -> tuple[si.Metre, si.Metre] | None:
-        """Where µ′/µ is lowest (m); of places alike the first."""
+        """Where µ′/µ is lowest (m), of places alike the one that moves most."""
         if self.relative_friction is None:
             return None
-        return self._place(lowest(self.relative_friction))
+        return self._place(lowest(self.relative_friction, self.amplitude))
 
     @property
     def worst_place(self) -> tuple[si.Metre, si.Metre] | None:

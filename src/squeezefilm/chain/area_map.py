@@ -57,16 +57,21 @@ class AreaMap(NamedTuple):
 
     @property
     def best_place(self) -> tuple[si.Metre, si.Metre] | None:
-        """Where µ′/µ is lowest (m); of places alike the first."""
+        """Where µ′/µ is lowest (m), of places alike the one that moves most."""
         if self.relative_friction is None:
             return None
-        i, j = np.unravel_index(lowest(self.relative_friction), self.relative_friction.shape)
+        best = lowest(self.relative_friction, self.at_centre * self.lobe_amplitude)
+        i, j = np.unravel_index(best, self.relative_friction.shape)
         return float(self.x[i]), float(self.y[j])
 
 
-def lowest(relative_friction: si.DimensionlessArray) -> int:
-    """Where a map of µ′/µ is lowest; of places alike the first."""
-    return int(np.nanargmin(np.round(relative_friction, 9)))
+def lowest(relative_friction: si.DimensionlessArray, moved: si.FloatArray) -> int:
+    """Where a map of µ′/µ is lowest; of places alike the one that is moved most, so that a
+    vibration too small for any friction to fall has its best place where a larger one has it."""
+    rounded = np.round(relative_friction, 9)
+    alike = rounded == np.nanmin(rounded)
+    size = np.abs(moved)
+    return int(np.argmax(np.where(alike, np.round(size / (np.nanmax(size) or 1.0), 9), -1.0)))
 
 
 def at_best_place(
@@ -76,7 +81,7 @@ def at_best_place(
     solved.
 
     As it is, over an antinode of an even wave, where the shape is not solved (a beam, a measured
-    stator), nothing moves, or friction is not known or not reduced anywhere.
+    stator), nothing moves, or friction is not known.
     """
     if mode.solid is None and mode.disc is None:
         return law
@@ -84,8 +89,6 @@ def at_best_place(
         return law
     found = area_map(display, mode, law, drive)
     if found is None or found.relative_friction is None or found.best_place is None:
-        return law
-    if np.nanmin(found.relative_friction) > 1 - 1e-9:
         return law
     place = PadPlace(found.shape, *found.best_place, is_best_of_area=True)
     return dataclasses.replace(law, position=0.0, place=place)

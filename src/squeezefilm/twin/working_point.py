@@ -9,8 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.area_map import at_best_place
 from squeezefilm.chain.chosen_mode import chosen_mode
-from squeezefilm.chain.friction import TABLE_SPEEDS, FrictionLaw, friction_law
+from squeezefilm.chain.free_vibration import free_vibration
+from squeezefilm.chain.friction import TABLE_SPEEDS, friction_law
 from squeezefilm.chain.touch import load_ratios
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError
@@ -123,11 +125,17 @@ def _tables(
     display: Display, mode: WorkingMode, highest: si.Metre
 ) -> tuple[si.Metre, si.MetrePerSecondArray, si.DimensionlessArray, si.ComplexArray]:
     """Speeds, friction over them, and load, up to the amplitude that can be solved, at most
-    `highest`; the amplitude first."""
+    `highest`; the amplitude first. The pad is where `predict` has it, as described and driven."""
+    half, frequency = mode.half_wavelength, mode.resonance_frequency
+    law = friction_law(display, half, frequency)
+    place = at_best_place(display, mode, law, free_vibration(display, mode, None, None, None)).place
     for _ in range(12):
         grid = highest * (np.arange(POINTS) / (POINTS - 1)) ** 2
         try:
-            laws = [_law(display, mode, float(force)) for force in FORCES]
+            laws = [
+                friction_law(display, half, frequency, normal_force=float(force), place=place)
+                for force in FORCES
+            ]
             speeds = TABLE_SPEEDS if laws[0].kind.shear else np.zeros(1)
             friction = np.stack([law.over_speeds(grid, speeds) for law in laws])
             # Where the law holds nothing at rest, nothing shall: not what its solver leaves.
@@ -142,7 +150,3 @@ def _tables(
         f"no friction law could be tabulated for '{display.name}'; its gap closes at "
         f"{si.format_quantity(highest, si.Unit('m'))} already"
     )
-
-
-def _law(display: Display, mode: WorkingMode, force: float) -> FrictionLaw:
-    return friction_law(display, mode.half_wavelength, mode.resonance_frequency, normal_force=force)

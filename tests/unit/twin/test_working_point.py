@@ -35,7 +35,7 @@ class Laws:
 
     def friction_law(self, display: Any, half: float, frequency: float, **how: Any) -> Any:
         self.asked.append((half, frequency, how))
-        force = how["normal_force"]
+        force = how.get("normal_force")
 
         def curve(amplitude: Any) -> Any:
             if force == FORCES[0]:
@@ -52,7 +52,7 @@ class Laws:
             )
 
         kind = SimpleNamespace(shear=self.shear)
-        return SimpleNamespace(over_speeds=over_speeds, force=force, kind=kind)
+        return SimpleNamespace(over_speeds=over_speeds, force=force, kind=kind, place="a place")
 
 
 @pytest.fixture
@@ -62,6 +62,7 @@ def laws(monkeypatch: pytest.MonkeyPatch) -> Laws:
 
 def use(monkeypatch: pytest.MonkeyPatch, laws: Laws) -> Laws:
     monkeypatch.setattr(module, "friction_law", laws.friction_law)
+    monkeypatch.setattr(module, "at_best_place", lambda display, mode, law, drive: law)
     monkeypatch.setattr(
         module, "load_ratios", lambda mode, law, amplitude: (1 + 2j) * law.force * (1 + amplitude)
     )
@@ -87,7 +88,10 @@ def test_the_tables_hold_law_and_load_over_force_and_amplitude(laws: Laws) -> No
     assert found.load.flags["C_CONTIGUOUS"]
     assert found.display is STATOR
     assert found.mode is MODE
-    assert laws.asked == [(8e-3, 40e3, {"normal_force": float(one)}) for one in FORCES]
+    # Where the pad lies as described, it lies under every force.
+    assert laws.asked == [(8e-3, 40e3, {})] + [
+        (8e-3, 40e3, {"normal_force": float(one), "place": "a place"}) for one in FORCES
+    ]
 
 
 def test_a_law_that_knows_no_speed_has_a_table_of_one(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -94,6 +94,7 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
         "display", "frequency_Hz", "amplitude_model", "mean_pressure", "mean_pressure_error",
         "amplitude_kept_under_finger", "finger_impedance_N_s_per_m", "finger_speed_m_per_s", "heat",
         "model", "validity", "objections", "drive_electronics", "place", "active_area",
+        "neighbour",
     }  # fmt: skip
     area, whole = found["active_area"], active_area(display, p)
     assert whole is not None

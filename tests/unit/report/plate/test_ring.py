@@ -270,7 +270,8 @@ def test_a_page_says_what_the_terminal_says(monkeypatch: pytest.MonkeyPatch) -> 
     )  # fmt: skip
     text = page.plate_page(ring, {"line-scan": ("Scan", scan(RING))})
     for said in (
-        "A &lt;ring&gt;", "Mode B(0,2)", "fitted &amp; not predicted", "At 12 V", "0.24 µm",
+        "A &lt;ring&gt;", "Mode B(0,2)", "fitted &amp; not predicted", "At 12\u00a0V",
+        "0.24\u00a0µm",
         "<p>Fitted: thickness &lt; all.</p>", "no modes", "line-scan.png",
         "<p>it is hot</p>",
     ):  # fmt: skip
