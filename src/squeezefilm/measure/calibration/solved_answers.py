@@ -188,10 +188,15 @@ def _other_mode(plate: RectangularPlate, lines: tuple[int, int]) -> tuple[float,
     question = _question(plate, list(lines))
     kept = _KEPT.get(question, 2)
     if kept is None:
-        modes = solve_modes(plate, mode=lines)
-        at = modes.index(lines)
-        frequency = float(modes.frequencies[at])
-        kept = np.array([frequency, float(modes.errors[at]) / frequency])
+        try:
+            modes = solve_modes(plate, mode=lines)
+            at = modes.index(lines)
+        except InputError:
+            # Where two modes meet, neither may have these lines.
+            kept = np.array([math.nan, 0.0])
+        else:
+            frequency = float(modes.frequencies[at])
+            kept = np.array([frequency, float(modes.errors[at]) / frequency])
         _KEPT.put(question, kept)
     return float(kept[0]), float(kept[1])
 
