@@ -17,6 +17,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.joint_draws import (
+    AMPLITUDE_SHARE,
+    FRICTION_OFFSET,
+    calibrated_inputs,
+)
 from squeezefilm.analysis.model_choices import (
     HEIGHT_LAW,
     MOISTURE,
@@ -62,13 +67,16 @@ def as_drawn() -> Iterator[None]:
 @dataclass(frozen=True)
 class Draw:
     """One display of those that it may be: with other values and laws, its force (N), the pad's
-    softness (0: all ridges at one mean gap, 1: each at its own balance), the slip of its gas."""
+    softness (0: all ridges at one mean gap, 1: each at its own balance), the slip of its gas; of a
+    calibrated one the amplitude relative to the solved one, and what is added to friction."""
 
     display: Display
     normal_force: si.Newton
     skin_compliance: si.Dimensionless
     slip: str
     heights: str
+    amplitude_share: si.Dimensionless = 1.0
+    friction_offset: si.Dimensionless = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +161,9 @@ class Mixture:
                 for one in parameters
                 if not one.path.endswith((TANGENTIAL_RATIO, "friction_coefficient"))
             )
-        self.inputs: tuple[Input, ...] = parameters + model_choices(display, sheared=sheared)
+        self.inputs: tuple[Input, ...] = calibrated_inputs(
+            parameters + model_choices(display, sheared=sheared), display.joint, driven=driven
+        )
         # Laws of contact are compared at what a plateau carries as described.
         self._pressure = display.finger.plateau_pressure()
         self.paths = tuple(one.path for one in self.inputs)
@@ -187,7 +197,8 @@ class Mixture:
         p = self.prediction
         force = values.get(FORCE, p.normal_force)
         compliance = values.get(SKIN_COMPLIANCE, 1.0)
-        rest = {k: v for k, v in values.items() if k not in (FORCE, SKIN_COMPLIANCE)}
+        beside = (FORCE, SKIN_COMPLIANCE, AMPLITUDE_SHARE, FRICTION_OFFSET)
+        rest = {k: v for k, v in values.items() if k not in beside}
         here = with_values(self.display, rest)
         changes: dict[str, object] = {
             path.split(".")[-1]: chosen[path] for path in (SHEAR, MOISTURE) if path in chosen
@@ -200,7 +211,16 @@ class Mixture:
             changes["shear_strength"] = None
         finger = dataclasses.replace(here.finger, **changes)  # type: ignore[arg-type]
         here = dataclasses.replace(here, finger=finger)
-        return Draw(here, force, compliance, chosen.get(SLIP, p.law.slip), heights)
+        joint = self.display.joint
+        return Draw(
+            here,
+            force,
+            compliance,
+            chosen.get(SLIP, p.law.slip),
+            heights,
+            values.get(AMPLITUDE_SHARE, 1.0 if joint is None else joint.amplitude_share),
+            values.get(FRICTION_OFFSET, 0.0 if joint is None else joint.friction_offset),
+        )
 
     def mode(self, draw: Draw) -> WorkingMode:
         """The working mode of a draw: as described, but for its quality factor."""
@@ -263,7 +283,7 @@ def outcome_of(
 ) -> Outcome:
     """What comes of a draw at an amplitude (m) without its finger; `settled` as `touch` has its
     tolerance."""
-    law = mixture.law(draw)
+    law, free_amplitude = mixture.law(draw), free_amplitude * draw.amplitude_share
     amplitude, power, known = free_amplitude, None, None
     if mixture.prediction.voltage is not None and mixture.prediction.mode.modal_mass is not None:
         felt = touch(mixture.mode(draw), law, free_amplitude, tolerance=settled)
@@ -286,6 +306,9 @@ def between_limits(
                 found += weight * law.sharing(amplitude, limit).relative_friction
             else:
                 found += weight * known.relative_friction
+    if draw.friction_offset:
+        # What a calibration found the laws to be off by, where a finger still feels something.
+        found = np.clip(found + draw.friction_offset, 0.0, np.maximum(found, 1.0))
     return found
 
 

@@ -180,6 +180,7 @@ def _joint(finger: _Finger, plate: PlateFit | None, count: int, seed: int) -> _M
         except SqueezefilmError:
             continue
     amplitude, friction = found.T
+    alone = friction
     if finger.draws is not None:
         where = (Touching(float(np.nanmedian(amplitude))),)
         friction = finger.draws.with_error(friction[:, None], where, seed)[:, 0]
@@ -193,6 +194,7 @@ def _joint(finger: _Finger, plate: PlateFit | None, count: int, seed: int) -> _M
         np.zeros((count, 0)) if plate is None else plate.predictive.values[rows],
         free,
         friction,
+        friction - alone,
     )
     return _Made(joint, amplitude)
 

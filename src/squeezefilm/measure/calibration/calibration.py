@@ -81,7 +81,8 @@ class NextMeasurement:
 class Joint:
     """Draws of everything at once, in scores: `plate` (draws, parameters), `finger` (draws, inputs
     of the mixture: `finger_paths`), with the bench's own answers (draws, asked; SI), free amplitude
-    and µ′/µ at the display's voltage (draws,)."""
+    and µ′/µ at the display's voltage (draws,), of which `law_error` (draws,) is what the laws
+    themselves are taken to be off by."""
 
     plate_paths: tuple[str, ...]
     plate: si.DimensionlessArray
@@ -91,6 +92,7 @@ class Joint:
     answers: si.FloatArray
     amplitude: si.MetreArray
     friction: si.DimensionlessArray
+    law_error: si.DimensionlessArray
 
 
 @dataclass(frozen=True, eq=False)

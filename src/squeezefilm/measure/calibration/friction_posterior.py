@@ -51,7 +51,8 @@ def finger_mixture(display: Display, prediction: Prediction) -> Mixture:
     """All that is uncertain of finger, surface, gas and laws; the actuator stands still."""
     mixture = copy.copy(Mixture(display, prediction, driven=True))
     # A drawn actuator is the plate's posterior, which is drawn beside this one.
-    mixture.inputs = tuple(one for one in mixture.inputs if not one.path.startswith("actuator."))
+    beside = ("actuator.", "joint.")
+    mixture.inputs = tuple(one for one in mixture.inputs if not one.path.startswith(beside))
     mixture.paths = tuple(one.path for one in mixture.inputs)
     return mixture
 

@@ -233,12 +233,13 @@ class NormalScores:
 
         found = np.empty(np.shape(values))
         for k, one in enumerate(self.parameters):
-            found[:, k] = ndtri(np.clip(_share(one.distribution, values[:, k]), 1e-9, 1 - 1e-9))
+            found[:, k] = ndtri(np.clip(share_of(one.distribution, values[:, k]), 1e-9, 1 - 1e-9))
         return found
 
 
-def _share(prior: Distribution, values: si.FloatArray) -> si.DimensionlessArray:
-    """The probability with which a value is not exceeded."""
+def share_of(prior: Distribution, values: si.FloatArray) -> si.DimensionlessArray:
+    """The probabilities (the shape of `values`, in the quantity's unit) with which values are not
+    exceeded: the inverse of `Distribution.quantile`, 0 or 1 beyond its support."""
     from scipy.special import ndtr
 
     if isinstance(prior, Normal):
@@ -246,6 +247,6 @@ def _share(prior: Distribution, values: si.FloatArray) -> si.DimensionlessArray:
             float(ndtr((end - prior.mean) / prior.standard_deviation)) for end in prior.support
         )
         share = ndtr((values - prior.mean) / prior.standard_deviation)
-        return np.asarray((share - least) / (most - least))
+        return np.clip((share - least) / (most - least), 0.0, 1.0)
     low, high = prior.support
-    return np.asarray((values - low) / (high - low))
+    return np.clip((np.asarray(values) - low) / (high - low), 0.0, 1.0)
