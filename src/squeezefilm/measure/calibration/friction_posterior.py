@@ -34,8 +34,8 @@ from squeezefilm.measure.calibration.friction_likelihood import (
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
 
-DRAWS, ROUNDS, ROUND = 2048, 2, 1024
-"""Draws from the priors, how often more are drawn where the observations point, and how many."""
+DRAWS, ROUNDS = 2048, 2
+"""Draws from the priors, and how often half as many more are drawn where the observations point."""
 FEWEST: float = 60.0
 """Independent draws that a friction posterior should be worth; fewer are told."""
 _DEFENSIVE = 0.25
@@ -221,8 +221,8 @@ def friction_posterior(
     draws: Annotated[int, si.AtLeast(32)] = DRAWS,
     progress: SayProgress | None = None,
 ) -> FrictionPosterior:
-    """The posterior of finger and laws: some 10 ms for each of `draws` (a power of two) and of as
-    many in `ROUNDS` rounds. Raises `OutOfRangeError` as `weighted`; interrupted it goes on from
+    """The posterior of finger and laws: some 5 to 10 ms for each of `draws` (a power of two) and of
+    as many again in `ROUNDS` rounds. Raises `OutOfRangeError` as `weighted`; interrupted it goes on from
     what was kept.
     """
     from scipy.special import logsumexp, ndtr, ndtri
@@ -230,6 +230,7 @@ def friction_posterior(
 
     tell = progress or (lambda _: None)
     random = np.random.default_rng(seed)
+    more_draws = draws // 2
     points = qmc.Sobol(len(mixture.inputs), rng=seed).random(draws)
     curves = friction_of_points(mixture, points, likelihood.where, tell)
     found = weighted(mixture, likelihood, points, curves)
@@ -243,10 +244,10 @@ def friction_posterior(
         # Few draws know little of a covariance: as much of the priors' as they are worth.
         share = found.effective / (found.effective + scores.shape[1])
         spread = _WIDER * (share * spread + (1 - share) * np.eye(len(middle)))
-        fresh = random.multivariate_normal(middle, spread, ROUND)
-        at_prior = random.random(ROUND) < _DEFENSIVE
+        fresh = random.multivariate_normal(middle, spread, more_draws)
+        at_prior = random.random(more_draws) < _DEFENSIVE
         fresh[at_prior] = random.normal(size=(int(at_prior.sum()), len(middle)))
-        proposals.append((ROUND, middle, spread))
+        proposals.append((more_draws, middle, spread))
         more = ndtr(fresh)
         points = np.vstack([points, more])
         curves = np.vstack([curves, friction_of_points(mixture, more, likelihood.where, tell)])
