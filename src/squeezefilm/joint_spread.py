@@ -64,8 +64,8 @@ class JointSpread:
 
     @si.checked_numbers
     def picked(self, paths: tuple[str, ...], points: si.DimensionlessArray) -> si.FloatArray:
-        """Points of the unit cube with coordinates `paths`, shape (points, paths), in which what was
-        calibrated is a row of the draws, each row as often as any other."""
+        """Points of the unit cube with coordinates `paths`, shape (points, paths), in which what
+        was calibrated is a row of the draws, each row as often as any other."""
         if not self.draws:
             return points
         columns, table = self._common(paths)

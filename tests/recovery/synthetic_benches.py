@@ -124,7 +124,7 @@ def drawn_scale(random: np.random.Generator) -> float:
 
 @dataclass
 class Fingers:
-    """A bank of draws of finger and laws with their µ′/µ at the observed and the blind amplitude."""
+    """A bank of draws of finger and laws with their µ′/µ at all amplitudes, the blind one last."""
 
     points: np.ndarray
     curves: np.ndarray

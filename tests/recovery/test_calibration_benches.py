@@ -10,6 +10,12 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.stats import chisquare
+
+from squeezefilm.analysis.plate.sensitivity import with_glue
+from squeezefilm.measure.calibration.priors import with_calibrated
+from squeezefilm.measure.calibration.solved_answers import Asked, solved_answers
+
 from .synthetic_benches import (
     BLIND,
     Fingers,
@@ -18,11 +24,6 @@ from .synthetic_benches import (
     paper_display,
     plate_bench,
 )
-from scipy.stats import chisquare
-
-from squeezefilm.analysis.plate.sensitivity import with_glue
-from squeezefilm.measure.calibration.priors import with_calibrated
-from squeezefilm.measure.calibration.solved_answers import Asked, solved_answers
 
 BENCHES = 200
 
@@ -70,9 +71,12 @@ def test_where_the_model_is_right_blind_answers_are_met(plates: Plates) -> None:
         found.append(plate_bench(plates, scores, answers, seed=number))
     errors = np.abs([one.errors for one in found])
     widths = np.median([one.widths for one in found], axis=0)
-    unmeasured = np.std(np.log([plates.truth(random.normal(size=8), 0.0, random) for _ in range(300)]), axis=0)
+    unmeasured = np.std(
+        np.log([plates.truth(random.normal(size=8), 0.0, random) for _ in range(300)]), axis=0
+    )
     print(
-        f"blind errors, median {np.median(errors, axis=0)}, 95 % {np.quantile(errors, 0.95, axis=0)}, "
+        f"blind errors, median {np.median(errors, axis=0)}, 95 % "
+        f"{np.quantile(errors, 0.95, axis=0)}, "
         f"interval widths {widths}; spread without data {unmeasured[:6]}"
     )
     assert np.quantile(errors[:, 0], 0.95) < 0.002
@@ -127,7 +131,9 @@ def test_ranks_of_blind_friction_are_flat(fingers: Fingers) -> None:
         if len(ranks) == BENCHES:
             break
     odds = flat(np.array(ranks))
-    print(f"{odds=:.3f}, 90 % intervals cover {np.mean(inside):.3f}, worth {np.median(effective):.0f}")
+    print(
+        f"{odds=:.3f}, 90 % intervals cover {np.mean(inside):.3f}, worth {np.median(effective):.0f}"
+    )
     assert odds > 0.005
     assert abs(np.mean(inside) - 0.9) < 0.07
 
@@ -148,7 +154,7 @@ def test_friction_of_the_right_and_of_other_laws(fingers: Fingers) -> None:
         low, high = np.quantile(drawn, [0.05, 0.95])
         widths.append(high - low)
     for number in range(60):
-        # A contact that hammers, one with a threshold, one that sticks again: none of the mixture's.
+        # A contact that hammers, one with a threshold, one that sticks again: not the mixture's.
         kind, place = number % 3, random.uniform(0.5e-6, 2.5e-6)
         if kind == 0:
             other = 1 / (1 + (amplitude / place) ** 3)

@@ -33,9 +33,7 @@ def calibrated_inputs(
         (FRICTION_OFFSET, joint.friction_offset, joint.friction_offset_deviation, True),
     )
     return kept + tuple(
-        Parameter(
-            path, middle, si.Unit("1"), Normal(middle, deviation), "given", "the calibration"
-        )
+        Parameter(path, middle, si.Unit("1"), Normal(middle, deviation), "given", "the calibration")
         for path, middle, deviation, counts in spreads
         if counts and deviation > 0
     )

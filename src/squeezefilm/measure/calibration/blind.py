@@ -1,7 +1,7 @@
 """Predictions that are written before the data are opened, and scored after.
 
-A prediction's file ends with the SHA-256 of its own content, so that nobody, its author neither, can
-mend it once the data are known without its being seen.
+A prediction's file ends with the SHA-256 of its own content. A change after the data are known is
+seen, whoever makes it, where that number was shown to others before.
 """
 
 from __future__ import annotations
@@ -93,8 +93,8 @@ class Score:
         where = "inside" if self.inside else "outside of"
         return (
             f"{self.observation.answer.replace('_', ' ')}: predicted {self.predicted.median:.5g} "
-            f"({low:.5g} to {high:.5g}), measured {self.observation.value:.5g} (SI): error {error}, "
-            f"{where} the {si.percent(self.predicted.level)} interval, log score "
+            f"({low:.5g} to {high:.5g}), measured {self.observation.value:.5g} (SI): "
+            f"error {error}, {where} the {si.percent(self.predicted.level)} interval, log score "
             f"{self.log_score:.2f}"
         )
 
@@ -111,14 +111,16 @@ def predict_blind(
 
     `what` names the answers and their conditions; the values in them are ignored (leave them 0). Of
     a calibration its own draws predict the plate, of a display plates drawn from its spreads, each
-    with what a model is believed to be off by. The file is JSON, SI units, and is never overwritten.
+    with what a model is believed to be off by. The file is JSON, in SI units, never overwritten.
 
     Raises `InputError` where nothing is asked, an answer is not known, or the file is there
     already.
     """
     target = Path(path)
     if target.exists():
-        raise InputError(f"{target} is there already; a prediction is never overwritten, name another")
+        raise InputError(
+            f"{target} is there already; a prediction is never overwritten, name another"
+        )
     if not what:
         raise InputError("nothing is to be predicted; name at least one answer")
     for one in what:
@@ -130,13 +132,10 @@ def predict_blind(
         if isinstance(source, Display)
         else f"the calibration of {display.name} on {len(source.observations)} observations"
     )
-    rows = (
-        _of_friction(display, [one for one in what if one.answer == FRICTION], seed, tell)
-        | (
-            _of_plate(display, what, seed, tell)
-            if isinstance(source, Display)
-            else _of_calibration(source, what)
-        )
+    rows = _of_friction(display, [one for one in what if one.answer == FRICTION], seed, tell) | (
+        _of_plate(display, what, seed, tell)
+        if isinstance(source, Display)
+        else _of_calibration(source, what)
     )
     predictions = tuple(_predicted(one, rows[id(one)]) for one in what)
     whole = BlindPrediction(display.name, how, predictions, stamp(display, seed), "")
@@ -188,8 +187,8 @@ def _of_plate(
     drawn = []
     for number, row in enumerate(rows, 1):
         tell(f"plate {number} of {len(rows)}")
-        one = with_calibrated(display, dict(zip(paths, row.tolist(), strict=True)))
-        drawn.append(solved_answers(one.actuator, asked).values)
+        made = with_calibrated(display, dict(zip(paths, row.tolist(), strict=True)))
+        drawn.append(solved_answers(made.actuator, asked).values)
     random = np.random.default_rng(seed)
     # Many errors of the model for each solved plate: these are cheap.
     many = np.repeat(np.array(drawn), 32, axis=0)
@@ -246,7 +245,9 @@ def load_prediction(path: str | Path) -> BlindPrediction:
             str(content["sha256"]),
         )
     except (ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{path} is no prediction of squeezefilm; write one with measure predict") from error
+        raise InputError(
+            f"{path} is no prediction of squeezefilm; write one with measure predict"
+        ) from error
     if _digest(content) != found.sha256:
         raise InputError(
             f"{path} was changed after it was written: its content's SHA-256 is "
@@ -283,9 +284,9 @@ def score(path: str | Path, observations: Sequence[Observation]) -> tuple[Score,
                 found.append(_scored(one, seen))
     if not found:
         predicted = ", ".join(one.answer for one in prediction.predictions)
-        seen = ", ".join(one.answer for one in observations) or "nothing"
+        measured = ", ".join(one.answer for one in observations) or "nothing"
         raise InputError(
-            f"nothing that was measured ({seen}) is what was predicted ({predicted}, under its "
+            f"nothing that was measured ({measured}) is what was predicted ({predicted}, under its "
             "conditions); give the recording that the prediction was made for"
         )
     return tuple(found)

@@ -137,10 +137,10 @@ class Calibration:
             words = f"µ′/µ = {self.after.median:.2f} ({low:.2f}–{high:.2f})"
             if self.before is not None:
                 was = self.before.interval
+                left = si.percent(self.after.width / self.before.width)
                 words += (
                     f"; without what was measured {self.before.median:.2f} "
-                    f"({was[0]:.2f}–{was[1]:.2f}): {si.percent(self.after.width / self.before.width)}"
-                    " of that interval is left"
+                    f"({was[0]:.2f}–{was[1]:.2f}): {left} of that interval is left"
                 )
             said.append(f"{words}.")
         said += self.identification.sentences

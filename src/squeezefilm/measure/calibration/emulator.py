@@ -1,14 +1,15 @@
 """A fast stand-in for the solver around one display: a Gaussian process with a measured error.
 
-Over priors of some per cent the logarithms of a plate's answers are nearly linear in the logarithms
-of what the plate is made of; what is not (soft glue, a mode that meets another) is interpolated with
-a Matérn covariance of its own length in every coordinate. The error is measured, not believed: at
-solved points that the emulator was not shown. Source: Rasmussen and Williams, Gaussian Processes for
-Machine Learning (2006), sections 2.7, 4.2 and 5.4.
+Over priors of some per cent the logarithms of a plate's answers are nearly linear in the
+logarithms of what the plate is made of; what is not (soft glue, a mode that meets another) is
+interpolated with a Matérn covariance of its own length in every coordinate. The error is measured,
+not believed: at solved points that the emulator was not shown. Source: Rasmussen and Williams,
+Gaussian Processes for Machine Learning (2006), sections 2.7, 4.2 and 5.4.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -72,9 +73,7 @@ def emulator_of(
         )
     shown = x[: len(x) - held_out]
     columns = [_fitted(shown, y[: len(shown), k]) for k in range(y.shape[1])]
-    trends, lengths, weights = (
-        np.stack([column[part] for column in columns]) for part in range(3)
-    )
+    trends, lengths, weights = (np.stack([column[part] for column in columns]) for part in range(3))
     nothing = np.zeros(y.shape[1])
     found = Emulator(nothing, nothing, len(shown), held_out, shown, trends.T, lengths, weights.T)
     off = np.abs(found(x[len(shown) :]) - y[len(shown) :])
@@ -88,6 +87,10 @@ def emulator_of(
         lengths,
         weights.T,
     )
+
+
+def _logarithms(ends: tuple[float, float]) -> tuple[float, float]:
+    return math.log(ends[0]), math.log(ends[1])
 
 
 def _with_one(x: si.FloatArray) -> si.FloatArray:
@@ -123,10 +126,11 @@ def _fitted(
         variance = float((y - trend @ line) @ weights) / count
         held = _TRUST * float(np.sum((logs[:d] - np.log(_USUAL_LENGTH)) ** 2))
         determinant = float(np.sum(np.log(np.diag(factor[0]))))
-        return count / 2 * np.log(max(variance, 1e-300)) + determinant + held, line, weights
+        cost = count / 2 * float(np.log(max(variance, 1e-300))) + determinant + held
+        return cost, np.asarray(line), np.asarray(weights)
 
     start = np.r_[np.full(d, np.log(_USUAL_LENGTH)), np.log(1e-5)]
-    bounds = [tuple(np.log(_LENGTHS))] * d + [tuple(np.log(_NUGGETS))]
+    bounds = [_logarithms(_LENGTHS)] * d + [_logarithms(_NUGGETS)]
     best = minimize(lambda logs: at(logs)[0], start, method="L-BFGS-B", bounds=bounds)
     _, line, weights = at(best.x)
     return line, np.exp(best.x[:d]), weights

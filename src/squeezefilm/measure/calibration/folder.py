@@ -52,9 +52,7 @@ def calibrate_folder(
         raise InputError(
             f"{folder} holds nothing that a calibration can use: {'; '.join(left_out)}"
         )
-    found = calibrate(
-        display, observations, parameters=parameters, seed=seed, progress=progress
-    )
+    found = calibrate(display, observations, parameters=parameters, seed=seed, progress=progress)
     return FolderCalibration(found, write_calibrated(found, out), left_out)
 
 

@@ -1,9 +1,9 @@
 """What observations of µ′/µ say of a finger and of the laws: weighted draws.
 
-Draws of everything that `analysis.draws.Mixture` has uncertain (values, laws and mechanisms), first
-from the priors, then from a Gaussian about those that the observations speak for (in normal scores of
-the unit cube, mixed with the priors so that no weight runs away): adaptive importance sampling,
-Cappé et al. 2004, 10.1198/106186004X12803. The laws are weighted by it as the values are.
+Draws of everything that `analysis.draws.Mixture` has uncertain (values, laws and mechanisms),
+first from the priors, then from a Gaussian about those that the observations speak for (in normal
+scores of the unit cube, mixed with the priors so that no weight runs away): adaptive importance
+sampling, Cappé et al. 2004, 10.1198/106186004X12803. The laws are weighted by it as values are.
 """
 
 from __future__ import annotations
@@ -159,8 +159,8 @@ class FrictionPosterior:
 
 @dataclass(frozen=True, eq=False)
 class FrictionDraws:
-    """Draws of a posterior with equal weights: which of its draws (`rows`), points of the unit cube,
-    scales of the discrepancy, and curves at the observed conditions."""
+    """Draws of a posterior with equal weights: which of its draws (`rows`), points of the unit
+    cube, scales of the discrepancy, and curves at the observed conditions."""
 
     posterior: FrictionPosterior
     rows: si.IntArray
@@ -222,8 +222,8 @@ def friction_posterior(
     progress: SayProgress | None = None,
 ) -> FrictionPosterior:
     """The posterior of finger and laws: some 5 to 10 ms for each of `draws` (a power of two) and of
-    as many again in `ROUNDS` rounds. Raises `OutOfRangeError` as `weighted`; interrupted it goes on from
-    what was kept.
+    as many again in `ROUNDS` rounds. Raises `OutOfRangeError` as `weighted`; interrupted it goes on
+    from what was kept.
     """
     from scipy.special import logsumexp, ndtr, ndtri
     from scipy.stats import qmc

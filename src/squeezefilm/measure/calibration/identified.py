@@ -56,7 +56,9 @@ class Combination:
         up = [name for name, weight in self.parts if weight > 0]
         down = [name for name, weight in self.parts if weight < 0]
         if not down or not up:
-            return f"Only together are fixed {to}: {_and(up or down)}: more of one is less of another."
+            return (
+                f"Only together are fixed {to}: {_and(up or down)}: more of one is less of another."
+            )
         return (
             f"Only together are fixed {to}: {_and(up)} against {_and(down)}: more of the first "
             "goes with more of the second."
@@ -94,7 +96,9 @@ class Identification:
 
 
 def identification(
-    paths: tuple[str, ...], scores: si.DimensionlessArray, weights: si.DimensionlessArray | None = None
+    paths: tuple[str, ...],
+    scores: si.DimensionlessArray,
+    weights: si.DimensionlessArray | None = None,
 ) -> Identification:
     """What draws of scores (draws, parameters), with `weights` (draws,), say of the parameters."""
     if not paths:
@@ -102,9 +106,7 @@ def identification(
     share = np.full(len(scores), 1 / len(scores)) if weights is None else weights / weights.sum()
     off = scores - share @ scores
     covariance = off.T @ (share[:, None] * off)
-    known = tuple(
-        Known(path, float(np.sqrt(covariance[k, k]))) for k, path in enumerate(paths)
-    )
+    known = tuple(Known(path, float(np.sqrt(covariance[k, k]))) for k, path in enumerate(paths))
     values, vectors = np.linalg.eigh(covariance)
     combinations = []
     for value, vector in zip(values, vectors.T, strict=True):
@@ -115,9 +117,7 @@ def identification(
         vector = vector * np.sign(vector[order[0]])
         alone = vector[order[0]] ** 2 > _ALONE
         parts = order[:1] if alone else [k for k in order if vector[k] ** 2 > _NAMED]
-        combinations.append(
-            Combination(left, tuple((paths[k], float(vector[k])) for k in parts))
-        )
+        combinations.append(Combination(left, tuple((paths[k], float(vector[k])) for k in parts)))
     return Identification(known, tuple(combinations))
 
 

@@ -122,9 +122,7 @@ class Solves:
         ):
             self.tell(f"{said}: plate {number} of {len(points)}")
             try:
-                display = with_calibrated(
-                    self.display, dict(zip(paths, row.tolist(), strict=True))
-                )
+                display = with_calibrated(self.display, dict(zip(paths, row.tolist(), strict=True)))
                 found = solved_answers(display.actuator, self.asked)
             except SqueezefilmError as error:
                 self._lose(str(error))
@@ -154,10 +152,10 @@ class Solves:
         """What was observed beside an emulator of all plates so far. An answer that some of them
         have not, and that was not observed, is left out."""
         logs = np.array(self.logs)
-        whole = np.isfinite(logs).all(axis=0)
+        whole = np.asarray(np.isfinite(logs).all(axis=0))
         emulator = emulator_of(self.scores.coordinates(np.array(self.points)), logs[:, whole])
         solver_errors = np.sqrt(np.mean(np.square(self.errors), axis=0))[whole]
-        asked = tuple(one for one, has in zip(self.asked, whole, strict=True) if has)
+        asked = tuple(one for one, has in zip(self.asked, whole.tolist(), strict=True) if has)
         return PlateProblem(self.scores, emulator, asked, solver_errors, observations)
 
 

@@ -1,8 +1,8 @@
 """What observations of a plate say of its parameters: least squares, then draws of the posterior.
 
 Everything happens in normal scores (`priors.NormalScores`) and in logarithms of the answers. The
-last score is that of the discrepancy's scale. The draws are by the affine-invariant ensemble sampler
-of Goodman and Weare (2010), 10.2140/camcos.2010.5.65, as emcee has it (10.1086/670067).
+last score is that of the discrepancy's scale. The draws are by the affine-invariant ensemble
+sampler of Goodman and Weare (2010), 10.2140/camcos.2010.5.65, as emcee has it (10.1086/670067).
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ def best_fit(problem: PlateProblem, starts: int = 4, seed: int = 1) -> si.Dimens
     errors = np.sqrt(problem.variances)
 
     def off(scores: si.FloatArray) -> si.FloatArray:
-        return np.r_[scores, problem.residuals(scores[None, :])[0] / errors]
+        return np.asarray(np.r_[scores, problem.residuals(scores[None, :])[0] / errors])
 
     def slopes(scores: si.FloatArray) -> si.FloatArray:
         step = 1e-4
@@ -212,7 +212,8 @@ class Predictive:
     values: si.FloatArray
 
     def of(self, asked: Asked) -> si.FloatArray:
-        """The draws of one answer, shape (draws,). Raises `InputError` for one that is not there."""
+        """The draws of one answer, shape (draws,). Raises `InputError` for one that is not
+        there."""
         if asked not in self.asked:
             known = ", ".join(one.said for one in self.asked)
             raise InputError(f"nothing was computed of the {asked.said}; there are: {known}")

@@ -166,7 +166,11 @@ def ceramic_with_shares(
     twice (free permittivities, stress coefficients) belongs to the other values and is dropped.
     Raises `InputError` for shares that are not above 0.
     """
-    for name, share in (("stiffness", stiffness), ("charge", charge), ("permittivity", permittivity)):
+    for name, share in (
+        ("stiffness", stiffness),
+        ("charge", charge),
+        ("permittivity", permittivity),
+    ):
         si.require(name, share, above=0)
     full = ceramic.full_constants
     scaled: dict[str, Any] = {}
@@ -213,9 +217,7 @@ class NormalScores:
         from scipy.special import ndtr
 
         share = ndtr(np.clip(scores, -8.0, 8.0))
-        columns = [
-            one.distribution.quantile(share[:, k]) for k, one in enumerate(self.parameters)
-        ]
+        columns = [one.distribution.quantile(share[:, k]) for k, one in enumerate(self.parameters)]
         return np.stack(columns, axis=1) if columns else np.zeros((len(scores), 0))
 
     def coordinates(self, scores: si.DimensionlessArray) -> si.DimensionlessArray:

@@ -131,7 +131,9 @@ def _working(actuator: RectangularPlate | DiscPlate) -> dict[Asked, tuple[float,
     question = _question(actuator, "working")
     kept = _KEPT.get(question, 2 * len(PLATE_ANSWERS))
     if kept is None:
-        named = _of_plate(actuator) if isinstance(actuator, RectangularPlate) else _of_disc(actuator)
+        named = (
+            _of_plate(actuator) if isinstance(actuator, RectangularPlate) else _of_disc(actuator)
+        )
         kept = np.array([named.get(name, (math.nan, 0.0)) for name in PLATE_ANSWERS]).ravel()
         _KEPT.put(question, kept)
     rows = kept.reshape(-1, 2).tolist()
@@ -165,7 +167,8 @@ def _of_plate(plate: RectangularPlate) -> Mapping[str, tuple[float, float]]:
 def _of_disc(disc: DiscPlate) -> Mapping[str, tuple[float, float]]:
     mode, body = working_mode(disc), ring_body(disc)
     annular = mode.disc
-    assert annular is not None and mode.modal_mass is not None
+    assert annular is not None
+    assert mode.modal_mass is not None
     held = clamped_capacitance(body.section, body.drive)
     coupling = annular.coupling_coefficient(body.drive, held)
     error = (mode.frequency_error or 0.0) / mode.resonance_frequency

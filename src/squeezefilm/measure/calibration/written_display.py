@@ -1,8 +1,8 @@
 """A calibration as a display's file: values with their spreads, and how they go together.
 
-Every value that the data told something of is written as measured, with the posterior's spread. The
-rest stays as it was described. What the spreads of single values do not say is in the file's `joint`
-(`joint_spread.JointSpread`), which draws of friction's interval use.
+Every value that the data told something of is written as measured, with the posterior's spread.
+The rest stays as it was described. What the spreads of single values do not say is in the file's
+`joint` (`joint_spread.JointSpread`), which draws of friction's interval use.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.joint_draws import AMPLITUDE_SHARE, FRICTION_OFFSET
 from squeezefilm.analysis.draws import Input
+from squeezefilm.analysis.joint_draws import AMPLITUDE_SHARE, FRICTION_OFFSET
 from squeezefilm.analysis.parameters import SKIN_COMPLIANCE, Parameter, with_values
 from squeezefilm.chain.prediction import predict
 from squeezefilm.config.provenance import Provenance
@@ -59,7 +59,9 @@ def calibrated_display(calibration: Calibration) -> Display:
         origin = (
             Provenance(source, "measured", spread)
             if told
-            else Provenance(f"not told by what was measured, moved with the rest; {source}", "assumed", spread)
+            else Provenance(
+                f"not told by what was measured, moved with the rest; {source}", "assumed", spread
+            )
         )
         for path in _written_out(found, one.path):
             stated[path] = origin
@@ -144,9 +146,7 @@ def _ceramic_sources(calibration: Calibration, source: str) -> dict[str, Provena
             for one in dataclasses.fields(ceramic.constants)
             if getattr(ceramic.constants, one.name) is not None
         ]
-    return {
-        f"actuator.ceramic.{name}": whole if name == names[0] else with_it for name in names
-    }
+    return {f"actuator.ceramic.{name}": whole if name == names[0] else with_it for name in names}
 
 
 def _joint(calibration: Calibration, display: Display) -> JointSpread | None:

@@ -61,7 +61,8 @@ def test_friction_is_narrowed_and_the_file_has_the_same_interval(
 ) -> None:
     assert calibration.fits
     before, after = calibration.before, calibration.after
-    assert before is not None and after is not None
+    assert before is not None
+    assert after is not None
     assert after.width < 0.8 * before.width
     assert any("of that interval is left" in one for one in calibration.sentences)
     file = write_calibrated(calibration, tmp_path / "calibrated.toml")
@@ -70,7 +71,8 @@ def test_friction_is_narrowed_and_the_file_has_the_same_interval(
     found = uncertain_friction(read, predict(read), samples=16, seed=2)
     np.testing.assert_allclose(found.interval, after.interval, atol=0.2 * before.width)
     measured = {path for path, one in read.provenance.items() if one.evidence == "measured"}
-    assert measured and all(path.startswith(("finger", "surfaces", "gas")) for path in measured)
+    assert measured
+    assert all(path.startswith(("finger", "surfaces", "gas")) for path in measured)
     assert "# observed: relative_friction 0.85" in file.read_text(encoding="utf-8")
     assert set(json.loads(json.dumps(calibration.summary()))["laws"]) >= {"height_law"}
 
@@ -97,13 +99,17 @@ def test_a_prediction_is_made_kept_and_scored(calibration: Calibration, tmp_path
     file = tmp_path / "prediction.json"
     wanted = friction(0.0, 1.5e-6)
     made = predict_blind(calibration, [wanted], file)
-    assert made == load_prediction(file) and len(made.sha256) == 64
+    assert made == load_prediction(file)
+    assert len(made.sha256) == 64
     low, high = made.predictions[0].interval
     inside = friction((low + high) / 2, 1.5e-6)
     (one,) = score(file, [inside])
-    assert one.inside and abs(one.error) < 0.1 and "inside" in one.sentence
+    assert one.inside
+    assert abs(one.error) < 0.1
+    assert "inside" in one.sentence
     (far,) = score(file, [friction(high + 0.2, 1.5e-6)])
-    assert not far.inside and far.log_score < one.log_score
+    assert not far.inside
+    assert far.log_score < one.log_score
     with pytest.raises(InputError, match="nothing that was measured"):
         score(file, [friction(0.4, 3e-6)])
     with pytest.raises(InputError, match="never overwritten"):
@@ -145,7 +151,8 @@ def test_what_cannot_be_used_is_refused_before_any_work() -> None:
 def test_what_is_solved_of_a_display() -> None:
     plate = load_display("biet2008-plate")
     asked = answers_to_solve(plate, ())
-    assert Asked(MODE_FREQUENCY, (7, 0)) in asked and Asked("mass") in asked
+    assert Asked(MODE_FREQUENCY, (7, 0)) in asked
+    assert Asked("mass") in asked
     assert Asked("mass") not in answers_to_solve(load_display("winfield2007-tpad"), ())
     assert sum(design_sizes(8)) < 150
 
@@ -157,7 +164,8 @@ def test_solved_answers_of_plate_and_disc(tmp_path: Path, monkeypatch: pytest.Mo
     asked = (Asked("mass"), Asked("resonance_frequency"), Asked("parallel_resonance_frequency"))
     found = solved_answers(plate, asked)
     assert found.values[0] == pytest.approx(plate_mass(plate))  # type: ignore[arg-type]
-    assert found.values[1] < found.values[2] and found.errors[1] < 3e-3
+    assert found.values[1] < found.values[2]
+    assert found.errors[1] < 3e-3
     again = solved_answers(plate, asked)
     np.testing.assert_array_equal(again.values, found.values)
     assert any(tmp_path.rglob("*"))
@@ -170,4 +178,5 @@ def test_solved_answers_of_plate_and_disc(tmp_path: Path, monkeypatch: pytest.Mo
 @pytest.mark.slow
 def test_friction_before_is_that_of_the_uncertainty() -> None:
     found = friction_before(load_display(STATOR), seed=1)
-    assert found is not None and 0 < found.interval[0] < found.median < found.interval[1]
+    assert found is not None
+    assert 0 < found.interval[0] < found.median < found.interval[1]

@@ -49,7 +49,8 @@ def seen(name: str, score: tuple[float, float], error: float) -> Observation:
 
 def test_least_squares_are_those_of_the_linear_problem() -> None:
     posed = problem(
-        seen("resonance_frequency", (1.0, -0.5), 1e-3), seen("amplitude_per_volt", (1.0, -0.5), 5e-3)
+        seen("resonance_frequency", (1.0, -0.5), 1e-3),
+        seen("amplitude_per_volt", (1.0, -0.5), 5e-3),
     )
     rows = SLOPES[[0, 2]] / np.array([[1e-3], [5e-3]])
     expected = np.linalg.solve(np.eye(2) + rows.T @ rows, rows.T @ (rows @ [1.0, -0.5]))

@@ -89,7 +89,8 @@ def test_scores_and_values_are_inverse_and_standard() -> None:
     np.testing.assert_allclose(back, drawn, atol=1e-6)
     assert values[:, 0].std() == pytest.approx(2e-5, rel=0.05)
     low, high = parameters[1].distribution.support
-    assert low < values[:, 1].min() and values[:, 1].max() < high
+    assert low < values[:, 1].min()
+    assert values[:, 1].max() < high
     inside = np.abs(scores.coordinates(drawn))
     assert inside.max() <= 1 + 1e-9
     for one in parameters:
