@@ -129,8 +129,11 @@ def _fitted(
         cost = count / 2 * float(np.log(max(variance, 1e-300))) + determinant + held
         return cost, np.asarray(line), np.asarray(weights)
 
-    start = np.r_[np.full(d, np.log(_USUAL_LENGTH)), np.log(1e-5)]
+    def cost(logs: si.FloatArray) -> float:
+        return at(logs)[0]
+
+    start: si.FloatArray = np.append(np.full(d, np.log(_USUAL_LENGTH)), np.log(1e-5))
     bounds = [_logarithms(_LENGTHS)] * d + [_logarithms(_NUGGETS)]
-    best = minimize(lambda logs: at(logs)[0], start, method="L-BFGS-B", bounds=bounds)
+    best = minimize(cost, start, method="L-BFGS-B", bounds=bounds)
     _, line, weights = at(best.x)
     return line, np.exp(best.x[:d]), weights
