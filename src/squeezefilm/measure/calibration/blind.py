@@ -25,7 +25,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.discrepancy import BELIEVED, scale_of
-from squeezefilm.measure.calibration.friction_likelihood import touching
+from squeezefilm.measure.calibration.friction_likelihood import GRID, touching
 from squeezefilm.measure.calibration.friction_posterior import finger_mixture, friction_of_points
 from squeezefilm.measure.calibration.plate_fit import prior_scores
 from squeezefilm.measure.calibration.priors import (
@@ -216,7 +216,7 @@ def _of_friction(
         middle, spread = joint.friction_offset, joint.friction_offset_deviation
         off = random.normal(middle, spread, len(curves))
     else:
-        scale = scale_of(random.normal(size=len(curves)))
+        scale = random.choice(GRID, len(curves))
         off = scale * BELIEVED[FRICTION] * random.normal(size=len(curves))
     curves = np.clip(curves + off[:, None], 0.0, 1.2)
     return {id(one): curves[:, k] for k, one in enumerate(wanted)}

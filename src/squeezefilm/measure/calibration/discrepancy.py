@@ -27,7 +27,7 @@ BELIEVED: dict[str, si.Dimensionless] = {
     "modal_mass": 0.1,
     "quality_factor": 0.2,
     "amplitude_per_volt": 0.2,
-    "relative_friction": 0.1,
+    "relative_friction": 0.2,
 }
 """**Assumed**: what a solved plate may be off by, as a share of the answer (of µ′/µ absolute).
 The paper's own plate lies further from its maker's model, 14 % in frequency and 64 % in amplitude:
@@ -35,6 +35,10 @@ such a bench is a misfit here, and its scale large."""
 
 SCALES = (0.01, 3.0)
 """The unknown scale, anywhere between these on a logarithmic axis (assumed)."""
+FRICTION_SCALES = (0.3, 3.0)
+"""The same of µ′/µ: no law was ever compared with a display, so none is believed to be nearly right
+however well it fits. Chosen so that curves of other shapes than any law here are held mostly
+(`tests/recovery/test_calibration_benches.py`)."""
 MISFIT: si.Dimensionless = 0.01
 """Data that the model would give so seldom or less are called a misfit."""
 

@@ -1,7 +1,8 @@
 """How observations of µ′/µ judge draws of finger and law, with an error of the law itself.
 
-The law's error is a smooth function of amplitude, force and speed: a Gaussian process over their
-logarithms, so that many points along one curve do not count as many independent judges of the law.
+The law's error is a continuous function of amplitude, force and speed: a Gaussian process over
+their logarithms with an exponential correlation, so that many points along one curve do not count
+as many independent judges of the law, and beyond them it is soon unknown again.
 """
 
 from __future__ import annotations
@@ -15,13 +16,18 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.measure.calibration.discrepancy import BELIEVED, SCALES, Misfit, misfit_of
+from squeezefilm.measure.calibration.discrepancy import (
+    BELIEVED,
+    FRICTION_SCALES,
+    Misfit,
+    misfit_of,
+)
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.measure.fits.estimate import Observation
 
-GRID = np.geomspace(*SCALES, 9)
+GRID = np.geomspace(*FRICTION_SCALES, 7)
 """Scales of the discrepancy that are summed over."""
-_ALIKE = 1.0  # as a difference of logarithms: at e times the amplitude the law's error is another
+_ALIKE = 0.7  # as a difference of logarithms: at twice the amplitude the error is mostly another
 
 
 class Touching(NamedTuple):
@@ -138,8 +144,8 @@ def _likeness(a: tuple[Touching, ...], b: tuple[Touching, ...]) -> si.Dimensionl
             [[math.log(value) if value is not None else 0.0 for value in row] for row in rows]
         ).reshape(-1, 3)
 
-    apart = (logs(a)[:, None, :] - logs(b)[None, :, :]) / _ALIKE
+    apart = np.abs(logs(a)[:, None, :] - logs(b)[None, :, :]) / _ALIKE
     told_a = np.array([[value is None for value in row] for row in a]).reshape(-1, 3)
     told_b = np.array([[value is None for value in row] for row in b]).reshape(-1, 3)
     apart = np.where(told_a[:, None, :] == told_b[None, :, :], apart, 0.3)
-    return np.asarray(np.exp(-np.sum(apart**2, axis=2) / 2))
+    return np.asarray(np.exp(-np.sum(apart, axis=2)))

@@ -32,7 +32,7 @@ def test_the_likelihood_is_that_of_a_multivariate_normal() -> None:
     curves = np.array([[0.75, 0.55], [0.2, np.nan]])
     found = likelihood.logarithms(curves)
     scale = GRID[-1] * BELIEVED["relative_friction"]
-    alike = np.exp(-(np.log(2) ** 2) / 2)
+    alike = np.exp(-np.log(2) / 0.7)
     covariance = scale**2 * np.array([[1, alike], [alike, 1]]) + 0.02**2 * np.eye(2)
     expected = multivariate_normal(cov=covariance).logpdf([0.05, -0.05]) + np.log(2 * np.pi)
     assert found[0, -1] == pytest.approx(expected)
