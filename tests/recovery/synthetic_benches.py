@@ -15,6 +15,11 @@ from squeezefilm.measure.calibration.friction_posterior import (
     friction_of_points,
     weighted,
 )
+from squeezefilm.measure.calibration.next_measurement import (
+    FRICTION_ACCURACY,
+    friction_candidate,
+    ranked,
+)
 from squeezefilm.measure.calibration.plate_fit import Solves, prior_scores
 from squeezefilm.measure.calibration.plate_posterior import (
     PlateProblem,
@@ -170,3 +175,40 @@ class Fingers:
         draws = posterior.resampled(1000, seed)
         found = draws.with_error(own[draws.rows, -1:], self.WHERE[-1:], seed)[:, 0]
         return found, posterior.misfit.judgement == "fits", posterior.effective
+
+    def next_measurements(self, bank: slice, truths: range) -> tuple[np.ndarray, np.ndarray]:
+        """Of µ′/µ at each other amplitude, after one at the first: which share of the interval of
+        the blind one it is expected to leave, and leaves on benches that the truths make (means)."""
+        own, expected, achieved = self.curves[bank], [], []
+        for number in truths:
+            random = np.random.default_rng(number)
+            true = self.curves[number] + self.discrepancy(random)
+            if not np.isfinite(true).all():
+                continue
+            seen = [
+                Observation(
+                    FRICTION,
+                    float(value + FRICTION_ACCURACY * random.normal()),
+                    FRICTION_ACCURACY,
+                    {"vibration_amplitude": amplitude},
+                )
+                for value, amplitude in zip(true, AMPLITUDES, strict=False)
+            ]
+
+            def drawn(rows: list[int], seed: int, seen: list[Observation] = seen) -> np.ndarray:
+                likelihood = FrictionLikelihood(tuple(seen[k] for k in rows))
+                posterior = weighted(self.mixture, likelihood, self.points[bank], own[:, rows])
+                draws = posterior.resampled(1000, seed)
+                at = own[draws.rows]
+                return draws.with_error(at, self.WHERE, seed)
+
+            now = drawn([0], number)
+            options = [
+                friction_candidate(now[:, k], AMPLITUDES[k]) for k in range(1, len(AMPLITUDES))
+            ]
+            found = {one.name: one.left for one in ranked(now[:, -1], options, seed=number)}
+            expected.append([found[one.name] for one in options])
+            width = np.diff(np.quantile(now[:, -1], [0.05, 0.95]))[0]
+            after = [drawn([0, k], number)[:, -1] for k in range(1, len(AMPLITUDES))]
+            achieved.append([np.diff(np.quantile(one, [0.05, 0.95]))[0] / width for one in after])
+        return np.mean(expected, axis=0), np.mean(achieved, axis=0)

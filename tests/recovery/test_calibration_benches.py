@@ -206,3 +206,13 @@ def test_five_fully_solved_benches(plates: Plates) -> None:
     assert worst[BLIND.index(Asked("resonance_frequency"))] < 0.002
     assert worst[BLIND.index(Asked("amplitude_per_volt"))] < 0.05
     assert all(held[3:])
+
+
+@pytest.mark.campaign
+def test_the_next_measurement_tells_what_was_expected_of_it(fingers: Fingers) -> None:
+    """After one point of friction: what each further one is expected to leave, and what it leaves
+    on benches whose truth is known, calibrated anew with it."""
+    expected, achieved = fingers.next_measurements(slice(0, 8192), range(8192, 8192 + 60))
+    print(f"left of the interval, expected {expected.round(3)}, achieved {achieved.round(3)}")
+    assert np.argmin(expected) == np.argmin(achieved)
+    np.testing.assert_allclose(expected, achieved, atol=0.12)
