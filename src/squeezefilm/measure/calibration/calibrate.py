@@ -347,10 +347,13 @@ def _next(
             drawn[item.path] = np.array(item.drawn(share[:, k]), dtype=float)
     options = candidates(drawn)
     amplitude = float(np.nanmedian(made.with_finger))
-    for at in (amplitude, amplitude / 2):
-        where = (Touching(at),)
-        curve = friction_of_points(finger.mixture, finger.points, where, lambda _: None)
-        if finger.draws is not None:
-            curve = finger.draws.with_error(curve, where, seed)
-        options.append(friction_candidate(np.where(np.isfinite(curve), curve, 1.0)[:, 0], at))
+    # The error of the law at the first is that in the joint draws, by the seed.
+    where = (Touching(amplitude), Touching(amplitude / 2))
+    curves = friction_of_points(finger.mixture, finger.points, where, lambda _: None)
+    if finger.draws is not None:
+        curves = finger.draws.with_error(curves, where, seed)
+    curves = np.where(np.isfinite(curves), curves, 1.0)
+    options += [
+        friction_candidate(curve, one.amplitude) for curve, one in zip(curves.T, where, strict=True)
+    ]
     return ranked(joint.friction, options, seed=seed)

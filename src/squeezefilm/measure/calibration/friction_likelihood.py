@@ -110,22 +110,28 @@ class FrictionLikelihood:
             found[known, k] = -(np.sum(off[known].T * solved, axis=0) + determinant) / 2
         return found
 
-    def discrepancy(
-        self, curves: si.DimensionlessArray, scales: si.DimensionlessArray, at: tuple[Touching, ...]
-    ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-        """Mean and standard deviation of the law's error at other conditions, given what it was at
-        those observed: for draws with their scales, shape (draws, conditions) both."""
+    def errors(
+        self,
+        curves: si.DimensionlessArray,
+        scales: si.DimensionlessArray,
+        at: tuple[Touching, ...],
+        seed: int,
+    ) -> si.DimensionlessArray:
+        """Draws of the law's error at other conditions, given what it was at those observed: for
+        draws with their scales, shape (draws, conditions), correlated between the conditions. With
+        one seed the first conditions are the same whatever follows them."""
         own, far = _likeness(at, at), _likeness(self.where, at)
-        middle = np.zeros((len(curves), len(at)))
-        spread = np.zeros_like(middle)
+        noise = np.random.default_rng(seed).normal(size=(len(at), len(curves))).T
+        found = np.zeros((len(curves), len(at)))
         for scale in np.unique(scales):
             rows = scales == scale
             error = (scale * BELIEVED[FRICTION]) ** 2
             gain = np.linalg.solve(self._covariance(float(scale)), error * far)
-            middle[rows] = (self.observed - curves[rows]) @ gain
-            left = error * np.diag(own) - np.sum(error * far * gain, axis=0)
-            spread[rows] = np.sqrt(np.maximum(left, 0.0))
-        return middle, spread
+            left = error * (own - far.T @ gain)
+            # A condition named twice has no error of its own: a hair keeps the factor.
+            root = np.linalg.cholesky(left + 1e-9 * error * np.eye(len(at)))
+            found[rows] = (self.observed - curves[rows]) @ gain + noise[rows] @ root.T
+        return found
 
     def misfit(self, curves: si.DimensionlessArray) -> Misfit:
         """How well the best of the draws explains what was observed, without a discrepancy."""

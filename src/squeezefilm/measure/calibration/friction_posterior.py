@@ -181,9 +181,8 @@ class FrictionDraws:
     ) -> si.DimensionlessArray:
         """µ′/µ (draws, conditions) of these draws with the law's error added; from 0 to 1 or a
         little above."""
-        middle, spread = self.posterior.likelihood.discrepancy(self.curves, self.scales, where)
-        random = np.random.default_rng(seed)
-        return np.clip(friction + middle + spread * random.normal(size=middle.shape), 0.0, 1.2)
+        errors = self.posterior.likelihood.errors(self.curves, self.scales, where, seed)
+        return np.clip(friction + errors, 0.0, 1.2)
 
 
 def weighted(
