@@ -178,7 +178,7 @@ class Fingers:
 
     def next_measurements(self, bank: slice, truths: range) -> tuple[np.ndarray, np.ndarray]:
         """Of µ′/µ at each other amplitude, after one at the first: which share of the interval of
-        the blind one it is expected to leave, and leaves on benches that the truths make (means)."""
+        the blind one it is expected to leave, and leaves on benches of the truths (means)."""
         own, expected, achieved = self.curves[bank], [], []
         for number in truths:
             random = np.random.default_rng(number)
