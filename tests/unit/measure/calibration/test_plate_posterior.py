@@ -75,6 +75,7 @@ def test_a_right_model_is_narrow_and_a_combination_is_named() -> None:
     assert abs(np.log(np.median(made.of(Asked("mass")))) - SLOPES[1] @ [1.0, -0.5]) < 2e-3
 
 
+@pytest.mark.slow
 def test_a_contradiction_is_a_misfit_and_widens() -> None:
     right = (seen("resonance_frequency", (1, 0), 1e-3), seen("mass", (1, 0), 1e-3))
     wrong = (right[0], seen("mass", (-2, 0), 1e-3))
@@ -89,6 +90,7 @@ def test_a_contradiction_is_a_misfit_and_widens() -> None:
     assert spread[1] > spread[0]
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_draws() -> None:
     posed = problem(seen("mass", (0.3, 0.3), 1e-3))
     first, second = (sampled_posterior(posed, seed=4, steps=200) for _ in range(2))
