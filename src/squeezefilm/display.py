@@ -17,6 +17,7 @@ from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limit
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import ROUGHNESS
+from squeezefilm.joint_spread import JointSpread
 from squeezefilm.materials import Gas
 from squeezefilm.plate.heat.thermal import Thermal
 from squeezefilm.plate.layout import Actuator
@@ -143,6 +144,7 @@ class Display(Result):
 
     Read one with `load_display`. The first of `surfaces` is the default. `active_area` is where
     fingers are meant to be; without one all of the face that a contact does not overhang.
+    `joint` stands in a calibrated display: what its measurements say of its values together.
     `provenance` says where each value is from, by its dotted path in the file. In a file
     `references` are resolved: a material by its name, and the preset that it is a changed copy of.
     """
@@ -164,6 +166,7 @@ class Display(Result):
     gas: Gas
     thermal: Thermal = _STILL_AIR
     active_area: ActiveRegion | None = None
+    joint: JointSpread | None = None
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )

@@ -17,6 +17,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.joint_draws import (
+    AMPLITUDE_SHARE,
+    FRICTION_OFFSET,
+    calibrated_inputs,
+)
 from squeezefilm.analysis.model_choices import (
     HEIGHT_LAW,
     MOISTURE,
@@ -62,13 +67,16 @@ def as_drawn() -> Iterator[None]:
 @dataclass(frozen=True)
 class Draw:
     """One display of those that it may be: with other values and laws, its force (N), the pad's
-    softness (0: all ridges at one mean gap, 1: each at its own balance), the slip of its gas."""
+    softness (0: all ridges at one mean gap, 1: each at its own balance), the slip of its gas; of a
+    calibrated one the amplitude relative to the solved one, and what is added to friction."""
 
     display: Display
     normal_force: si.Newton
     skin_compliance: si.Dimensionless
     slip: str
     heights: str
+    amplitude_share: si.Dimensionless = 1.0
+    friction_offset: si.Dimensionless = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +161,9 @@ class Mixture:
                 for one in parameters
                 if not one.path.endswith((TANGENTIAL_RATIO, "friction_coefficient"))
             )
-        self.inputs: tuple[Input, ...] = parameters + model_choices(display, sheared=sheared)
+        self.inputs: tuple[Input, ...] = calibrated_inputs(
+            parameters + model_choices(display, sheared=sheared), display.joint, driven=driven
+        )
         # Laws of contact are compared at what a plateau carries as described.
         self._pressure = display.finger.plateau_pressure()
         self.paths = tuple(one.path for one in self.inputs)
@@ -196,7 +206,8 @@ class Mixture:
         p = self.prediction
         force = values.get(FORCE, p.normal_force)
         compliance = values.get(SKIN_COMPLIANCE, 1.0)
-        rest = {k: v for k, v in values.items() if k not in (FORCE, SKIN_COMPLIANCE)}
+        beside = (FORCE, SKIN_COMPLIANCE, AMPLITUDE_SHARE, FRICTION_OFFSET)
+        rest = {k: v for k, v in values.items() if k not in beside}
         here = with_values(self.display, rest)
         changes: dict[str, object] = {
             path.split(".")[-1]: chosen[path] for path in (SHEAR, MOISTURE) if path in chosen
@@ -209,7 +220,16 @@ class Mixture:
             changes["shear_strength"] = None
         finger = dataclasses.replace(here.finger, **changes)  # type: ignore[arg-type]
         here = dataclasses.replace(here, finger=finger)
-        return Draw(here, force, compliance, chosen.get(SLIP, p.law.slip), heights)
+        joint = self.display.joint
+        return Draw(
+            here,
+            force,
+            compliance,
+            chosen.get(SLIP, p.law.slip),
+            heights,
+            values.get(AMPLITUDE_SHARE, 1.0 if joint is None else joint.amplitude_share),
+            values.get(FRICTION_OFFSET, 0.0 if joint is None else joint.friction_offset),
+        )
 
     def mode(self, draw: Draw) -> WorkingMode:
         """The working mode of a draw: as described, but for its quality factor."""
@@ -279,7 +299,7 @@ def outcome_of(
 ) -> Outcome:
     """What comes of a draw at an amplitude (m) without its finger; `settled` as `touch` has its
     tolerance."""
-    law = mixture.law(draw)
+    law, free_amplitude = mixture.law(draw), free_amplitude * draw.amplitude_share
     amplitude, power, known = free_amplitude, None, None
     if mixture.prediction.voltage is not None and mixture.prediction.mode.modal_mass is not None:
         felt = touch(mixture.mode(draw), law, free_amplitude, tolerance=settled)
@@ -296,7 +316,8 @@ def between_limits(
 
     At a place what a stiff pad differs by from ridges that sink each by themselves is taken from an
     even wave of the same amplitude: on the solved shape the one ridge that moves most would press
-    a pad at one mean gap through, and so refuse draws for what no real skin is.
+    a pad at one mean gap through, and so refuse draws for what no real skin is. What a calibration
+    found the laws to be off by is added where a finger still feels something.
     """
 
     def limit(of: FrictionLaw, name: Limit) -> si.DimensionlessArray:
@@ -304,12 +325,14 @@ def between_limits(
             return known.relative_friction
         return of.sharing(amplitude, name).relative_friction
 
-    own, soft = limit(law, "own"), draw.skin_compliance
-    if soft == 1:
-        return own
-    even = law.on_even_wave
-    alike = own if even is law else limit(even, "own")
-    return np.clip(own + (1 - soft) * (limit(even, "one-gap") - alike), 0.0, 1.0)
+    found, soft = limit(law, "own"), draw.skin_compliance
+    if soft < 1:
+        even = law.on_even_wave
+        alike = found if even is law else limit(even, "own")
+        found = np.clip(found + (1 - soft) * (limit(even, "one-gap") - alike), 0.0, 1.0)
+    if draw.friction_offset:
+        found = np.clip(found + draw.friction_offset, 0.0, np.maximum(found, 1.0))
+    return found
 
 
 # How far the discs are from the described one that say how each number moves the amplitude.

@@ -234,15 +234,21 @@ def _design(mixture: Mixture, samples: int, seed: int) -> si.FloatArray:
         ~np.zeros_like(measurable),
     ]
     taken += [measurable, ~measurable]
-    return np.stack([np.where(one, b, a) for one in taken], axis=1)
+    design = np.stack([np.where(one, b, a) for one in taken], axis=1)
+    joint = mixture.display.joint
+    if joint is None:
+        return design
+    return joint.moved(mixture.paths, design.reshape(-1, len(inputs))).reshape(design.shape)
 
 
 def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
     """Scrambled Sobol' points of a mixture's unit cube, shape (count, inputs); `count` a power of
-    two."""
+    two. Of a calibrated display what was calibrated is drawn from its table."""
     from scipy.stats import qmc
 
-    return np.asarray(qmc.Sobol(len(mixture.inputs), rng=seed).random(count))
+    points = np.asarray(qmc.Sobol(len(mixture.inputs), rng=seed).random(count))
+    joint = mixture.display.joint
+    return points if joint is None else joint.picked(mixture.paths, points)
 
 
 @as_drawn()

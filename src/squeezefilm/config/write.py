@@ -6,32 +6,35 @@ import dataclasses
 import json
 import math
 import typing
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Set
 from decimal import Decimal
 from typing import Any
 
 from squeezefilm import quantities as si
+from squeezefilm.config.provenance import Provenance, read_only
 from squeezefilm.config.scan import DEEPEST
 from squeezefilm.config.schema import reads_from_file
+from squeezefilm.distributions import Normal
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES, require_within
 
 _Path = tuple[str, ...]
+_NO_SOURCES: Mapping[str, Provenance] = read_only({})
 
 
-def text_of(value: Any) -> str:
+def text_of(value: Any, sources: Mapping[str, Provenance] = _NO_SOURCES) -> str:
     """The TOML text of a frozen dataclass: `load_text(type(value), text_of(value)) == value`.
 
     Quantities are written with a readable unit and every digit they have ("0.4 mm"); keys at
-    their default are left out, but for a union's `type`. Sources of values (`provenance`) are not
-    written.
+    their default are left out, but for a union's `type`. Where values are from is written for those
+    in `sources`, by dotted path as `provenance` has them, with their spread.
 
     Raises:
         InputError: a value that has no place in a file: no dataclass, a number that is not finite,
             or more text than a file may have.
     """
     lines: list[str] = []
-    _table(value, (), lines)
+    _table(value, (), lines, sources, "")
     text = "\n".join(lines).strip("\n") + "\n"
     try:
         size = len(text.encode("utf-8"))
@@ -41,36 +44,68 @@ def text_of(value: Any) -> str:
     return text
 
 
-def _table(value: Any, path: _Path, lines: list[str]) -> None:
-    """The keys of a dataclass, then its tables, each below its own header."""
+def _table(
+    value: Any, path: _Path, lines: list[str], sources: Mapping[str, Provenance], at: str
+) -> None:
+    """The keys of a dataclass, then its tables, each below its own header; `at` is the dotted path
+    of its keys, with a dot at its end."""
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         raise InputError(f"{value!r} is no dataclass and cannot be written")
     # A name may stand for a list and the table in it; a line holds up to four more.
     if 2 * len(path) + 4 > DEEPEST:
         raise InputError(f"it is nested {len(path)} tables deep, too deep to be read; nest less")
     tables: list[tuple[str, Any]] = []
-    for name, item, hint in _written(value):
+    stated = {one.removeprefix(at) for one in sources if one.startswith(at)}
+    for name, item, hint in _written(value, stated):
         if _holds_tables(item) and not _fits_a_line(item):
             tables.append((name, item))
         else:
-            lines.append(f"{name} = {_inline(item, hint)}")
+            text = _inline(item, hint)
+            if name in stated:
+                text = _with_source(text, item, hint, sources[at + name])
+            lines.append(f"{name} = {text}")
     for name, item in tables:
         here = (*path, name)
         if isinstance(item, tuple):
-            for one in item:
+            for number, one in enumerate(item):
                 lines.extend(["", f"[[{'.'.join(here)}]]"])
-                _table(one, here, lines)
+                _table(one, here, lines, sources, f"{at}{name}.{number}.")
         else:
             lines.extend(["", f"[{'.'.join(here)}]"])
-            _table(item, here, lines)
+            _table(item, here, lines, sources, f"{at}{name}.")
 
 
-def _written(value: Any) -> Iterator[tuple[str, Any, Any]]:
-    """Name, value and annotation of the fields that are written, the `type` first."""
+def _with_source(text: str, value: Any, hint: Any, source: Provenance) -> str:
+    """The inline table of a value that says where it is from and how sure it is."""
+    pairs = [f"value = {text}"]
+    if source.source:
+        pairs.append(f"source = {_inline(source.source, str)}")
+    pairs.append(f'evidence = "{source.evidence}"')
+    unit = si.unit_of(hint)
+    if source.distribution is not None and unit is not None:
+        if isinstance(source.distribution, Normal) and source.distribution.mean == value:
+            spread = _as_text(source.distribution.standard_deviation, unit)
+            pairs.append(f"uncertainty = {spread}")
+        else:
+            low, high = (_as_text(end, unit) for end in source.distribution.support)
+            pairs.append(f"range = [{low}, {high}]")
+    return "{ " + ", ".join(pairs) + " }"
+
+
+def _as_text(value: float, unit: si.Unit) -> str:
+    """A quantity as a text, one without a unit too."""
+    text = _quantity(value, unit)
+    return text if text.startswith('"') else f'"{text}"'
+
+
+def _written(value: Any, stated: Set[str] = frozenset()) -> Iterator[tuple[str, Any, Any]]:
+    """Name, value and annotation of the fields that are written, the `type` first; those with a
+    `stated` source even at their default."""
     hints = typing.get_type_hints(type(value), include_extras=True)
     for field in sorted(dataclasses.fields(value), key=lambda one: one.name != "type"):
         item = getattr(value, field.name)
-        if reads_from_file(field) and (field.name == "type" or not _is_default(field, item)):
+        kept = field.name == "type" or field.name in stated or not _is_default(field, item)
+        if reads_from_file(field) and kept and item is not None:
             yield field.name, item, hints[field.name]
 
 

@@ -1,0 +1,325 @@
+"""Predictions that are written before the data are opened, and scored after.
+
+A prediction's file ends with the SHA-256 of its own content. A change after the data are known is
+seen, whoever makes it, where that number was shown to others before.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.intervals import LEVEL
+from squeezefilm.analysis.uncertainty import sobol_points
+from squeezefilm.chain.prediction import predict
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import DESCRIPTION_BYTES
+from squeezefilm.measure.calibration.calibration import Calibration
+from squeezefilm.measure.calibration.discrepancy import BELIEVED, scale_of
+from squeezefilm.measure.calibration.friction_likelihood import GRID, touching
+from squeezefilm.measure.calibration.friction_posterior import finger_mixture, friction_of_points
+from squeezefilm.measure.calibration.plate_fit import prior_scores
+from squeezefilm.measure.calibration.priors import (
+    NormalScores,
+    calibration_parameters,
+    with_calibrated,
+)
+from squeezefilm.measure.calibration.solved_answers import FRICTION, asked_by, solved_answers
+from squeezefilm.measure.calibration.written_display import calibrated_display
+from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.progress import SayProgress
+from squeezefilm.regular_file import read_regular_text
+from squeezefilm.results import stamp, to_json, write_whole
+
+KIND = "squeezefilm blind prediction"
+_SOLVED, _FRICTION = 32, 256
+_TAILS = ((1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2)
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """One predicted number: `answer` and `conditions` as an `Observation` has them (SI), median,
+    interval at `level`, and the standard deviation of its draws."""
+
+    answer: str
+    conditions: dict[str, float]
+    median: float
+    interval: tuple[float, float]
+    standard_deviation: float
+    level: si.Dimensionless = LEVEL
+
+
+@dataclass(frozen=True)
+class BlindPrediction:
+    """A prediction as its file has it: of which display, how it was made, and its SHA-256."""
+
+    display: str
+    how: str
+    predictions: tuple[Predicted, ...]
+    stamp: dict[str, Any]
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Score:
+    """One predicted number beside what was measured.
+
+    `error` is predicted median less measured, relative to the measured value (absolute for µ′/µ);
+    `inside` whether the interval holds the measured value; `log_score` the logarithm of the
+    predicted density there, as a normal one with the measurement's own error (higher is better).
+    """
+
+    predicted: Predicted
+    observation: Observation
+    error: si.Dimensionless
+    inside: bool
+    log_score: float
+
+    @property
+    def sentence(self) -> str:
+        """As one says it."""
+        low, high = self.predicted.interval
+        absolute = self.observation.answer == FRICTION
+        error = f"{self.error:+.3f}" if absolute else f"{100 * self.error:+.2g} %"
+        where = "inside" if self.inside else "outside of"
+        return (
+            f"{self.observation.answer.replace('_', ' ')}: predicted {self.predicted.median:.5g} "
+            f"({low:.5g} to {high:.5g}), measured {self.observation.value:.5g} (SI): "
+            f"error {error}, {where} the {si.percent(self.predicted.level)} interval, log score "
+            f"{self.log_score:.2f}"
+        )
+
+
+def predict_blind(
+    source: Display | Calibration,
+    what: Sequence[Observation],
+    path: str | Path,
+    *,
+    seed: int = 1,
+    progress: SayProgress | None = None,
+) -> BlindPrediction:
+    """Write a prediction of what will be measured, before it is.
+
+    `what` names the answers and their conditions; the values in them are ignored (leave them 0). Of
+    a calibration its own draws predict the plate, of a display plates drawn from its spreads, each
+    with what a model is believed to be off by. The file is JSON, in SI units, never overwritten.
+
+    Raises `InputError` where nothing is asked, an answer is not known, or the file is there
+    already.
+    """
+    target = Path(path)
+    if target.exists():
+        raise InputError(
+            f"{target} is there already; a prediction is never overwritten, name another"
+        )
+    if not what:
+        raise InputError("nothing is to be predicted; name at least one answer")
+    for one in what:
+        _ = _asked_friction(one) if one.answer == FRICTION else asked_by(one)
+    tell = progress or (lambda _: None)
+    display = source if isinstance(source, Display) else calibrated_display(source)
+    how = (
+        f"plates drawn from the spreads in the description of {display.name}"
+        if isinstance(source, Display)
+        else f"the calibration of {display.name} on {len(source.observations)} observations"
+    )
+    rows = _of_friction(display, [one for one in what if one.answer == FRICTION], seed, tell) | (
+        _of_plate(display, what, seed, tell)
+        if isinstance(source, Display)
+        else _of_calibration(source, what)
+    )
+    predictions = tuple(_predicted(one, rows[id(one)]) for one in what)
+    whole = BlindPrediction(display.name, how, predictions, stamp(display, seed), "")
+    content = {"kind": KIND, **to_json(whole)}
+    content["sha256"] = _digest(content)
+    write_whole(target, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+    return load_prediction(target)
+
+
+def _asked_friction(one: Observation) -> object:
+    return touching(Observation(one.answer, one.value, 1.0, one.conditions))
+
+
+def _predicted(one: Observation, draws: si.FloatArray) -> Predicted:
+    known = draws[np.isfinite(draws)]
+    if known.size < 0.5 * draws.size:
+        raise InputError(
+            f"{one.answer.replace('_', ' ')} has no value in most draws; ask for another condition"
+        )
+    low, middle, high = (float(value) for value in np.quantile(known, _TAILS))
+    return Predicted(one.answer, dict(one.conditions), middle, (low, high), float(np.std(known)))
+
+
+def _of_calibration(source: Calibration, what: Sequence[Observation]) -> dict[int, si.FloatArray]:
+    found = {}
+    for one in what:
+        if one.answer != FRICTION:
+            try:
+                found[id(one)] = source.answer(asked_by(one))
+            except KeyError as error:
+                known = ", ".join(asked.said for asked in source.joint.asked)
+                raise InputError(
+                    f"the calibration did not compute the {asked_by(one).said}; it has: {known}"
+                ) from error
+    return found
+
+
+def _of_plate(
+    display: Display, what: Sequence[Observation], seed: int, tell: SayProgress
+) -> dict[int, si.FloatArray]:
+    """Answers of plates drawn from the display's spreads, with what a model may be off by."""
+    wanted = [one for one in what if one.answer != FRICTION]
+    if not wanted:
+        return {}
+    asked = tuple(dict.fromkeys(asked_by(one) for one in wanted))
+    scores = NormalScores(calibration_parameters(display))
+    rows = scores.values(prior_scores(len(scores.parameters), _SOLVED, seed))
+    paths = [one.path for one in scores.parameters]
+    drawn = []
+    for number, row in enumerate(rows, 1):
+        tell(f"plate {number} of {len(rows)}")
+        made = with_calibrated(display, dict(zip(paths, row.tolist(), strict=True)))
+        drawn.append(solved_answers(made.actuator, asked).values)
+    random = np.random.default_rng(seed)
+    # Many errors of the model for each solved plate: these are cheap.
+    many = np.repeat(np.array(drawn), 32, axis=0)
+    off = scale_of(random.normal(size=len(many)))
+    found = {}
+    for one in wanted:
+        column = many[:, asked.index(asked_by(one))]
+        error = off * BELIEVED[one.answer] * random.normal(size=len(many))
+        found[id(one)] = column * np.exp(error)
+    return found
+
+
+def _of_friction(
+    display: Display, wanted: Sequence[Observation], seed: int, tell: SayProgress
+) -> dict[int, si.FloatArray]:
+    """µ′/µ of draws of finger and laws, with the laws' error: what a calibration found of it, or
+    what is believed of laws nobody compared with anything."""
+    if not wanted:
+        return {}
+    mixture = finger_mixture(display, predict(display))
+    where = tuple(touching(Observation(FRICTION, 0.5, 1.0, one.conditions)) for one in wanted)
+    curves = friction_of_points(mixture, sobol_points(mixture, _FRICTION, seed), where, tell)
+    random, joint = np.random.default_rng(seed), display.joint
+    if joint is not None and joint.friction_offset_deviation > 0:
+        middle, spread = joint.friction_offset, joint.friction_offset_deviation
+        off = random.normal(middle, spread, len(curves))
+    else:
+        scale = random.choice(GRID, len(curves))
+        off = scale * BELIEVED[FRICTION] * random.normal(size=len(curves))
+    curves = np.clip(curves + off[:, None], 0.0, 1.2)
+    return {id(one): curves[:, k] for k, one in enumerate(wanted)}
+
+
+def _digest(content: dict[str, Any]) -> str:
+    rest = {key: value for key, value in content.items() if key != "sha256"}
+    text = json.dumps(rest, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def load_prediction(path: str | Path) -> BlindPrediction:
+    """The prediction in a file of `predict_blind`.
+
+    Raises `InputError` for a file that is none, or whose content is not what its SHA-256 says.
+    """
+    try:
+        content = json.loads(read_regular_text(path, DESCRIPTION_BYTES, "prediction"))
+        if content["kind"] != KIND:
+            raise ValueError
+        found = BlindPrediction(
+            str(content["display"]),
+            str(content["how"]),
+            tuple(_read(one) for one in content["predictions"]),
+            dict(content["stamp"]),
+            str(content["sha256"]),
+        )
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(
+            f"{path} is no prediction of squeezefilm; write one with measure predict"
+        ) from error
+    if _digest(content) != found.sha256:
+        raise InputError(
+            f"{path} was changed after it was written: its content's SHA-256 is "
+            f"{_digest(content)[:16]}…, the file says {found.sha256[:16]}…. It is not scored; a "
+            "prediction counts as it was made"
+        )
+    return found
+
+
+def _read(row: dict[str, Any]) -> Predicted:
+    low, high = row["interval"]
+    return Predicted(
+        str(row["answer"]),
+        {str(key): float(value) for key, value in row["conditions"].items()},
+        float(row["median"]),
+        (float(low), float(high)),
+        float(row["standard_deviation"]),
+        float(row["level"]),
+    )
+
+
+def score(path: str | Path, observations: Sequence[Observation]) -> tuple[Score, ...]:
+    """Compare a prediction's file with what was measured; both the file's numbers and the data stay
+    as they are.
+
+    Conditions must be those that were predicted, within 1 %. Raises `InputError` as
+    `load_prediction`, or where no observation is of anything that was predicted.
+    """
+    prediction = load_prediction(path)
+    found = []
+    for one in prediction.predictions:
+        for seen in observations:
+            if seen.answer == one.answer and _alike(one.conditions, seen.conditions):
+                found.append(_scored(one, seen))
+    if not found:
+        predicted = ", ".join(one.answer for one in prediction.predictions)
+        measured = ", ".join(one.answer for one in observations) or "nothing"
+        raise InputError(
+            f"nothing that was measured ({measured}) is what was predicted ({predicted}, under its "
+            "conditions); give the recording that the prediction was made for"
+        )
+    return tuple(found)
+
+
+def _alike(predicted: dict[str, float], seen: Any) -> bool:
+    return all(
+        key in seen and math.isclose(value, seen[key], rel_tol=0.01)
+        for key, value in predicted.items()
+    )
+
+
+def _scored(one: Predicted, seen: Observation) -> Score:
+    spread = math.hypot(one.standard_deviation, seen.standard_error)
+    off = (seen.value - one.median) / spread
+    absolute = seen.answer == FRICTION
+    return Score(
+        one,
+        seen,
+        (one.median - seen.value) / (1.0 if absolute else seen.value),
+        one.interval[0] <= seen.value <= one.interval[1],
+        -(off**2) / 2 - math.log(spread * math.sqrt(2 * math.pi)),
+    )
+
+
+def keep_scores(display: str | Path, prediction: str | Path, scores: Sequence[Score]) -> None:
+    """Add a prediction and its scores to a display's TOML file, as comments at its end.
+
+    Raises `InputError` for a file that cannot be read or written.
+    """
+    target = Path(display)
+    known = load_prediction(prediction)
+    lines = [f"# blind prediction {Path(prediction).name}, SHA-256 {known.sha256}, {known.how}:"]
+    lines += [f"#   {one.sentence}" for one in scores]
+    text = read_regular_text(target, DESCRIPTION_BYTES, "display")
+    write_whole(target, text.rstrip("\n") + "\n\n" + "\n".join(lines) + "\n")

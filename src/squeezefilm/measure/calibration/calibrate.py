@@ -1,0 +1,359 @@
+"""`calibrate`: from a described display and what was observed of it to a calibrated one."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, between_limits
+from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, quantiles
+from squeezefilm.analysis.uncertainty import evaluate, sobol_points
+from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.chain.touch import touch
+from squeezefilm.display import Display
+from squeezefilm.distributions import Distribution
+from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.measure.calibration.calibration import (
+    CalibratedValue,
+    Calibration,
+    FrictionInterval,
+    Joint,
+    NextMeasurement,
+)
+from squeezefilm.measure.calibration.friction_likelihood import FrictionLikelihood, Touching
+from squeezefilm.measure.calibration.friction_posterior import (
+    DRAWS,
+    FEWEST,
+    FrictionDraws,
+    FrictionPosterior,
+    finger_mixture,
+    friction_of_points,
+    friction_posterior,
+)
+from squeezefilm.measure.calibration.identified import Identification, identification
+from squeezefilm.measure.calibration.next_measurement import (
+    candidates,
+    friction_candidate,
+    ranked,
+)
+from squeezefilm.measure.calibration.plate_fit import WORKING, PlateFit, fitted_plate
+from squeezefilm.measure.calibration.priors import calibration_parameters, with_calibrated
+from squeezefilm.measure.calibration.solved_answers import FRICTION, MODE_FREQUENCY
+from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.plate.layout import AnnularStator
+from squeezefilm.plate.working_mode import WorkingMode
+from squeezefilm.progress import SayProgress
+
+_JOINT = 1024
+_BEFORE = 256
+_TAILS = ((1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2)
+
+
+class Effort(NamedTuple):
+    """How much is computed: plates over the priors and where the data point (None: by the number of
+    parameters), draws of finger and laws, joint draws for friction's interval."""
+
+    plates: tuple[int, int] | None = None
+    finger_draws: Annotated[int, si.AtLeast(32)] = DRAWS
+    joint_draws: Annotated[int, si.AtLeast(32)] = _JOINT
+
+
+USUAL_EFFORT = Effort()
+
+
+def calibrate(
+    display: Display,
+    observations: Sequence[Observation],
+    *,
+    parameters: Mapping[str, Distribution | None] | None = None,
+    seed: int = 1,
+    progress: SayProgress | None = None,
+    effort: Effort = USUAL_EFFORT,
+) -> Calibration:
+    """What observations say of a display: values with spreads, laws, friction's interval.
+
+    `observations` may be of the plate or disc (`solved_answers.PLATE_ANSWERS`, and
+    `mode_frequency` of a mode by its nodal lines) and of µ′/µ at a vibration amplitude, normal
+    force and finger speed. `parameters` are those of the actuator to move
+    (`priors.calibration_parameters`); of finger, surface, gas and laws all that is uncertain is
+    drawn. Some two to four minutes for eight parameters; solved plates and draws are kept on disk,
+    so that what was interrupted goes on. Valid for linear vibration near the described display: no
+    parameter leaves its prior.
+
+    Raises `InputError` where nothing was observed or an observation has no answer, and what the
+    solvers raise.
+    """
+    every = tuple(observations)
+    if not every:
+        raise InputError("nothing was observed; give at least one observation")
+    tell = progress or (lambda _: None)
+    of_friction = tuple(one for one in every if one.answer == FRICTION)
+    of_plate = tuple(one for one in every if one.answer != FRICTION)
+    likelihood = FrictionLikelihood(of_friction)
+    _ = likelihood.where  # refused before any long work
+    if of_plate and isinstance(display.actuator, AnnularStator):
+        calibration_parameters(display)
+    plate = None
+    if of_plate:
+        chosen = calibration_parameters(display, parameters)
+        plate = fitted_plate(
+            display, chosen, of_plate, seed=seed, size=effort.plates, progress=progress
+        )
+    calibrated = display if plate is None else with_calibrated(display, plate.middle)
+    tell("friction as described")
+    before = friction_before(display, seed)
+    finger = _fitted_finger(calibrated, likelihood, effort, seed, tell)
+    tell("friction with what was measured")
+    made = _joint(finger, plate, effort.joint_draws, seed)
+    return _calibration(display, calibrated, every, plate, finger, before, made, seed, tell)
+
+
+def friction_before(display: Display, seed: int) -> FrictionInterval | None:
+    """µ′/µ of a display as described with its interval, as `analysis.uncertainty` draws it; None
+    where more than 2 % of the draws have no friction."""
+    prediction = predict(display)
+    mixture = Mixture(display, prediction, driven=prediction.voltage is not None)
+    drawn, refused = evaluate(mixture, sobol_points(mixture, _BEFORE, seed), lambda _: None)
+    if refused.share > MOST_REFUSED:
+        return None
+    low, middle, high = (float(one) for one in quantiles(drawn.friction))
+    return FrictionInterval(middle, (low, high), float(np.nanmedian(drawn.amplitude)))
+
+
+class _Finger(NamedTuple):
+    """Draws of finger and laws, from the posterior where friction was observed, else the priors."""
+
+    prediction: Prediction
+    mixture: Mixture
+    likelihood: FrictionLikelihood
+    posterior: FrictionPosterior | None
+    points: si.DimensionlessArray
+    draws: FrictionDraws | None
+
+
+def _fitted_finger(
+    display: Display, likelihood: FrictionLikelihood, effort: Effort, seed: int, tell: SayProgress
+) -> _Finger:
+    prediction = predict(display)
+    mixture = finger_mixture(display, prediction)
+    if not likelihood.observations:
+        points = sobol_points(mixture, effort.joint_draws, seed)
+        return _Finger(prediction, mixture, likelihood, None, points, None)
+    posterior = friction_posterior(
+        mixture, likelihood, seed=seed, draws=effort.finger_draws, progress=tell
+    )
+    draws = posterior.resampled(effort.joint_draws, seed)
+    return _Finger(prediction, mixture, likelihood, posterior, draws.points, draws)
+
+
+class _Made(NamedTuple):
+    joint: Joint
+    with_finger: si.MetreArray
+
+
+@as_drawn()
+def _joint(finger: _Finger, plate: PlateFit | None, count: int, seed: int) -> _Made:
+    """Draws of plate and finger at once, with what comes of them at the display's voltage."""
+    from scipy.special import ndtri
+
+    random = np.random.default_rng(seed)
+    p, volts = finger.prediction, finger.prediction.voltage
+    found = np.full((count, 2), np.nan)
+    free = np.full(count, p.touch.free_amplitude)
+    modes: list[WorkingMode] = [p.mode] * count
+    rows = np.zeros(count, dtype=int)
+    if plate is not None:
+        rows = random.integers(len(plate.posterior.scores), size=count)
+        answers = [plate.predictive.of(one)[rows] for one in WORKING]
+        free = answers[1] * (volts or 0.0) if volts is not None else free
+        modes = [
+            dataclasses.replace(p.mode, amplitude_per_volt=float(a), quality_factor=float(q))
+            for _, a, q in zip(*answers, strict=True)
+        ]
+    for number, draw in enumerate(finger.mixture.draws(finger.points)):
+        try:
+            found[number] = _felt(finger.mixture, draw, modes[number], float(free[number]))
+        except SqueezefilmError:
+            continue
+    amplitude, friction = found.T
+    alone = friction
+    if finger.draws is not None:
+        where = (Touching(float(np.nanmedian(amplitude))),)
+        friction = finger.draws.with_error(friction[:, None], where, seed)[:, 0]
+    scores = ndtri(np.clip(finger.points, 1e-9, 1 - 1e-9))
+    joint = Joint(
+        () if plate is None else plate.paths,
+        np.zeros((count, 0)) if plate is None else plate.posterior.scores[rows],
+        finger.mixture.paths,
+        scores,
+        () if plate is None else plate.predictive.asked,
+        np.zeros((count, 0)) if plate is None else plate.predictive.values[rows],
+        free,
+        friction,
+        friction - alone,
+    )
+    return _Made(joint, amplitude)
+
+
+def _felt(mixture: Mixture, draw: Draw, mode: WorkingMode, free: si.Metre) -> tuple[float, float]:
+    """The amplitude (m) that a drawn finger leaves, and µ′/µ there."""
+    law = mixture.law(draw)
+    if mixture.prediction.voltage is None or mode.modal_mass is None:
+        return free, float(between_limits(law, draw, np.array([free]))[0])
+    felt = touch(mode, law, free, tolerance=1e-4)
+    friction = between_limits(law, draw, np.array([felt.amplitude]), felt.sharing)
+    return felt.amplitude, float(friction[0])
+
+
+def _calibration(
+    described: Display,
+    calibrated: Display,
+    observations: tuple[Observation, ...],
+    plate: PlateFit | None,
+    finger: _Finger,
+    before: FrictionInterval | None,
+    made: _Made,
+    seed: int,
+    tell: SayProgress,
+) -> Calibration:
+    joint, refused = made.joint, float(np.mean(~np.isfinite(made.joint.friction)))
+    after = None
+    if refused <= MOST_REFUSED:
+        low, middle, high = (float(one) for one in quantiles(joint.friction))
+        after = FrictionInterval(middle, (low, high), float(np.nanmedian(made.with_finger)))
+    misfits = [] if plate is None else [plate.posterior.misfit]
+    misfits += [] if finger.posterior is None else [finger.posterior.misfit]
+    tell("what to measure next")
+    errors = {} if plate is None else _errors(plate)
+    return Calibration(
+        described=described,
+        display=calibrated,
+        observations=observations,
+        values=_values(plate, finger, joint),
+        identification=_identified(plate, finger),
+        laws={} if finger.posterior is None else {k: v for k, _, v in finger.posterior.shares()},
+        misfits=tuple(misfits),
+        before=before,
+        after=after,
+        next_measurements=() if after is None else _next(finger, joint, made, observations, seed),
+        emulator_errors=errors,
+        solves=0 if plate is None else plate.solves,
+        seed=seed,
+        doubts=_doubts(plate, finger, refused),
+        joint=joint,
+    )
+
+
+def _errors(plate: PlateFit) -> dict[str, float]:
+    pairs = zip(plate.problem.asked, plate.problem.emulator.errors.tolist(), strict=True)
+    return {asked.said: error for asked, error in pairs}
+
+
+def _doubts(plate: PlateFit | None, finger: _Finger, refused: float) -> tuple[str, ...]:
+    found = []
+    if plate is not None and plate.posterior.effective < 200:
+        found.append(
+            f"The draws of the plate are worth {plate.posterior.effective:.0f} independent ones "
+            "only; the ends of its intervals are rough."
+        )
+    if finger.posterior is not None and finger.posterior.effective < FEWEST:
+        found.append(
+            f"The draws of finger and laws are worth {finger.posterior.effective:.0f} independent "
+            "ones only: the observations of friction are sharper than what was drawn. The ends of "
+            "friction's interval are rough; draw more."
+        )
+    if refused > MOST_REFUSED:
+        found.append(
+            f"{si.percent(refused, 1)} of the draws have no friction at this voltage, so it is "
+            "given no interval."
+        )
+    return tuple(found)
+
+
+def _values(plate: PlateFit | None, finger: _Finger, joint: Joint) -> tuple[CalibratedValue, ...]:
+    """Plate and finger before and after."""
+    from scipy.special import ndtr
+
+    found = []
+    if plate is not None:
+        after = plate.problem.scores.values(plate.posterior.scores)
+        for k, one in enumerate(plate.problem.scores.parameters):
+            left = float(np.std(plate.posterior.scores[:, k]))
+            found.append(_value(one.path, one.unit, one.distribution, after[:, k], left))
+    if finger.posterior is not None:
+        share = ndtr(joint.finger)
+        for k, item in enumerate(finger.mixture.inputs):
+            distribution = getattr(item, "distribution", None)
+            if distribution is not None:
+                drawn = np.array(item.drawn(share[:, k]), dtype=float)
+                unit = getattr(item, "unit", si.Unit("1"))
+                left = float(np.std(joint.finger[:, k]))
+                found.append(_value(item.path, unit, distribution, drawn, left))
+    return tuple(found)
+
+
+def _value(
+    path: str, unit: si.Unit, prior: Distribution, after: si.FloatArray, left: float
+) -> CalibratedValue:
+    low, middle, high = (float(one) for one in np.quantile(after, _TAILS))
+    ends = prior.quantile(np.array([_TAILS[0], _TAILS[-1]]))
+    return CalibratedValue(
+        path,
+        unit,
+        (float(ends[0]), float(ends[1])),
+        middle,
+        float(np.std(after)),
+        (low, high),
+        min(left, 1.0),
+    )
+
+
+def _identified(plate: PlateFit | None, finger: _Finger) -> Identification:
+    parts = []
+    if plate is not None:
+        parts.append(identification(plate.paths, plate.posterior.scores))
+    if finger.posterior is not None:
+        from scipy.special import ndtri
+
+        scores = ndtri(np.clip(finger.posterior.points, 1e-9, 1 - 1e-9))
+        parts.append(
+            identification(finger.mixture.paths, scores, finger.posterior.weights.sum(axis=1))
+        )
+    return Identification(
+        tuple(one for part in parts for one in part.known),
+        tuple(one for part in parts for one in part.combinations),
+    )
+
+
+def _next(
+    finger: _Finger, joint: Joint, made: _Made, observations: tuple[Observation, ...], seed: int
+) -> tuple[NextMeasurement, ...]:
+    """Candidates that were not measured yet, ranked."""
+    from scipy.special import ndtr
+
+    done = {one.answer for one in observations}
+    drawn = {
+        one.name: joint.answers[:, k]
+        for k, one in enumerate(joint.asked)
+        if one.name not in done or one.name == MODE_FREQUENCY
+    }
+    share = ndtr(joint.finger)
+    for k, item in enumerate(finger.mixture.inputs):
+        if getattr(item, "distribution", None) is not None:
+            drawn[item.path] = np.array(item.drawn(share[:, k]), dtype=float)
+    options = candidates(drawn)
+    amplitude = float(np.nanmedian(made.with_finger))
+    # The error of the law at the first is that in the joint draws, by the seed.
+    where = (Touching(amplitude), Touching(amplitude / 2))
+    curves = friction_of_points(finger.mixture, finger.points, where, lambda _: None)
+    if finger.draws is not None:
+        curves = finger.draws.with_error(curves, where, seed)
+    curves = np.where(np.isfinite(curves), curves, 1.0)
+    options += [
+        friction_candidate(curve, one.amplitude) for curve, one in zip(curves.T, where, strict=True)
+    ]
+    return ranked(joint.friction, options, seed=seed)

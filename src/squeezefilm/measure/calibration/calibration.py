@@ -1,0 +1,187 @@
+"""What a calibration found: parameters with their spreads, what is identified, friction's interval,
+and what to measure next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.intervals import LEVEL
+from squeezefilm.display import Display
+from squeezefilm.measure.calibration.discrepancy import Misfit
+from squeezefilm.measure.calibration.identified import Identification
+from squeezefilm.measure.calibration.solved_answers import Asked
+from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.results import to_json
+
+
+@dataclass(frozen=True)
+class CalibratedValue:
+    """One parameter before and after: the prior's interval at `LEVEL`, the posterior's median,
+    standard deviation and interval, all in `unit`; `left` is the share of the prior spread that is
+    left."""
+
+    path: str
+    unit: si.Unit
+    prior: tuple[float, float]
+    median: float
+    standard_deviation: float
+    interval: tuple[float, float]
+    left: si.Dimensionless
+
+    @property
+    def sentence(self) -> str:
+        """As one says it."""
+        middle, low, high = (
+            si.format_quantity(one, self.unit, 4).replace(" um", " µm")
+            for one in (self.median, *self.interval)
+        )
+        return f"{self.path} = {middle} ({low} to {high})"
+
+
+@dataclass(frozen=True)
+class FrictionInterval:
+    """µ′/µ at the display's own voltage, force and speed: median and interval at `LEVEL`.
+
+    `amplitude` (m, median, with the finger on) is what it belongs to.
+    """
+
+    median: si.Dimensionless
+    interval: tuple[si.Dimensionless, si.Dimensionless]
+    amplitude: si.Metre
+
+    @property
+    def width(self) -> si.Dimensionless:
+        """High less low."""
+        return self.interval[1] - self.interval[0]
+
+
+@dataclass(frozen=True)
+class NextMeasurement:
+    """A measurement that could be made next: what, how well (in its own unit, in words), and what
+    share of friction's interval it is expected to leave."""
+
+    name: str
+    accuracy: str
+    left: si.Dimensionless
+
+    @property
+    def sentence(self) -> str:
+        """As one says it."""
+        return (
+            f"{self.name} (to {self.accuracy}) is expected to leave {si.percent(self.left)} of the "
+            "interval of friction"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """Draws of everything at once, in scores: `plate` (draws, parameters), `finger` (draws, inputs
+    of the mixture: `finger_paths`), with the bench's own answers (draws, asked; SI), free amplitude
+    and µ′/µ at the display's voltage (draws,), of which `law_error` (draws,) is what the laws
+    themselves are taken to be off by."""
+
+    plate_paths: tuple[str, ...]
+    plate: si.DimensionlessArray
+    finger_paths: tuple[str, ...]
+    finger: si.DimensionlessArray
+    asked: tuple[Asked, ...]
+    answers: si.FloatArray
+    amplitude: si.MetreArray
+    friction: si.DimensionlessArray
+    law_error: si.DimensionlessArray
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """A display after measurements: `display` has the posterior's means in place of its values.
+
+    `values` are the parameters of plate, finger and surface; `identification` says which of them
+    the data told; `laws` are the weights of each choice of a law after the data (before:
+    `analysis.model_choices`). `misfits` judge the plate's and the friction's observations.
+    `before` and `after` are friction's interval without and with what was measured;
+    `next_measurements` the candidates, most telling first. `emulator_errors` are the emulator's own
+    (relative, by answer), of `solves` plates. `doubts` are sentences that a reader must see.
+    """
+
+    described: Display
+    display: Display
+    observations: tuple[Observation, ...]
+    values: tuple[CalibratedValue, ...]
+    identification: Identification
+    laws: dict[str, dict[str, float]]
+    misfits: tuple[Misfit, ...]
+    before: FrictionInterval | None
+    after: FrictionInterval | None
+    next_measurements: tuple[NextMeasurement, ...]
+    emulator_errors: dict[str, si.Dimensionless]
+    solves: int
+    seed: int
+    doubts: tuple[str, ...]
+    joint: Joint
+
+    @property
+    def fits(self) -> bool:
+        """Whether the model explains all that was observed."""
+        return all(one.judgement == "fits" for one in self.misfits)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What came out, doubts first."""
+        said = [*self.doubts, *(one.sentence for one in self.misfits)]
+        if self.after is not None:
+            low, high = self.after.interval
+            words = f"µ′/µ = {self.after.median:.2f} ({low:.2f}–{high:.2f})"
+            if self.before is not None:
+                was = self.before.interval
+                left = si.percent(self.after.width / self.before.width)
+                words += (
+                    f"; without what was measured {self.before.median:.2f} "
+                    f"({was[0]:.2f}–{was[1]:.2f}): {left} of that interval is left"
+                )
+            said.append(f"{words}.")
+        said += self.identification.sentences
+        if self.next_measurements:
+            said.append(f"Next: {self.next_measurements[0].sentence}.")
+        return tuple(said)
+
+    def answer(self, asked: Asked) -> si.FloatArray:
+        """Draws of the bench's own answer (SI), shape (draws,). Raises `KeyError` for one that was
+        not computed."""
+        if asked not in self.joint.asked:
+            raise KeyError(asked.said)
+        return np.asarray(self.joint.answers[:, self.joint.asked.index(asked)])
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers for ``--json``."""
+        return {
+            "display": self.display.name,
+            "observations": to_json(self.observations),
+            "parameters": [
+                {
+                    "path": one.path,
+                    "unit": one.unit.symbol,
+                    "prior_interval": list(one.prior),
+                    "median": one.median,
+                    "standard_deviation": one.standard_deviation,
+                    "interval": list(one.interval),
+                    "share_of_prior_spread_left": one.left,
+                }
+                for one in self.values
+            ],
+            "combinations": to_json(self.identification.combinations),
+            "laws": to_json(self.laws),
+            "fits": self.fits,
+            "misfits": to_json(self.misfits),
+            "relative_friction_before": to_json(self.before),
+            "relative_friction": to_json(self.after),
+            "interval_level": LEVEL,
+            "measure_next": to_json(self.next_measurements),
+            "emulator_relative_errors": to_json(self.emulator_errors),
+            "solves": self.solves,
+            "seed": self.seed,
+            "said": list(self.sentences),
+        }

@@ -1,0 +1,275 @@
+"""What observations of µ′/µ say of a finger and of the laws: weighted draws.
+
+Draws of everything that `analysis.draws.Mixture` has uncertain (values, laws and mechanisms),
+first from the priors, then from a Gaussian about those that the observations speak for (in normal
+scores of the unit cube, mixed with the priors so that no weight runs away): adaptive importance
+sampling, Cappé et al. 2004, 10.1198/106186004X12803. The laws are weighted by it as values are.
+"""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+
+import squeezefilm
+from squeezefilm import quantities as si
+from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, between_limits
+from squeezefilm.chain.prediction import Prediction
+from squeezefilm.display import Display
+from squeezefilm.errors import OutOfRangeError, SqueezefilmError
+from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.measure.calibration.discrepancy import Misfit
+from squeezefilm.measure.calibration.friction_likelihood import (
+    GRID,
+    FrictionLikelihood,
+    Touching,
+)
+from squeezefilm.progress import SayProgress
+from squeezefilm.results import to_json
+
+DRAWS, ROUNDS = 2048, 2
+"""Draws from the priors, and how often half as many more are drawn where the observations point."""
+FEWEST: float = 60.0
+"""Independent draws that a friction posterior should be worth; fewer are told."""
+_DEFENSIVE = 0.25
+_WIDER = 1.3
+_CHUNK = 64
+_ROOT = Path(squeezefilm.__file__).parent
+_KEPT = KeptArrays(
+    "friction_draws", [_ROOT / room for room in ("analysis", "chain", "contact", "film")]
+)
+
+
+def finger_mixture(display: Display, prediction: Prediction) -> Mixture:
+    """All that is uncertain of finger, surface, gas and laws; the actuator stands still."""
+    mixture = copy.copy(Mixture(display, prediction, driven=True))
+    # A drawn actuator is the plate's posterior, which is drawn beside this one.
+    beside = ("actuator.", "joint.")
+    mixture.inputs = tuple(one for one in mixture.inputs if not one.path.startswith(beside))
+    mixture.paths = tuple(one.path for one in mixture.inputs)
+    return mixture
+
+
+def friction_of(mixture: Mixture, draw: Draw, where: tuple[Touching, ...]) -> si.DimensionlessArray:
+    """µ′/µ of a draw under each of some conditions, NaN where its contact is refused."""
+    found = np.full(len(where), np.nan)
+    law = mixture.law(draw)
+    for force, speed in dict.fromkeys((one.force, one.speed) for one in where):
+        rows = [k for k, one in enumerate(where) if (one.force, one.speed) == (force, speed)]
+        here = dataclasses.replace(
+            law,
+            normal_force=law.normal_force if force is None else force,
+            speed=law.speed if speed is None else speed,
+        )
+        try:
+            found[rows] = between_limits(here, draw, np.array([where[k].amplitude for k in rows]))
+        except SqueezefilmError:
+            continue
+    return found
+
+
+@as_drawn()
+def friction_of_points(
+    mixture: Mixture,
+    points: si.DimensionlessArray,
+    where: tuple[Touching, ...],
+    tell: SayProgress,
+) -> si.DimensionlessArray:
+    """`friction_of` at points of the mixture's unit cube, shape (points, conditions).
+
+    Kept on disk in pieces, so that what was interrupted goes on. `tell` is told some ten times.
+    """
+    found = np.empty((len(points), len(where)))
+    about = json.dumps(
+        [
+            to_json(mixture.display),
+            mixture.paths,
+            [one.spread for one in mixture.inputs],
+            mixture.prediction.frequency,
+            mixture.prediction.mode.half_wavelength,
+            mixture.model,
+            where,
+        ],
+        sort_keys=True,
+    )
+    for first in range(0, len(points), _CHUNK):
+        piece = points[first : first + _CHUNK]
+        question = f"{about} {piece.tobytes().hex()}"
+        kept = _KEPT.get(question, piece.shape[0] * len(where))
+        if kept is None:
+            if first % (4 * _CHUNK) == 0:
+                tell(f"friction of draw {first + 1} of {len(points)}")
+            kept = np.concatenate(
+                [friction_of(mixture, draw, where) for draw in mixture.draws(piece)]
+            )
+            _KEPT.put(question, kept)
+        found[first : first + len(piece)] = kept.reshape(len(piece), len(where))
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionPosterior:
+    """Draws of finger and laws: `points` of the mixture's unit cube (draws, inputs), `weights`
+    (draws, scales of `GRID`) that sum to 1, and their `curves` at the observed conditions.
+
+    `effective` is how many independent draws they are worth.
+    """
+
+    mixture: Mixture
+    likelihood: FrictionLikelihood
+    points: si.DimensionlessArray
+    weights: si.DimensionlessArray
+    curves: si.DimensionlessArray
+    misfit: Misfit
+
+    @property
+    def effective(self) -> float:
+        """1 / Σ w² of the draws' weights (Kong's effective sample size)."""
+        return float(1 / np.sum(self.weights.sum(axis=1) ** 2))
+
+    def resampled(self, count: Annotated[int, si.AtLeast(1)], seed: int) -> FrictionDraws:
+        """`count` draws with equal weights."""
+        random = np.random.default_rng(seed)
+        flat = self.weights.ravel()
+        # Systematic resampling: less noise than independent choices.
+        ends = np.cumsum(flat)
+        places = (random.random() + np.arange(count)) / count * ends[-1]
+        chosen = random.permutation(np.minimum(np.searchsorted(ends, places), flat.size - 1))
+        rows, scales = np.divmod(chosen, GRID.size)
+        return FrictionDraws(self, rows, self.points[rows], GRID[scales], self.curves[rows])
+
+    def shares(self) -> Iterator[tuple[str, dict[str, float], dict[str, float]]]:
+        """Of each choice of a law its path, and the weights of its options before and after."""
+        from squeezefilm.analysis.model_choices import Choice
+
+        weight = self.weights.sum(axis=1)
+        for k, one in enumerate(self.mixture.inputs):
+            if isinstance(one, Choice):
+                drawn = np.array(one.drawn(self.points[:, k]))
+                after = {o.name: float(weight[drawn == o.name].sum()) for o in one.options}
+                yield one.path, {o.name: o.weight for o in one.options}, after
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionDraws:
+    """Draws of a posterior with equal weights: which of its draws (`rows`), points of the unit
+    cube, scales of the discrepancy, and curves at the observed conditions."""
+
+    posterior: FrictionPosterior
+    rows: si.IntArray
+    points: si.DimensionlessArray
+    scales: si.DimensionlessArray
+    curves: si.DimensionlessArray
+
+    def at(
+        self, where: tuple[Touching, ...], seed: int, progress: SayProgress | None = None
+    ) -> si.DimensionlessArray:
+        """µ′/µ under other conditions with the law's error, shape (draws, conditions)."""
+        mixture = self.posterior.mixture
+        curves = friction_of_points(mixture, self.points, where, progress or (lambda _: None))
+        return self.with_error(curves, where, seed)
+
+    def with_error(
+        self, friction: si.DimensionlessArray, where: tuple[Touching, ...], seed: int
+    ) -> si.DimensionlessArray:
+        """µ′/µ (draws, conditions) of these draws with the law's error added; from 0 to 1 or a
+        little above."""
+        errors = self.posterior.likelihood.errors(self.curves, self.scales, where, seed)
+        return np.clip(friction + errors, 0.0, 1.2)
+
+
+def weighted(
+    mixture: Mixture,
+    likelihood: FrictionLikelihood,
+    points: si.DimensionlessArray,
+    curves: si.DimensionlessArray,
+    log_proposal: si.FloatArray | None = None,
+) -> FrictionPosterior:
+    """The posterior of draws at `points` with their `curves`; `log_proposal` is the logarithm of
+    the density they were drawn from over that of the priors (None: the priors).
+
+    Raises `OutOfRangeError` where no draw has friction at all observed conditions.
+    """
+    logs = likelihood.logarithms(curves)
+    if log_proposal is not None:
+        logs = logs - log_proposal[:, None]
+    most = float(np.max(logs))
+    if not np.isfinite(most):
+        raise OutOfRangeError(
+            "no draw of finger and laws has friction at all observed conditions; check their "
+            "amplitudes, forces and speeds, or leave out the largest amplitudes"
+        )
+    weights = np.exp(logs - most)
+    return FrictionPosterior(
+        mixture, likelihood, points, weights / weights.sum(), curves, likelihood.misfit(curves)
+    )
+
+
+def friction_posterior(
+    mixture: Mixture,
+    likelihood: FrictionLikelihood,
+    *,
+    seed: int,
+    draws: Annotated[int, si.AtLeast(32)] = DRAWS,
+    progress: SayProgress | None = None,
+) -> FrictionPosterior:
+    """The posterior of finger and laws: some 5 to 10 ms for each of `draws` (a power of two) and of
+    as many again in `ROUNDS` rounds. Raises `OutOfRangeError` as `weighted`; interrupted it goes on
+    from what was kept.
+    """
+    from scipy.special import logsumexp, ndtr, ndtri
+    from scipy.stats import qmc
+
+    tell = progress or (lambda _: None)
+    random = np.random.default_rng(seed)
+    more_draws = draws // 2
+    points = qmc.Sobol(len(mixture.inputs), rng=seed).random(draws)
+    curves = friction_of_points(mixture, points, likelihood.where, tell)
+    found = weighted(mixture, likelihood, points, curves)
+    # Draws of every round count by the mixture of all that was drawn from.
+    proposals: list[tuple[int, si.FloatArray | None, si.FloatArray | None]] = [(draws, None, None)]
+    for _ in range(ROUNDS):
+        scores = ndtri(np.clip(points, 1e-9, 1 - 1e-9))
+        weight = found.weights.sum(axis=1)
+        middle = weight @ scores
+        spread = (scores - middle).T @ (weight[:, None] * (scores - middle))
+        # Few draws know little of a covariance: as much of the priors' as they are worth.
+        share = found.effective / (found.effective + scores.shape[1])
+        spread = _WIDER * (share * spread + (1 - share) * np.eye(len(middle)))
+        fresh = random.multivariate_normal(middle, spread, more_draws)
+        at_prior = random.random(more_draws) < _DEFENSIVE
+        fresh[at_prior] = random.normal(size=(int(at_prior.sum()), len(middle)))
+        proposals.append((more_draws, middle, spread))
+        more = ndtr(fresh)
+        points = np.vstack([points, more])
+        curves = np.vstack([curves, friction_of_points(mixture, more, likelihood.where, tell)])
+        scores = ndtri(np.clip(points, 1e-9, 1 - 1e-9))
+        total = sum(count for count, _, _ in proposals)
+        parts = []
+        for count, centre, covariance in proposals:
+            logs = np.zeros(len(scores))
+            if centre is not None and covariance is not None:
+                logs = np.logaddexp(
+                    np.log(_DEFENSIVE),
+                    np.log(1 - _DEFENSIVE) + _log_ratio(scores, centre, covariance),
+                )
+            parts.append(np.log(count / total) + logs)
+        found = weighted(mixture, likelihood, points, curves, logsumexp(parts, axis=0))
+    return found
+
+
+def _log_ratio(
+    scores: si.FloatArray, centre: si.FloatArray, covariance: si.FloatArray
+) -> si.FloatArray:
+    """The logarithm of a Gaussian's density over that of independent standard scores."""
+    off = scores - centre
+    squares = np.sum(off * np.linalg.solve(covariance, off.T).T, axis=1)
+    _, determinant = np.linalg.slogdet(covariance)
+    return np.asarray(-(squares + determinant) / 2 + np.sum(scores**2, axis=1) / 2)

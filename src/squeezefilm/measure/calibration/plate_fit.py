@@ -1,0 +1,209 @@
+"""The plate's part of a calibration: solves, emulator, posterior, and once more where it points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.parameters import Parameter
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.measure.calibration.emulator import HELD_OUT, emulator_of, least_points
+from squeezefilm.measure.calibration.plate_posterior import (
+    PlatePosterior,
+    PlateProblem,
+    Predictive,
+    predictive,
+    sampled_posterior,
+)
+from squeezefilm.measure.calibration.priors import NormalScores, with_calibrated
+from squeezefilm.measure.calibration.solved_answers import (
+    MODE_FREQUENCY,
+    PLATE_ANSWERS,
+    Asked,
+    asked_by,
+    solved_answers,
+)
+from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.progress import SayProgress
+
+_MOST_LOST = 0.25
+_SMALL = 0.3  # of a standard error; so much adds a twentieth to it
+WORKING = (Asked("resonance_frequency"), Asked("amplitude_per_volt"), Asked("quality_factor"))
+"""What friction needs of a plate."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlateFit:
+    """A plate's problem (with its last emulator), posterior and predictions, of `solves` plates."""
+
+    problem: PlateProblem
+    posterior: PlatePosterior
+    predictive: Predictive
+    solves: int
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Of the parameters."""
+        return tuple(one.path for one in self.problem.scores.parameters)
+
+    def values(self, scores: si.DimensionlessArray) -> Mapping[str, float]:
+        """Values by path of one row of scores (parameters,)."""
+        row = self.problem.scores.values(np.asarray(scores)[None, :])[0]
+        return dict(zip(self.paths, row.tolist(), strict=True))
+
+    @property
+    def middle(self) -> Mapping[str, float]:
+        """The values at the mean of the posterior's scores, which keeps what only combinations of
+        them fix."""
+        return self.values(self.posterior.scores.mean(axis=0))
+
+
+def answers_to_solve(display: Display, observations: tuple[Observation, ...]) -> tuple[Asked, ...]:
+    """What is solved of a display: its working mode's answers, one neighbouring mode, and every
+    mode that was observed. Raises `InputError` for an observation without an answer."""
+    names = [name for name in PLATE_ANSWERS if name != "modal_mass"]
+    actuator = display.actuator
+    asked = [Asked(name) for name in names]
+    if isinstance(actuator, RectangularPlate):
+        n, m = actuator.working_label
+        lines = (n - 1, 0) if m == 0 else (0, m - 1)
+        if max(lines) >= 2:
+            asked.append(Asked(MODE_FREQUENCY, lines))
+    else:
+        asked.remove(Asked("mass"))
+    asked += [asked_by(one) for one in observations]
+    return tuple(dict.fromkeys(asked))
+
+
+def design_sizes(parameters: int) -> tuple[int, int]:
+    """How many plates are solved over the priors, and how many more where the data point."""
+    return max(8 * parameters, least_points(parameters)), 4 * parameters + HELD_OUT
+
+
+def _rough(problem: PlateProblem) -> bool:
+    """Whether the emulator's error widens what some observation says."""
+    noise = [one.standard_error / one.value for one in problem.observations]
+    errors = problem.emulator.errors[problem.columns]
+    return bool(np.any(errors > _SMALL * np.array(noise)))
+
+
+class Solves:
+    """Solved plates as they are added: scores, logarithms of answers, the solver's errors."""
+
+    def __init__(
+        self,
+        display: Display,
+        scores: NormalScores,
+        observations: tuple[Observation, ...],
+        tell: SayProgress,
+    ) -> None:
+        self.display, self.scores, self.tell = display, scores, tell
+        self.asked = answers_to_solve(display, observations)
+        observed = {asked_by(one) for one in observations}
+        self._needed = np.array([one in observed or one in WORKING for one in self.asked])
+        self.points: list[si.FloatArray] = []
+        self.logs: list[si.FloatArray] = []
+        self.errors: list[si.FloatArray] = []
+        self.lost = 0
+        self.example = ""
+
+    def add(self, points: si.DimensionlessArray, said: str) -> None:
+        """Solve plates at scores; one that has no such mode is left out and counted."""
+        paths = [one.path for one in self.scores.parameters]
+        for number, (point, row) in enumerate(
+            zip(points, self.scores.values(points), strict=True), 1
+        ):
+            self.tell(f"{said}: plate {number} of {len(points)}")
+            try:
+                display = with_calibrated(self.display, dict(zip(paths, row.tolist(), strict=True)))
+                found = solved_answers(display.actuator, self.asked)
+            except SqueezefilmError as error:
+                self._lose(str(error))
+                continue
+            lacking = self._needed & ~(found.values > 0)
+            if np.any(lacking):
+                self._lose(f"it has no {self.asked[int(np.argmax(lacking))].said}")
+                continue
+            self.points.append(point)
+            self.logs.append(np.log(found.values))
+            self.errors.append(found.errors)
+
+    def _lose(self, why: str) -> None:
+        self.lost += 1
+        self.example = self.example or why
+
+    def require_enough(self) -> None:
+        """Refuse priors in which too many plates have no answer."""
+        total = self.lost + len(self.points)
+        if self.lost > _MOST_LOST * total:
+            raise InputError(
+                f"{self.lost} of {total} plates within the priors have no answer (the first: "
+                f"{self.example}); narrow the ranges, or say working_frequency in the file"
+            )
+
+    def problem(self, observations: tuple[Observation, ...]) -> PlateProblem:
+        """What was observed beside an emulator of all plates so far. An answer that some of them
+        have not, and that was not observed, is left out."""
+        logs = np.array(self.logs)
+        whole = np.asarray(np.isfinite(logs).all(axis=0))
+        emulator = emulator_of(self.scores.coordinates(np.array(self.points)), logs[:, whole])
+        solver_errors = np.sqrt(np.mean(np.square(self.errors), axis=0))[whole]
+        asked = tuple(one for one, has in zip(self.asked, whole.tolist(), strict=True) if has)
+        return PlateProblem(self.scores, emulator, asked, solver_errors, observations)
+
+
+def fitted_plate(
+    display: Display,
+    parameters: tuple[Parameter, ...],
+    observations: tuple[Observation, ...],
+    *,
+    seed: int,
+    size: tuple[int, int] | None = None,
+    progress: SayProgress | None = None,
+) -> PlateFit:
+    """The posterior of a plate's or disc's parameters.
+
+    `size` plates are solved over the priors and, where the emulator is not much better than the
+    observations, where a first posterior points (`design_sizes` without one): one to two seconds
+    each, kept on disk as they come. Raises `InputError` where
+    nothing was observed, an observation has no answer, or a tenth of the plates has no such mode.
+    """
+    tell = progress or (lambda _: None)
+    scores = NormalScores(parameters)
+    first, second = size or design_sizes(len(parameters))
+    solves = Solves(display, scores, observations, tell)
+    solves.add(prior_scores(len(parameters), first, seed), "over the priors")
+    solves.require_enough()
+    tell("emulator")
+    problem = solves.problem(observations)
+    posterior = sampled_posterior(problem, seed=seed, steps=600)
+    if second and _rough(problem):
+        random = np.random.default_rng(seed)
+        chosen = posterior.scores[random.choice(len(posterior.scores), second, replace=False)]
+        # A little wider, so that the emulator does not end where the posterior does.
+        chosen = chosen + random.normal(0, 0.25, chosen.shape)
+        solves.add(chosen, "where the data point")
+        tell("emulator")
+        problem = solves.problem(observations)
+    posterior = sampled_posterior(problem, seed=seed, progress=progress)
+    made = predictive(problem, posterior, seed=seed)
+    return PlateFit(problem, posterior, made, len(solves.points) + solves.lost)
+
+
+def prior_scores(
+    parameters: Annotated[int, si.AtLeast(1)], count: Annotated[int, si.AtLeast(1)], seed: int
+) -> si.DimensionlessArray:
+    """`count` scrambled Sobol' points of the priors in scores, shape (count, parameters)."""
+    from scipy.special import ndtri
+    from scipy.stats import qmc
+
+    power = math.ceil(math.log2(max(count, 2)))
+    points = qmc.Sobol(parameters, rng=seed).random_base2(power)[:count]
+    return np.asarray(ndtri(np.clip(points, 1e-6, 1 - 1e-6)))

@@ -1,0 +1,215 @@
+"""What a bench could measure of an actuator, by the full solver, and kept on disk.
+
+A calibration asks some hundred plates. Each answer is kept in the cache folder under all that it
+depends on, so that a calibration that was stopped goes on, and a second one costs nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+import squeezefilm.plate
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.plate.ring.body import ring_body
+from squeezefilm.plate.ring.modes import clamped_capacitance
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.working import solid_mode
+from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.results import to_json
+
+MODE_FREQUENCY, LINES = "mode_frequency", ("lines_across_length", "lines_across_width")
+FRICTION = "relative_friction"
+PLATE_ANSWERS = (
+    "resonance_frequency",
+    "parallel_resonance_frequency",
+    "coupling_coefficient",
+    "static_capacitance",
+    "quality_factor",
+    "amplitude_per_volt",
+    "half_wavelength",
+    "mass",
+    "modal_mass",
+)
+"""In SI units: of the working mode, its circuit, and the body's mass (kg, ceramics included)."""
+
+_KEPT = KeptArrays("plate_answers", [Path(squeezefilm.plate.__file__).parent, Path(__file__)])
+
+
+class Asked(NamedTuple):
+    """One answer of an actuator: its name, and the nodal lines of another mode than the working
+    one."""
+
+    name: str
+    lines: tuple[int, int] | None = None
+
+    @property
+    def said(self) -> str:
+        """In words."""
+        words = self.name.replace("_", " ")
+        return words if self.lines is None else f"{words} ({self.lines[0]},{self.lines[1]})"
+
+
+def asked_by(observation: Observation) -> Asked:
+    """Which answer an observation is of.
+
+    Raises `InputError` for one that the solver has no answer to, or a `mode_frequency` without the
+    nodal lines of its mode.
+    """
+    if observation.answer == MODE_FREQUENCY:
+        if not set(LINES) <= set(observation.conditions):
+            raise InputError(
+                f"a {MODE_FREQUENCY} was observed without the mode it is of; give "
+                f"{' and '.join(LINES)} in its conditions",
+                quantity="observations",
+            )
+        return Asked(
+            MODE_FREQUENCY,
+            (round(observation.conditions[LINES[0]]), round(observation.conditions[LINES[1]])),
+        )
+    if observation.answer not in PLATE_ANSWERS:
+        known = (*PLATE_ANSWERS, MODE_FREQUENCY, FRICTION)
+        raise InputError(
+            f"there is no answer '{observation.answer}'."
+            f"{si.did_you_mean(observation.answer, known)} A calibration may use: "
+            f"{', '.join(known)}",
+            quantity="observations",
+        )
+    return Asked(observation.answer)
+
+
+class SolvedAnswers(NamedTuple):
+    """Answers of one actuator (SI), NaN where it has none, and the solver's own relative errors of
+    them where it estimates one (else 0), in the order that they were asked in."""
+
+    values: si.FloatArray
+    errors: si.DimensionlessArray
+
+
+def solved_answers(actuator: Actuator, asked: tuple[Asked, ...]) -> SolvedAnswers:
+    """The answers of a plate or disc by the full solver, kept on disk.
+
+    One to two seconds for a plate that was not asked before. Raises `InputError` for a stator or an
+    answer that such a body has not, and what the solvers raise.
+    """
+    if isinstance(actuator, AnnularStator):
+        raise InputError("a stator's answers are measured values; ask for a plate or a disc")
+    own = PLATE_ANSWERS if isinstance(actuator, RectangularPlate) else _OF_A_DISC
+    for one in asked:
+        if one.name not in own and not (
+            one.lines is not None and isinstance(actuator, RectangularPlate)
+        ):
+            raise InputError(
+                f"the solved {actuator.type} has no answer '{one.said}'; it has: {', '.join(own)}"
+            )
+    found = _working(actuator)
+    for one in asked:
+        if one.lines is not None and isinstance(actuator, RectangularPlate):
+            found[one] = _other_mode(actuator, one.lines)
+    pairs = np.array([found[one] for one in asked]).reshape(-1, 2)
+    return SolvedAnswers(pairs[:, 0], pairs[:, 1])
+
+
+_OF_A_DISC = tuple(name for name in PLATE_ANSWERS if name != "mass")
+
+
+def _question(actuator: Actuator, mode: object) -> str:
+    return json.dumps([to_json(actuator), mode], sort_keys=True)
+
+
+def _working(actuator: RectangularPlate | DiscPlate) -> dict[Asked, tuple[float, float]]:
+    """All answers of the working mode, each with its relative error."""
+    question = _question(actuator, "working")
+    kept = _KEPT.get(question, 2 * len(PLATE_ANSWERS))
+    if kept is None:
+        named = (
+            _of_plate(actuator) if isinstance(actuator, RectangularPlate) else _of_disc(actuator)
+        )
+        kept = np.array([named.get(name, (math.nan, 0.0)) for name in PLATE_ANSWERS]).ravel()
+        _KEPT.put(question, kept)
+    rows = kept.reshape(-1, 2).tolist()
+    return {Asked(name): (row[0], row[1]) for name, row in zip(PLATE_ANSWERS, rows, strict=True)}
+
+
+def _of_plate(plate: RectangularPlate) -> Mapping[str, tuple[float, float]]:
+    mode = solid_mode(plate)
+    modes, at = mode.modes, mode.index
+    error = mode.frequency_error / mode.frequency
+    try:
+        static = mode.response.equivalent_circuit().static_capacitance
+    except InputError:
+        static = math.nan
+    return {
+        "resonance_frequency": (mode.frequency, error),
+        "parallel_resonance_frequency": (float(modes.open_frequencies[at]), error),
+        "coupling_coefficient": (float(modes.couplings[at]), 0.0),
+        "static_capacitance": (static, 0.0),
+        "quality_factor": (mode.quality_factor, 0.0),
+        "amplitude_per_volt": (
+            mode.amplitude_per_volt,
+            mode.amplitude_error / mode.amplitude_per_volt,
+        ),
+        "half_wavelength": (mode.half_wavelength, 0.0),
+        "mass": (plate_mass(plate), 0.0),
+        "modal_mass": (mode.modal_mass, 0.0),
+    }
+
+
+def _of_disc(disc: DiscPlate) -> Mapping[str, tuple[float, float]]:
+    mode, body = working_mode(disc), ring_body(disc)
+    annular = mode.disc
+    assert annular is not None
+    assert mode.modal_mass is not None
+    held = clamped_capacitance(body.section, body.drive)
+    coupling = annular.coupling_coefficient(body.drive, held)
+    error = (mode.frequency_error or 0.0) / mode.resonance_frequency
+    return {
+        "resonance_frequency": (mode.resonance_frequency, error),
+        "parallel_resonance_frequency": (
+            mode.resonance_frequency / math.sqrt(1 - coupling**2),
+            error,
+        ),
+        "coupling_coefficient": (coupling, 0.0),
+        "static_capacitance": (held, 0.0),
+        "quality_factor": (mode.quality_factor, 0.0),
+        "amplitude_per_volt": (mode.amplitude_per_volt, 0.0),
+        "half_wavelength": (mode.half_wavelength, 0.0),
+        "modal_mass": (mode.modal_mass, 0.0),
+    }
+
+
+def _other_mode(plate: RectangularPlate, lines: tuple[int, int]) -> tuple[float, float]:
+    question = _question(plate, list(lines))
+    kept = _KEPT.get(question, 2)
+    if kept is None:
+        try:
+            modes = solve_modes(plate, mode=lines)
+            at = modes.index(lines)
+        except InputError:
+            # Where two modes meet, neither may have these lines.
+            kept = np.array([math.nan, 0.0])
+        else:
+            frequency = float(modes.frequencies[at])
+            kept = np.array([frequency, float(modes.errors[at]) / frequency])
+        _KEPT.put(question, kept)
+    return float(kept[0]), float(kept[1])
+
+
+def plate_mass(plate: RectangularPlate) -> si.Kilogram:
+    """What a plate weighs with its ceramics and their glue (kg)."""
+    glue = 0.0 if plate.glue is None else plate.glue.thickness * plate.glue.density
+    area_mass = sum(
+        patch.length * patch.width * (patch.thickness * plate.ceramic.density + glue)
+        for patch in plate.patches
+    )
+    body = plate.length * plate.width * plate.thickness * plate.substrate.density
+    return float(body + area_mass)

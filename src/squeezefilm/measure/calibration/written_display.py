@@ -1,0 +1,209 @@
+"""A calibration as a display's file: values with their spreads, and how they go together.
+
+Every value that the data told something of is written as measured, with the posterior's spread.
+The rest stays as it was described. What the spreads of single values do not say is in the file's
+`joint` (`joint_spread.JointSpread`), which draws of friction's interval use.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.draws import Input
+from squeezefilm.analysis.joint_draws import AMPLITUDE_SHARE, FRICTION_OFFSET
+from squeezefilm.analysis.parameters import SKIN_COMPLIANCE, Parameter, with_values
+from squeezefilm.chain.prediction import predict
+from squeezefilm.config.provenance import Provenance
+from squeezefilm.config.write import text_of
+from squeezefilm.display import Display
+from squeezefilm.distributions import Distribution, Normal, Uniform
+from squeezefilm.joint_spread import JointSpread
+from squeezefilm.measure.calibration.calibration import CalibratedValue, Calibration, Joint
+from squeezefilm.measure.calibration.friction_posterior import finger_mixture
+from squeezefilm.measure.calibration.identified import NOT_TOLD
+from squeezefilm.measure.calibration.priors import SHARES, share_of
+from squeezefilm.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.results import write_whole
+
+_ROWS = 256
+"""Draws that the file holds: their 5 % and 95 % ends are within some hundredths of all of them."""
+_TOLD_WELL = 0.5
+
+
+def calibrated_display(calibration: Calibration) -> Display:
+    """The display with the posterior's values, their sources and spreads, and its `joint`.
+
+    What the data said nothing of keeps its value and source; a plate's value that moved with others
+    is marked as assumed.
+    """
+    found = calibration.display
+    stated = dict(found.provenance)
+    # A ceramic's constants that were written out have no place in the description's sources.
+    source = _source(calibration)
+    moved: dict[str, float] = {}
+    for one in calibration.values:
+        if one.path in SHARES or one.path == SKIN_COMPLIANCE:
+            continue
+        told = one.left <= NOT_TOLD
+        if not told and not one.path.startswith("actuator."):
+            continue
+        spread = _spread(one)
+        value = _middle(one, spread)
+        if not one.path.startswith("actuator."):
+            moved[one.path] = value
+        origin = (
+            Provenance(source, "measured", spread)
+            if told
+            else Provenance(
+                f"not told by what was measured, moved with the rest; {source}", "assumed", spread
+            )
+        )
+        for path in _written_out(found, one.path):
+            stated[path] = origin
+    found = with_values(found, moved)
+    stated |= _ceramic_sources(calibration, source)
+    found = dataclasses.replace(found, provenance=stated, joint=None)
+    return dataclasses.replace(found, joint=_joint(calibration, found))
+
+
+def calibrated_text(calibration: Calibration) -> str:
+    """The TOML text of `calibrated_display`, with what was observed and what came out as comments.
+
+    Raises `InputError` as `text_of` does.
+    """
+    display = calibrated_display(calibration)
+    lines = [f"# {display.name}, calibrated: values marked as measured are of its posterior."]
+    for one in calibration.observations:
+        under = "".join(f", {name} {value:.6g}" for name, value in one.conditions.items())
+        lines.append(
+            f"# observed: {one.answer} {one.value:.6g} ± {one.standard_error:.2g} (SI){under}"
+        )
+    lines += [f"# {one}" for one in calibration.sentences]
+    return "\n".join(lines) + "\n\n" + text_of(display, display.provenance)
+
+
+def write_calibrated(calibration: Calibration, path: str | Path) -> Path:
+    """Write `calibrated_text` to a file, whole or not at all. Raises `InputError` where it cannot
+    be written."""
+    target = Path(path)
+    write_whole(target, calibrated_text(calibration))
+    return target
+
+
+def _source(calibration: Calibration) -> str:
+    day = datetime.now(UTC).date().isoformat()
+    words = f"calibrated {day} from the {len(calibration.observations)} observations above"
+    return words if calibration.fits else f"{words}; the model does not fit them"
+
+
+def _spread(one: CalibratedValue) -> Distribution:
+    """A normal distribution where the data told the value well, else a range."""
+    low, high = one.interval
+    reach = 3 * one.standard_deviation
+    inside = one.prior[0] <= one.median - reach and one.median + reach <= one.prior[1]
+    if one.left < _TOLD_WELL and inside:
+        return Normal(one.median, one.standard_deviation)
+    # As wide as the draws: a uniform distribution with their interval's 5 % and 95 % ends.
+    wider = (high - low) / 18
+    return Uniform(low - wider, high + wider)
+
+
+def _middle(one: CalibratedValue, spread: Distribution) -> float:
+    return float(min(max(one.median, spread.support[0]), spread.support[1]))
+
+
+def _written_out(display: Display, path: str) -> list[str]:
+    """The paths that one with a star stands for."""
+    if ".*." not in path:
+        return [path]
+    actuator = display.actuator
+    count = len(actuator.patches) if isinstance(actuator, RectangularPlate) else 0
+    return [path.replace("*", str(number)) for number in range(count)]
+
+
+def _ceramic_sources(calibration: Calibration, source: str) -> dict[str, Provenance]:
+    """Where the constants of a ceramic are from that was moved by shares."""
+    actuator = calibration.display.actuator
+    shares = [one for one in calibration.values if one.path in SHARES]
+    if not shares or not isinstance(actuator, RectangularPlate | DiscPlate):
+        return {}
+    words = "; ".join(
+        f"{SHARES[one.path]}: {one.median:.3f} ({one.interval[0]:.3f} to {one.interval[1]:.3f})"
+        for one in shares
+    )
+    whole = Provenance(f"{source}. Moved together by shares: {words}", "measured")
+    with_it = Provenance(f"with in_plane_stiffness: {source}", "measured")
+    ceramic = actuator.ceramic
+    names = ["in_plane_stiffness", "charge_coefficient", "relative_permittivity"]
+    if ceramic.constants is not None:
+        names += [
+            f"constants.{one.name}"
+            for one in dataclasses.fields(ceramic.constants)
+            if getattr(ceramic.constants, one.name) is not None
+        ]
+    return {f"actuator.ceramic.{name}": whole if name == names[0] else with_it for name in names}
+
+
+def _joint(calibration: Calibration, display: Display) -> JointSpread | None:
+    """The draws, by the spreads that the values of the calibrated `display` have."""
+    joint = calibration.joint
+    known = np.flatnonzero(np.isfinite(joint.friction))
+    if known.size < 2:
+        return None
+    random = np.random.default_rng(calibration.seed)
+    rows = random.choice(known, min(_ROWS, known.size), replace=False)
+    prediction = predict(display)
+    columns: dict[str, si.FloatArray] = {}
+    share, offset = np.ones(joint.friction.size), joint.law_error
+    if joint.plate_paths and prediction.voltage is not None:
+        share = joint.amplitude / prediction.touch.free_amplitude
+        columns[AMPLITUDE_SHARE] = _of_normal(share[known], share[rows])
+    if np.std(offset[known]) > 0:
+        columns[FRICTION_OFFSET] = _of_normal(offset[known], offset[rows])
+    if calibration.laws:
+        before = finger_mixture(calibration.display, prediction)
+        columns |= _shares(before.inputs, finger_mixture(display, prediction).inputs, joint, rows)
+    return JointSpread(
+        paths=tuple(columns),
+        amplitude_share=float(np.mean(share[known])),
+        amplitude_share_deviation=float(np.std(share[known])),
+        friction_offset=float(np.mean(offset[known])),
+        friction_offset_deviation=float(np.std(offset[known])),
+        draws=tuple(
+            tuple(round(float(one), 4) for one in row)
+            for row in np.stack(list(columns.values()), axis=1)
+        )
+        if columns
+        else (),
+    )
+
+
+def _of_normal(every: si.FloatArray, values: si.FloatArray) -> si.DimensionlessArray:
+    """Shares of values by the normal distribution of all of them."""
+    return share_of(Normal(float(np.mean(every)), float(np.std(every))), values)
+
+
+def _shares(
+    before: tuple[Input, ...], after: tuple[Input, ...], joint: Joint, rows: si.IntArray
+) -> dict[str, si.DimensionlessArray]:
+    """Of each input of finger and laws the shares of drawn values by its spread after the
+    calibration. A law's weights are as they were: its shares say how it was believed."""
+    from scipy.special import ndtr
+
+    own = dict(zip(joint.finger_paths, ndtr(joint.finger[rows]).T, strict=True))
+    found = {}
+    old = {one.path: one for one in before}
+    for one in after:
+        if one.path in own:
+            drawn = old[one.path]
+            if isinstance(one, Parameter) and isinstance(drawn, Parameter):
+                values = drawn.distribution.quantile(own[one.path])
+                found[one.path] = share_of(one.distribution, values)
+            else:
+                found[one.path] = own[one.path]
+    return found

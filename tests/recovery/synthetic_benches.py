@@ -1,0 +1,214 @@
+"""Synthetic benches of the paper's plate: truths drawn from the priors, answers with noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.chain.prediction import predict
+from squeezefilm.display import Display, load_display
+from squeezefilm.measure.calibration.discrepancy import scale_of
+from squeezefilm.measure.calibration.friction_likelihood import GRID, FrictionLikelihood, Touching
+from squeezefilm.measure.calibration.friction_posterior import (
+    finger_mixture,
+    friction_of_points,
+    weighted,
+)
+from squeezefilm.measure.calibration.next_measurement import (
+    FRICTION_ACCURACY,
+    friction_candidate,
+    ranked,
+)
+from squeezefilm.measure.calibration.plate_fit import Solves, prior_scores
+from squeezefilm.measure.calibration.plate_posterior import (
+    PlateProblem,
+    predictive,
+    sampled_posterior,
+)
+from squeezefilm.measure.calibration.priors import NormalScores, calibration_parameters
+from squeezefilm.measure.calibration.solved_answers import FRICTION, Asked
+from squeezefilm.measure.fits.estimate import Observation
+
+NOISE = {
+    "parallel_resonance_frequency": 5e-4,
+    "coupling_coefficient": 0.01,
+    "static_capacitance": 0.01,
+    "quality_factor": 0.03,
+    "mass": 1e-3,
+}
+"""What a bench observes, with relative standard errors; resonance and amplitude are left blind."""
+BLIND = (Asked("resonance_frequency"), Asked("amplitude_per_volt"))
+AMPLITUDES = (0.4e-6, 0.7e-6, 1.0e-6, 1.4e-6)
+BLIND_AMPLITUDE = 2e-6
+FRICTION_NOISE = 0.03
+
+
+def paper_display() -> Display:
+    """The preset, whose priors are the assumed ones."""
+    return load_display("biet2008-plate")
+
+
+@dataclass
+class Plates:
+    """Plates around the paper's: an emulator of `count` solved ones, asked again and again."""
+
+    display: Display
+    problem: PlateProblem
+
+    @classmethod
+    def of(cls, count: int, seed: int = 11) -> Plates:
+        display = paper_display()
+        scores = NormalScores(calibration_parameters(display))
+        nothing = tuple(Observation(name, 1.0, 1.0) for name in NOISE)
+        solves = Solves(display, scores, nothing, lambda _: None)
+        solves.add(prior_scores(len(scores.parameters), count, seed), "benches")
+        return cls(display, solves.problem(nothing))
+
+    def posed(self, observations: tuple[Observation, ...]) -> PlateProblem:
+        known = self.problem
+        return PlateProblem(
+            known.scores, known.emulator, known.asked, known.solver_errors, observations
+        )
+
+    def truth(self, scores: np.ndarray, scale: float, random: np.random.Generator) -> np.ndarray:
+        """Answers of a bench at scores (parameters,), the model's error drawn."""
+        error = np.hypot(scale * self.problem.believed, self.problem.model_errors)
+        logs = self.problem.answers(scores[None, :])[0]
+        return np.exp(logs + error * random.normal(size=logs.size))
+
+    def observed(self, answers: np.ndarray, random: np.random.Generator) -> tuple[Observation, ...]:
+        """What the bench's instruments say of its answers."""
+        found = []
+        for name, noise in NOISE.items():
+            true = float(answers[self.problem.asked.index(Asked(name))])
+            found.append(
+                Observation(name, true * float(np.exp(noise * random.normal())), true * noise)
+            )
+        return tuple(found)
+
+
+@dataclass
+class PlateBench:
+    """What one bench gave: ranks (0 to 1) of its parameters and of its blind answers, relative
+    errors and interval widths of these (90 %), whether they are inside, whether it fits."""
+
+    ranks: np.ndarray
+    blind_ranks: np.ndarray
+    errors: np.ndarray
+    widths: np.ndarray
+    inside: np.ndarray
+    fits: bool
+
+
+def plate_bench(
+    plates: Plates, scores: np.ndarray, answers: np.ndarray, seed: int, steps: int = 800
+) -> PlateBench:
+    """Calibrate on what the bench observed, and compare the rest."""
+    random = np.random.default_rng(seed)
+    problem = plates.posed(plates.observed(answers, random))
+    posterior = sampled_posterior(problem, seed=seed, steps=steps)
+    made = predictive(problem, posterior, seed=seed)
+    drawn = np.stack([made.of(one) for one in BLIND], axis=1)
+    true = np.array([answers[problem.asked.index(one)] for one in BLIND])
+    low, middle, high = np.quantile(drawn, [0.05, 0.5, 0.95], axis=0)
+    return PlateBench(
+        np.mean(posterior.scores < scores, axis=0),
+        np.mean(drawn < true, axis=0),
+        middle / true - 1,
+        (high - low) / true,
+        (low <= true) & (true <= high),
+        posterior.misfit.judgement == "fits",
+    )
+
+
+def drawn_scale(random: np.random.Generator) -> float:
+    """A discrepancy's scale from its prior."""
+    return float(scale_of(np.array([random.normal()]))[0])
+
+
+@dataclass
+class Fingers:
+    """A bank of draws of finger and laws with their µ′/µ at all amplitudes, the blind one last."""
+
+    points: np.ndarray
+    curves: np.ndarray
+    mixture: object
+
+    WHERE = tuple(Touching(one) for one in (*AMPLITUDES, BLIND_AMPLITUDE))
+
+    @classmethod
+    def of(cls, count: int, seed: int = 5) -> Fingers:
+        display = paper_display()
+        mixture = finger_mixture(display, predict(display))
+        points = np.random.default_rng(seed).random((count, len(mixture.inputs)))
+        curves = friction_of_points(mixture, points, cls.WHERE, lambda _: None)
+        return cls(points, curves, mixture)
+
+    def discrepancy(self, random: np.random.Generator) -> np.ndarray:
+        """A law's error at all amplitudes, its scale drawn from the grid's prior."""
+        scale = float(random.choice(GRID))
+        fake = tuple(
+            Observation(FRICTION, 0.5, 1e-6, {"vibration_amplitude": one.amplitude})
+            for one in self.WHERE
+        )
+        covariance = FrictionLikelihood(fake)._covariance(scale)
+        return random.multivariate_normal(np.zeros(len(self.WHERE)), covariance)
+
+    def blind(self, curve: np.ndarray, bank: slice, seed: int) -> tuple[np.ndarray, bool, float]:
+        """Draws of the blind µ′/µ after the observed part of a curve, whether it fits, and how many
+        draws that was worth."""
+        random = np.random.default_rng(seed)
+        observations = tuple(
+            Observation(
+                FRICTION,
+                float(value + FRICTION_NOISE * random.normal()),
+                FRICTION_NOISE,
+                {"vibration_amplitude": amplitude},
+            )
+            for value, amplitude in zip(curve, AMPLITUDES, strict=False)
+        )
+        own = self.curves[bank]
+        posterior = weighted(
+            self.mixture, FrictionLikelihood(observations), self.points[bank], own[:, :-1]
+        )
+        draws = posterior.resampled(1000, seed)
+        found = draws.with_error(own[draws.rows, -1:], self.WHERE[-1:], seed)[:, 0]
+        return found, posterior.misfit.judgement == "fits", posterior.effective
+
+    def next_measurements(self, bank: slice, truths: range) -> tuple[np.ndarray, np.ndarray]:
+        """Of µ′/µ at each other amplitude, after one at the first: which share of the interval of
+        the blind one it is expected to leave, and leaves on benches of the truths (means)."""
+        own, expected, achieved = self.curves[bank], [], []
+        for number in truths:
+            random = np.random.default_rng(number)
+            true = self.curves[number] + self.discrepancy(random)
+            if not np.isfinite(true).all():
+                continue
+            seen = [
+                Observation(
+                    FRICTION,
+                    float(value + FRICTION_ACCURACY * random.normal()),
+                    FRICTION_ACCURACY,
+                    {"vibration_amplitude": amplitude},
+                )
+                for value, amplitude in zip(true, AMPLITUDES, strict=False)
+            ]
+
+            def drawn(rows: list[int], seed: int, seen: list[Observation] = seen) -> np.ndarray:
+                likelihood = FrictionLikelihood(tuple(seen[k] for k in rows))
+                posterior = weighted(self.mixture, likelihood, self.points[bank], own[:, rows])
+                draws = posterior.resampled(1000, seed)
+                at = own[draws.rows]
+                return draws.with_error(at, self.WHERE, seed)
+
+            now = drawn([0], number)
+            options = [
+                friction_candidate(now[:, k], AMPLITUDES[k]) for k in range(1, len(AMPLITUDES))
+            ]
+            found = {one.name: one.left for one in ranked(now[:, -1], options, seed=number)}
+            expected.append([found[one.name] for one in options])
+            width = np.diff(np.quantile(now[:, -1], [0.05, 0.95]))[0]
+            after = [drawn([0, k], number)[:, -1] for k in range(1, len(AMPLITUDES))]
+            achieved.append([np.diff(np.quantile(one, [0.05, 0.95]))[0] / width for one in after])
+        return np.mean(expected, axis=0), np.mean(achieved, axis=0)

@@ -1,0 +1,217 @@
+"""Calibrations of synthetic benches: the truth is known, and so is what the model lacks.
+
+200 benches through the emulator say whether the ranks of the truth are flat (Talts et al. 2018,
+arXiv:1804.06788); what they printed stands in campaigns/statistics.jsonl. Seeds stand in the tests.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.stats import chisquare
+
+from squeezefilm.analysis.plate.sensitivity import with_glue
+from squeezefilm.measure.calibration.priors import with_calibrated
+from squeezefilm.measure.calibration.solved_answers import Asked, solved_answers
+
+from .synthetic_benches import (
+    BLIND,
+    Fingers,
+    Plates,
+    drawn_scale,
+    paper_display,
+    plate_bench,
+)
+
+BENCHES = 200
+
+
+@pytest.fixture(scope="module")
+def plates() -> Plates:
+    return Plates.of(72)
+
+
+@pytest.fixture(scope="module")
+def fingers() -> Fingers:
+    return Fingers.of(8192 + 512)
+
+
+def flat(ranks: np.ndarray) -> float:
+    """The probability that ranks as uneven as these come of flat ones."""
+    counts, _ = np.histogram(ranks, bins=10, range=(0, 1))
+    return float(chisquare(counts).pvalue)
+
+
+@pytest.mark.campaign
+def test_ranks_of_a_plates_parameters_and_blind_answers_are_flat(plates: Plates) -> None:
+    random = np.random.default_rng(2026)
+    found = []
+    for number in range(BENCHES):
+        scores = random.normal(size=len(plates.problem.scores.parameters))
+        answers = plates.truth(scores, drawn_scale(random), random)
+        found.append(plate_bench(plates, scores, answers, seed=number))
+    ranks = np.array([[*one.ranks, *one.blind_ranks] for one in found])
+    odds = [flat(column) for column in ranks.T]
+    inside = np.mean([one.inside for one in found], axis=0)
+    misfits = float(np.mean([not one.fits for one in found]))
+    print(f"odds of flat ranks {np.round(odds, 3)}, 90 % intervals cover {inside}, {misfits=}")
+    assert min(odds) > 0.01 / len(odds)
+    assert np.all(np.abs(inside - 0.9) < 0.07)
+
+
+@pytest.mark.campaign
+def test_where_the_model_is_right_blind_answers_are_met(plates: Plates) -> None:
+    random = np.random.default_rng(7)
+    found = []
+    for number in range(60):
+        scores = random.normal(size=len(plates.problem.scores.parameters))
+        answers = plates.truth(scores, 0.0, random)
+        found.append(plate_bench(plates, scores, answers, seed=number))
+    errors = np.abs([one.errors for one in found])
+    widths = np.median([one.widths for one in found], axis=0)
+    unmeasured = np.std(
+        np.log([plates.truth(random.normal(size=8), 0.0, random) for _ in range(300)]), axis=0
+    )
+    print(
+        f"blind errors, median {np.median(errors, axis=0)}, 95 % "
+        f"{np.quantile(errors, 0.95, axis=0)}, "
+        f"interval widths {widths}; spread without data {unmeasured[:6]}"
+    )
+    assert np.all(np.median(errors, axis=0) < [0.002, 0.05])
+    assert np.mean([one.fits for one in found]) > 0.9
+
+
+@pytest.mark.campaign
+def test_a_wrong_plate_is_a_misfit_or_covered(plates: Plates) -> None:
+    """A frequency that another mode pushed, a capacitance of a cracked ceramic, a lossy clamp."""
+    random = np.random.default_rng(8)
+    asked = plates.problem.asked
+    wrong = {
+        "parallel_resonance_frequency": 0.012,
+        "resonance_frequency": 0.006,
+        "coupling_coefficient": -0.08,
+        "static_capacitance": -0.1,
+        "amplitude_per_volt": -0.25,
+    }
+    covered, misfits = [], []
+    for number in range(60):
+        scores = random.normal(size=len(plates.problem.scores.parameters))
+        answers = plates.truth(scores, 0.0, random)
+        # Each bench suffers two of them.
+        for name in random.choice(list(wrong), 2, replace=False):
+            answers[asked.index(Asked(name))] *= 1 + wrong[name]
+        one = plate_bench(plates, scores, answers, seed=number)
+        covered.append(one.inside)
+        misfits.append(not one.fits)
+    held = np.logical_or(np.array(covered), np.array(misfits)[:, None]).mean(axis=0)
+    print(f"covered {np.mean(covered, axis=0)}, misfits {np.mean(misfits)}, either {held}")
+    assert np.all(held > 0.85)
+
+
+@pytest.mark.campaign
+def test_ranks_of_blind_friction_are_flat(fingers: Fingers) -> None:
+    random = np.random.default_rng(3)
+    bank, truths = slice(0, 8192), range(8192, 8192 + 512)
+    ranks, inside, effective = [], [], []
+    for number in truths:
+        curve = fingers.curves[number]
+        if not np.isfinite(curve).all():
+            continue
+        true = curve + fingers.discrepancy(random)
+        drawn, _, worth = fingers.blind(true, bank, number)
+        value = float(np.clip(true[-1], 0.0, 1.2))
+        # What is cut off at an end of the range lies anywhere among its equals.
+        below, equal = np.mean(drawn < value), np.mean(drawn == value)
+        ranks.append(below + random.random() * equal)
+        inside.append(np.quantile(drawn, 0.05) <= value <= np.quantile(drawn, 0.95))
+        effective.append(worth)
+        if len(ranks) == BENCHES:
+            break
+    odds = flat(np.array(ranks))
+    print(
+        f"{odds=:.3f}, 90 % intervals cover {np.mean(inside):.3f}, worth {np.median(effective):.0f}"
+    )
+    assert odds > 0.005
+    assert abs(np.mean(inside) - 0.9) < 0.07
+
+
+@pytest.mark.campaign
+def test_friction_of_the_right_and_of_other_laws(fingers: Fingers) -> None:
+    """Blind µ′/µ within 0.05 where a law of the mixture made it; else a misfit, or covered."""
+    random = np.random.default_rng(4)
+    bank = slice(0, 8192)
+    amplitude = np.array([one.amplitude for one in fingers.WHERE])
+    errors, covered, widths = [], [], []
+    for number in range(8192, 8192 + 100):
+        curve = fingers.curves[number]
+        if not np.isfinite(curve).all():
+            continue
+        drawn, _, _ = fingers.blind(curve, bank, number)
+        errors.append(abs(float(np.median(drawn)) - curve[-1]))
+        low, high = np.quantile(drawn, [0.05, 0.95])
+        widths.append(high - low)
+    for number in range(60):
+        # A contact that hammers, one with a threshold, one that sticks again: not the mixture's.
+        kind, place = number % 3, random.uniform(0.5e-6, 2.5e-6)
+        if kind == 0:
+            other = 1 / (1 + (amplitude / place) ** 3)
+        elif kind == 1:
+            other = np.clip(1.2 - amplitude / (2 * place), 0.1, 1.0)
+        else:
+            other = 0.4 + 0.6 * np.exp(-amplitude / place) + 0.15 * np.sin(amplitude / place * 3)
+        drawn, fits, _ = fingers.blind(other, bank, number)
+        low, high = np.quantile(drawn, [0.05, 0.95])
+        covered.append((not fits) or low <= other[-1] <= high)
+    prior = np.nanquantile(fingers.curves[bank, -1], [0.05, 0.95])
+    print(
+        f"right: median error {np.median(errors):.3f}, 95 % {np.quantile(errors, 0.95):.3f}, width "
+        f"{np.median(widths):.3f} of {np.diff(prior)[0]:.3f} without data; other laws held "
+        f"{np.mean(covered):.3f}"
+    )
+    assert np.median(errors) < 0.05
+    assert np.mean(covered) > 0.8
+
+
+@pytest.mark.nightly
+def test_five_fully_solved_benches(plates: Plates) -> None:
+    """Three of the display's kind, one with glue that the description leaves out, one uneven."""
+    random = np.random.default_rng(9)
+    display = paper_display()
+    parameters = plates.problem.scores.parameters
+    paths = [one.path for one in parameters]
+    errors, held = [], []
+    for number in range(5):
+        scores = random.normal(size=len(parameters))
+        values = plates.problem.scores.values(scores[None, :])[0]
+        actuator = with_calibrated(display, dict(zip(paths, values.tolist(), strict=True))).actuator
+        if number == 3:
+            actuator = with_glue(actuator, 60e-6, 1e9)
+        if number == 4:
+            # Ceramics of unlike thickness, as on uneven glue.
+            patches = tuple(
+                dataclasses.replace(one, thickness=one.thickness * (1 + 0.06 * (-1) ** k))
+                for k, one in enumerate(actuator.patches)
+            )
+            actuator = dataclasses.replace(actuator, patches=patches)
+        answers = solved_answers(actuator, plates.problem.asked).values
+        one = plate_bench(plates, scores, answers, seed=number)
+        print(number, one.errors, one.widths, one.inside, "fits" if one.fits else "misfit")
+        if number < 3:
+            errors.append(np.abs(one.errors))
+        held.append(bool(np.all(one.inside)) or not one.fits)
+    worst = np.max(errors, axis=0)
+    assert worst[BLIND.index(Asked("resonance_frequency"))] < 0.002
+    assert worst[BLIND.index(Asked("amplitude_per_volt"))] < 0.05
+    assert all(held[3:])
+
+
+@pytest.mark.campaign
+def test_the_next_measurement_tells_what_was_expected_of_it(fingers: Fingers) -> None:
+    """After one point of friction: what each further one is expected to leave, and what it leaves
+    on benches whose truth is known, calibrated anew with it."""
+    expected, achieved = fingers.next_measurements(slice(0, 8192), range(8192, 8192 + 60))
+    print(f"left of the interval, expected {expected.round(3)}, achieved {achieved.round(3)}")
+    assert np.argmin(expected) == np.argmin(achieved)
+    np.testing.assert_allclose(expected, achieved, atol=0.12)

@@ -1,0 +1,182 @@
+"""From observations to a calibrated file, to a blind prediction and its score."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from squeezefilm.analysis.draws import Mixture
+from squeezefilm.analysis.uncertainty import uncertain_friction
+from squeezefilm.chain.prediction import predict
+from squeezefilm.config.load import load_text
+from squeezefilm.display import Display, load_display
+from squeezefilm.errors import InputError
+from squeezefilm.measure.calibration.blind import (
+    keep_scores,
+    load_prediction,
+    predict_blind,
+    score,
+)
+from squeezefilm.measure.calibration.calibrate import Effort, calibrate, friction_before
+from squeezefilm.measure.calibration.calibration import Calibration
+from squeezefilm.measure.calibration.folder import usable
+from squeezefilm.measure.calibration.plate_fit import answers_to_solve, design_sizes
+from squeezefilm.measure.calibration.solved_answers import (
+    MODE_FREQUENCY,
+    Asked,
+    asked_by,
+    plate_mass,
+    solved_answers,
+)
+from squeezefilm.measure.calibration.written_display import (
+    calibrated_display,
+    calibrated_text,
+    write_calibrated,
+)
+from squeezefilm.measure.fits.estimate import Observation
+
+STATOR = "biet2008-stator"
+
+
+def friction(value: float, amplitude: float, error: float = 0.03) -> Observation:
+    return Observation("relative_friction", value, error, {"vibration_amplitude": amplitude})
+
+
+SEEN = (friction(0.85, 0.3e-6), friction(0.7, 0.6e-6), friction(0.55, 1.0e-6))
+
+
+@pytest.fixture(scope="module")
+def calibration() -> Calibration:
+    """On friction alone: a stator's amplitude is measured, so nothing is solved."""
+    effort = Effort(finger_draws=256, joint_draws=256)
+    return calibrate(load_display(STATOR), SEEN, seed=3, effort=effort)
+
+
+@pytest.mark.slow
+def test_friction_is_narrowed_and_the_file_has_the_same_interval(
+    calibration: Calibration, tmp_path: Path
+) -> None:
+    assert calibration.fits
+    before, after = calibration.before, calibration.after
+    assert before is not None
+    assert after is not None
+    assert after.width < 0.8 * before.width
+    assert any("of that interval is left" in one for one in calibration.sentences)
+    file = write_calibrated(calibration, tmp_path / "calibrated.toml")
+    read = load_display(file)
+    assert read == calibrated_display(calibration)
+    found = uncertain_friction(read, predict(read), samples=16, seed=2)
+    np.testing.assert_allclose(found.interval, after.interval, atol=0.2 * before.width)
+    measured = {path for path, one in read.provenance.items() if one.evidence == "measured"}
+    assert measured
+    assert all(path.startswith(("finger", "surfaces", "gas")) for path in measured)
+    assert "# observed: relative_friction 0.85" in file.read_text(encoding="utf-8")
+    assert set(json.loads(json.dumps(calibration.summary()))["laws"]) >= {"height_law"}
+
+
+@pytest.mark.slow
+def test_text_with_sources_reads_back(calibration: Calibration) -> None:
+    display = calibrated_display(calibration)
+    read = load_text(Display, calibrated_text(calibration))
+    for path, one in display.provenance.items():
+        assert (read.provenance[path].source, read.provenance[path].evidence) == (
+            one.source,
+            one.evidence,
+        )
+        if one.distribution is not None:
+            kept = read.provenance[path].distribution
+            assert kept is not None
+            np.testing.assert_allclose(kept.support, one.distribution.support, rtol=1e-9)
+    mixture = Mixture(read, predict(read), driven=True)
+    assert "joint.friction_offset" in mixture.paths
+
+
+@pytest.mark.slow
+def test_a_prediction_is_made_kept_and_scored(calibration: Calibration, tmp_path: Path) -> None:
+    file = tmp_path / "prediction.json"
+    wanted = friction(0.0, 1.5e-6)
+    made = predict_blind(calibration, [wanted], file)
+    assert made == load_prediction(file)
+    assert len(made.sha256) == 64
+    low, high = made.predictions[0].interval
+    inside = friction((low + high) / 2, 1.5e-6)
+    (one,) = score(file, [inside])
+    assert one.inside
+    assert abs(one.error) < 0.1
+    assert "inside" in one.sentence
+    (far,) = score(file, [friction(high + 0.2, 1.5e-6)])
+    assert not far.inside
+    assert far.log_score < one.log_score
+    with pytest.raises(InputError, match="nothing that was measured"):
+        score(file, [friction(0.4, 3e-6)])
+    with pytest.raises(InputError, match="never overwritten"):
+        predict_blind(calibration, [wanted], file)
+    display = write_calibrated(calibration, tmp_path / "display.toml")
+    keep_scores(display, file, [one])
+    assert made.sha256 in display.read_text(encoding="utf-8")
+    assert load_display(display).joint is not None
+    file.write_text(file.read_text().replace('"median": 0.', '"median": 0.1'))
+    with pytest.raises(InputError, match="changed after it was written"):
+        score(file, [inside])
+
+
+def test_a_prediction_that_is_none(tmp_path: Path) -> None:
+    file = tmp_path / "other.json"
+    file.write_text('{"kind": "something else"}')
+    with pytest.raises(InputError, match="no prediction"):
+        load_prediction(file)
+    with pytest.raises(InputError, match="name at least one"):
+        predict_blind(load_display(STATOR), [], tmp_path / "new.json")
+
+
+def test_what_cannot_be_used_is_refused_before_any_work() -> None:
+    plate = load_display("biet2008-plate")
+    with pytest.raises(InputError, match="nothing was observed"):
+        calibrate(plate, [])
+    with pytest.raises(InputError, match="vibration_amplitude"):
+        calibrate(plate, [Observation("relative_friction", 0.5, 0.1)])
+    with pytest.raises(InputError, match="measured values already"):
+        calibrate(load_display(STATOR), [Observation("resonance_frequency", 4e4, 10.0)])
+    with pytest.raises(InputError, match="Did you mean 'resonance_frequency'"):
+        calibrate(plate, [Observation("resonance_freqency", 3e4, 10.0)])
+    with pytest.raises(InputError, match="lines_across_length"):
+        asked_by(Observation(MODE_FREQUENCY, 3e4, 10.0))
+    assert "not above 0" in usable(Observation("mass", 0.0, 0.1))
+    assert usable(Observation("mass", 0.1, 0.001)) == ""
+
+
+def test_what_is_solved_of_a_display() -> None:
+    plate = load_display("biet2008-plate")
+    asked = answers_to_solve(plate, ())
+    assert Asked(MODE_FREQUENCY, (7, 0)) in asked
+    assert Asked("mass") in asked
+    assert Asked("mass") not in answers_to_solve(load_display("winfield2007-tpad"), ())
+    assert sum(design_sizes(8)) < 150
+
+
+@pytest.mark.slow
+def test_solved_answers_of_plate_and_disc(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SQUEEZEFILM_CACHE", str(tmp_path))
+    plate, disc = (load_display(one).actuator for one in ("biet2008-plate", "winfield2007-tpad"))
+    asked = (Asked("mass"), Asked("resonance_frequency"), Asked("parallel_resonance_frequency"))
+    found = solved_answers(plate, asked)
+    assert found.values[0] == pytest.approx(plate_mass(plate))  # type: ignore[arg-type]
+    assert found.values[1] < found.values[2]
+    assert found.errors[1] < 3e-3
+    again = solved_answers(plate, asked)
+    np.testing.assert_array_equal(again.values, found.values)
+    assert any(tmp_path.rglob("*"))
+    of_disc = solved_answers(disc, asked[1:])
+    assert 0 < of_disc.values[0] < of_disc.values[1]
+    with pytest.raises(InputError, match="has no answer"):
+        solved_answers(disc, asked)
+
+
+@pytest.mark.slow
+def test_friction_before_is_that_of_the_uncertainty() -> None:
+    found = friction_before(load_display(STATOR), seed=1)
+    assert found is not None
+    assert 0 < found.interval[0] < found.median < found.interval[1]
