@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.distributions import Distribution
@@ -28,6 +29,14 @@ class FolderCalibration:
     calibration: Calibration
     file: Path
     left_out: tuple[str, ...]
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers for ``--json``."""
+        return {
+            **self.calibration.summary(),
+            "file": str(self.file),
+            "left_out": list(self.left_out),
+        }
 
 
 @reads_text

@@ -1,0 +1,131 @@
+"""Verbs that go on from a bench's recordings: calibrate a display, predict blind and score."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.cli.app import AsJson, answer, print_json, to_be_solved, working, written_to
+from squeezefilm.cli.measure import measure
+
+Target = Annotated[str, typer.Argument(metavar="PRESET|FILE", help="The display.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of all draws.")]
+
+
+@measure.command()
+def calibrate(
+    display: Target,
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="Recordings, each with its TOML file beside.")
+    ],
+    out: Annotated[Path, written_to("The calibrated display, a TOML file.")] = Path(
+        "calibrated.toml"
+    ),
+    seed: Seed = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Learn a display's uncertain values from all recordings of a folder, and write the display
+    that they make of it. A few minutes for eight values; stopped, it goes on where it was."""
+    from squeezefilm.measure.calibration.folder import calibrate_folder
+    from squeezefilm.report.measured.calibrated import show_calibration
+
+    described = to_be_solved(display, quiet=as_json)
+    with working(as_json) as step:
+        found = calibrate_folder(described, folder, out, seed=seed, progress=step)
+    answer(as_json, found, show_calibration, display=found.file)
+    if not found.calibration.fits:
+        raise typer.Exit(1)
+
+
+@measure.command("predict")
+def predict_unseen(
+    display: Target,
+    ask: Annotated[
+        list[str],
+        typer.Option(
+            help="An answer and its conditions, like resonance_frequency or "
+            '"relative_friction: vibration_amplitude=1.7 um". May be repeated.'
+        ),
+    ],
+    out: Annotated[Path, written_to("The prediction, a JSON file that nothing overwrites.")] = Path(
+        "prediction.json"
+    ),
+    seed: Seed = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Write what will be measured, with its interval and a hash, before it is."""
+    from squeezefilm.measure.calibration.blind import predict_blind
+    from squeezefilm.measure.calibration.questions import question
+    from squeezefilm.report.measured.calibrated import prediction_lines
+    from squeezefilm.results import to_json
+
+    asked = [question(one) for one in ask]
+    described = to_be_solved(display, quiet=as_json)
+    with working(as_json) as step:
+        found = predict_blind(described, asked, out, seed=seed, progress=step)
+    if as_json:
+        print_json(to_json(found))
+        return
+    for line in (*prediction_lines(found), f"prediction: {out}"):
+        typer.echo(line)
+
+
+@measure.command()
+def score(
+    prediction: Annotated[Path, typer.Argument(metavar="FILE", help="What predict wrote.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="The recordings that were predicted.")
+    ],
+    display: Target,
+    keep: Annotated[
+        bool, typer.Option(help="Add the scores to the display's own file, as comments.")
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Compare a prediction with what was then measured: error, inside its interval or not, and the
+    logarithm of its density there."""
+    from squeezefilm.display import load_display
+    from squeezefilm.measure.calibration.blind import keep_scores, load_prediction
+    from squeezefilm.measure.calibration.blind import score as scored
+    from squeezefilm.measure.calibration.folder import folder_observations
+    from squeezefilm.results import to_json
+
+    load_prediction(prediction)  # refused, if it was changed, before the data are opened
+    described = load_display(display)
+    with working(as_json) as step:
+        observations, left_out = folder_observations(described, folder, step)
+    found = scored(prediction, observations)
+    if keep:
+        keep_scores(display, prediction, found)
+    if as_json:
+        print_json({"scores": to_json(found), "left_out": list(left_out)})
+        return
+    for line in (*(one.sentence for one in found), *(f"left out: {one}" for one in left_out)):
+        typer.echo(line)
+
+
+@measure.command()
+def synthetic(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where the files go.")],
+    display: Annotated[str, typer.Option(metavar="PRESET|FILE", help="Whose bench it is.")],
+    truth: Annotated[
+        Path | None, written_to("Where the values that were drawn are written; not in FOLDER.")
+    ] = None,
+    seed: Seed = 1,
+) -> None:
+    """Make up a complete bench: recordings, with noise, of a display whose values are drawn from
+    its own ranges and are not told. Every number is made by the physics; nothing was measured."""
+    from squeezefilm.measure.synthetic.bench import synthetic_bench
+    from squeezefilm.measure.synthetic.files import write_synthetic_bench, write_truth
+
+    described = to_be_solved(display)
+    with working(False) as step:
+        step("recordings of a made-up bench")
+        bench = synthetic_bench(described, seed)
+    for path in write_synthetic_bench(folder, bench):
+        typer.echo(f"recording: {path}")
+    if truth is not None:
+        write_truth(truth, bench)
+        typer.echo(f"truth: {truth}")

@@ -1,0 +1,85 @@
+"""The verbs that calibrate, predict and score: what they hand on, print and refuse."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from tests.e2e.program import run
+
+from squeezefilm.cli.calibration import calibrate, predict_unseen, score, synthetic
+from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted, Score
+from squeezefilm.measure.fits.estimate import Observation
+
+StandsIn = Callable[..., Any]
+PLATE = "biet2008-plate"
+PREDICTED = Predicted("relative_friction", {"vibration_amplitude": 1.7e-6}, 0.4, (0.3, 0.5), 0.05)
+BLIND = BlindPrediction(PLATE, "plates drawn", (PREDICTED,), {}, "abc123")
+
+
+def test_the_verbs_are_named_as_people_type_them() -> None:
+    listed = run("measure", "--help").stdout
+    for verb in (calibrate, score, synthetic):
+        assert verb.__name__ in listed
+    assert predict_unseen.__name__ not in listed
+    assert "predict" in listed
+
+
+@pytest.mark.parametrize("fits", [True, False])
+def test_a_calibration_that_does_not_fit_ends_with_1(
+    fits: bool, stands_in: StandsIn, tmp_path: Path
+) -> None:
+    found = SimpleNamespace(
+        calibration=SimpleNamespace(fits=fits), file=tmp_path / "c.toml", left_out=(),
+        summary=lambda: {"fits": fits},
+    )  # fmt: skip
+    asked = stands_in("measure.calibration.folder:calibrate_folder", found)
+    shown = stands_in("report.measured.calibrated:show_calibration", None, tells=False)
+    given = ("measure", "calibrate", PLATE, str(tmp_path), "--out", str(tmp_path / "c.toml"))
+    done = run(*given, "--seed", "7")
+    assert done.returncode == (0 if fits else 1), done.stderr
+    assert asked.given[1:] == (tmp_path, tmp_path / "c.toml")
+    assert asked.named["seed"] == 7
+    assert shown.given == (found,)
+    assert f"display: {tmp_path / 'c.toml'}" in done.stdout
+    assert json.loads(run(*given, "--json").stdout) == {"fits": fits}
+
+
+def test_a_prediction_is_told_with_its_hash(stands_in: StandsIn, tmp_path: Path) -> None:
+    asked = stands_in("measure.calibration.blind:predict_blind", BLIND)
+    out = tmp_path / "p.json"
+    ask = ("--ask", "relative_friction: vibration_amplitude=1.7 um", "--ask", "mass")
+    done = run("measure", "predict", PLATE, *ask, "--out", str(out))
+    assert done.returncode == 0, done.stderr
+    assert asked.given[1] == [
+        Observation("relative_friction", 0.0, 0.0, {"vibration_amplitude": 1.7e-6}),
+        Observation("mass", 0.0, 0.0, {}),
+    ]
+    assert "vibration_amplitude 1.7e-06: 0.4 (0.3 to 0.5, 90 %)" in done.stdout.replace("\n", " ")
+    assert "SHA-256 abc123" in done.stdout
+    refused = run("measure", "predict", PLATE, "--ask", "mass: wind=1 m", "--out", str(out))
+    assert refused.returncode == 2
+    assert "no condition" in refused.stderr
+
+
+def test_a_score_is_kept_with_the_display_where_that_is_asked(
+    stands_in: StandsIn, tmp_path: Path
+) -> None:
+    stands_in("measure.calibration.blind:load_prediction", BLIND, tells=False)
+    seen = Observation("relative_friction", 0.41, 0.03, {"vibration_amplitude": 1.7e-6})
+    stands_in(
+        "measure.calibration.folder:folder_observations", ((seen,), ("a.csv: torn",)), tells=False
+    )
+    stands_in(
+        "measure.calibration.blind:score", (Score(PREDICTED, seen, -0.01, True, 1.2),), tells=False
+    )
+    kept = stands_in("measure.calibration.blind:keep_scores", None, tells=False)
+    done = run("measure", "score", str(tmp_path / "p.json"), str(tmp_path), PLATE, "--keep")
+    assert done.returncode == 0, done.stderr
+    assert kept.given[:2] == (PLATE, tmp_path / "p.json")
+    assert "inside the 90 % interval" in " ".join(done.stdout.split())
+    assert "left out: a.csv: torn" in done.stdout
