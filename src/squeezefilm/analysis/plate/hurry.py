@@ -49,24 +49,15 @@ class Hurry:
         return cls(size, whole)
 
     @property
-    def mode(self) -> Deadline | None:
-        """When the working mode must be there."""
-        return self._before_response()
-
-    @property
-    def band(self) -> Deadline | None:
-        """When the band's modes must be there."""
-        return self._before_response()
-
-    def _before_response(self) -> Deadline | None:
+    def modes(self) -> Deadline | None:
+        """When the working mode and the band's modes must be there."""
         if self.whole is None or self.size is None:
             return None
         return self.whole.earlier(self.size.response)
 
     def allows_band(self, plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> bool:
         """Whether all modes of a band (Hz, Hz) can be looked for, on the coarse meshes at least."""
-        before = self._before_response()
-        return before is None or before.allows(band_seconds(plate, band[1]))
+        return self.modes is None or self.modes.allows(band_seconds(plate, band[1]))
 
     def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:
         """What the budget left out of the working mode and the band's modes, in sentences."""
