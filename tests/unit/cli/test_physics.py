@@ -35,7 +35,7 @@ def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: P
     assert asked.given == (load_display(PLATE),)
     assert asked.named == {
         "voltage": None, "frequency": None, "vibration_amplitude": None, "normal_force": None,
-        "surface": None, "model": None, "position": 0.0, "place": None, "speed": None,
+        "surface": None, "model": None, "position": None, "place": None, "speed": None,
         "tell_apart": False,
         "ambient_pressure": None, "wanted_friction": None, "samples": 32, "seed": 1,
     }  # fmt: skip
