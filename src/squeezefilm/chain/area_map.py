@@ -55,14 +55,6 @@ class AreaMap(NamedTuple):
     relative_friction: si.DimensionlessArray | None
     why_not: str
 
-    @property
-    def best_place(self) -> tuple[si.Metre, si.Metre] | None:
-        """Where µ′/µ is lowest (m); of places alike the first."""
-        if self.relative_friction is None:
-            return None
-        i, j = np.unravel_index(lowest(self.relative_friction), self.relative_friction.shape)
-        return float(self.x[i]), float(self.y[j])
-
 
 def lowest(relative_friction: si.DimensionlessArray) -> int:
     """Where a map of µ′/µ is lowest; of places alike the first."""
@@ -83,11 +75,12 @@ def at_best_place(
     if drive.amplitude == 0 or law.kind.film != "shared" or law.kind.limit != "own":
         return law
     found = area_map(display, mode, law, drive)
-    if found is None or found.relative_friction is None or found.best_place is None:
+    if found is None or found.relative_friction is None:
         return law
     if np.nanmin(found.relative_friction) > 1 - 1e-9:
         return law
-    place = PadPlace(found.shape, *found.best_place, is_best_of_area=True)
+    i, j = np.unravel_index(lowest(found.relative_friction), found.relative_friction.shape)
+    place = PadPlace(found.shape, float(found.x[i]), float(found.y[j]), is_best_of_area=True)
     return dataclasses.replace(law, position=0.0, place=place)
 
 

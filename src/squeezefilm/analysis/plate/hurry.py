@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import OutOfTimeError
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.layers import COARSE, Resolution
@@ -34,18 +33,12 @@ class Hurry:
         allow the coarse meshes.
         """
         whole = pace.deadline()
-        if whole is None:
+        if whole is None or pace.budget is None:
             return cls()
         size = solve_size(plate, label, estimated_frequency(plate, label))
-        least = size.coarse + size.coarse_response
-        if not whole.allows(least):
-            seen = expectation(plate)
-            instead = "" if seen is None else f" Without a solve: {seen.sentence}."
-            raise OutOfTimeError(
-                f"the coarsest three-dimensional mesh takes about {least:.2g} s, more than the "
-                f"budget of {pace.budget:.3g} s; allow more.{instead}",
-                quantity="budget",
-            )
+        seen = expectation(plate)
+        instead = "" if seen is None else f". Without a solve: {seen.sentence}."
+        size.require_within(whole, pace.budget, instead)
         return cls(size, whole)
 
     @property

@@ -9,7 +9,7 @@ Sources: Salbu 1964, 10.1115/1.3653080; Biet et al., equations 5 to 12.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
 from squeezefilm.film.gap import PaperGap
 
 PaperModel = Literal["paper2008", "paper2008-printed"]
-PAPER_MODELS: tuple[PaperModel, ...] = get_args(PaperModel)
 
 
 @si.closed_form(nonnegative="amplitude_ratio")
