@@ -144,7 +144,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.ring.modes.bending_frequency": {"diameters": 2, "degree": 3},
     "plate.ring.modes.annular_modes": {"harmonic": 1, "degree": 3, "count": 1},
     "plate.ring.modes.annular_admittance": {"harmonics": (0,), "degree": 3, "modes": 2},
-    "plate.ring.pair.pair_motion": {"split": 0.5, "axis": 0.3},
     "plate.ring.pair.crest_speed": {"travelling": 1e-6},
     "plate.solid.screening.screened_modes": {"band": (30e3, 60e3)},
     "plate.ring.section.RingLayer": {

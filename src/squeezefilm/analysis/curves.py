@@ -181,11 +181,11 @@ def model_curves(prediction: Prediction) -> tuple[ModelCurve, ...]:
         law = p.law.by(model)
         # Denser at small amplitudes, where a smooth film lifts the finger off.
         amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)
-        found.append(ModelCurve(model, amplitude, _as_far_as_it_goes(law, amplitude)))
+        found.append(ModelCurve(model, amplitude, as_far_as_it_goes(law, amplitude)))
     return tuple(found)
 
 
-def _as_far_as_it_goes(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
+def as_far_as_it_goes(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
     """µ′/µ at rising amplitudes (m), NaN from the first that the law refuses."""
     with contextlib.suppress(SqueezefilmError):
         return law.curve(amplitude)

@@ -22,7 +22,7 @@ def test_rows_and_figure_say_the_range_and_its_places() -> None:
     assert AREA is not None
     assert AREA.best_place is not None
     assert AREA.worst_place is not None
-    judged = judged_area(STATOR, POINT, AREA, samples=0)
+    judged = judged_area(STATOR, POINT, samples=0)
     first, second = place_rows(POINT, judged)
     assert first[1] == place_words(POINT.place)
     assert first[2] == POINT.place_said.replace(f"{first[1]}, ", "")
@@ -40,7 +40,7 @@ def test_without_an_area_nothing_is_known_and_the_figure_says_why() -> None:
 
 def test_a_model_without_ridges_of_their_own_says_why() -> None:
     p = predict(STATOR, model="paper2008")
-    judged = judged_area(STATOR, p, active_area(STATOR, p), samples=32)
+    judged = judged_area(STATOR, p, samples=32)
     assert judged is not None
     assert judged.odds is None
     assert "paper2008" in place_rows(p, judged)[1][2]
