@@ -20,6 +20,7 @@ from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.config.stated import source_doubt
 from squeezefilm.display import Display
+from squeezefilm.plate.heat.warming import too_hot
 from squeezefilm.render.fidelity.survival import FidelityTable
 
 # Below this drop of the relative friction a difference is not noticed: Fehlberg 2022 reports about
@@ -72,6 +73,8 @@ def verdict(
                 f"{amplitude} is more than any bonded plate of this kind is known to do; ceramics "
                 "turn nonlinear and bonds fail long before, and nothing here sees that.",
             )
+        if p.heat is not None and (hot := too_hot(p.heat)) is not None:
+            yield Finding("limit", hot)
         if table is not None:
             yield _of_gratings(table)
         if MODEL_KINDS[p.model].film == "asymptote":
@@ -161,7 +164,8 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
     if p.law.place is None:
         where += f", at {p.vibration_amplitude * 1e6:.3g} µm"
     elif abs(p.law.place.at_centre - 1) > 0.005:
-        where += f" and the best antinode {p.vibration_amplitude * 1e6:.3g} µm"
+        told_of = p.law.place.antinode_said
+        where += f" ({told_of}, of which amplitudes are told, {p.vibration_amplitude * 1e6:.3g} µm)"
     asked = f"{PAPER_CRITERION:.2f}, as the paper asks"
     if unsure is None:
         because = why_not or "no interval was computed"

@@ -14,9 +14,9 @@ from squeezefilm.errors import ConfigError
 from squeezefilm.plausibility.bounds import Bound, bounds, shown
 from squeezefilm.plausibility.ratios import Path, Ratio, ratios
 
-# Slips of unit that people make: milli and kilo, micro and mega, centimetres, nano and giga; in
-# the order in which they are offered.
-_SLIPS = (1e3, 1e-3, 1e6, 1e-6, 1e-2, 1e2, 10.0, 0.1, 1e9, 1e-9)
+# Slips that people make: milli and kilo, micro and mega, a digit or millimetres for centimetres,
+# metres for centimetres, nano and giga; in the order in which they are offered.
+_SLIPS = (1e3, 1e-3, 1e6, 1e-6, 10.0, 0.1, 1e-2, 1e2, 1e9, 1e-9)
 
 
 @dataclass(frozen=True)

@@ -39,8 +39,8 @@ def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
         *rows,
         (
             "µ′/µ over the active area",
-            f"{area.best:.3f} to {area.worst:.3f}",
-            f"{places}; median {area.median:.3f}; {shares}",
+            f"{area.best:.2f} to {area.worst:.2f}",
+            f"{places}; median {area.median:.2f}; {shares}",
         ),
     ]
 

@@ -26,7 +26,7 @@ def test_rows_and_figure_say_the_range_and_its_places() -> None:
     first, second = place_rows(POINT, judged)
     assert first[1] == place_words(POINT.place)
     assert first[2] == POINT.place_said.replace(f"{first[1]}, ", "")
-    assert second[1] == f"{AREA.best:.3f} to {AREA.worst:.3f}"
+    assert second[1] == f"{AREA.best:.2f} to {AREA.worst:.2f}"
     assert place_words(AREA.worst_place) in second[2]
     assert f"{percent(AREA.share_below(0.7))} below 0.70" in second[2]
     drawn = figure_of(_analysis(judged))
