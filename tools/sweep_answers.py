@@ -30,7 +30,8 @@ DISPLAYS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 _PAIR = re.compile(r"(relative_friction_interval|finger_impedance_N_s_per_m)\.[01]$")
 HEAD = """\
 # What a sweep can ask of each verb; tools/sweep_answers.py writes it.
-# A star stands for a place in a list, from 0 on.
+# A star stands for a place in a list, from 0 on; "heat: predict" for all that predict lists under
+# heat, and ": predict" for all of its numbers.
 """
 
 
@@ -66,11 +67,31 @@ def keys(verb: str) -> list[str]:
     return list(found)
 
 
+def written(found: dict[str, list[str]], verb: str) -> list[str]:
+    """A verb's keys; what a verb before it lists alike is said by that verb's name."""
+    own, lines = found[verb], {}
+    before = {one: found[one] for one in list(found)[: list(found).index(verb)]}
+    if whole := next((one for one, theirs in before.items() if set(theirs) <= set(own)), None):
+        lines[f": {whole}"] = None
+        own = [key for key in own if key not in before[whole]]
+    for key in own:
+        head, dot, _ = key.partition(".")
+        group = [one for one in own if one.startswith(f"{head}.")]
+        alike = (
+            one
+            for one, theirs in before.items()
+            if dot and group == [key for key in theirs if key.startswith(f"{head}.")]
+        )
+        other = next(alike, None)
+        lines[key if other is None else f"{head}: {other}"] = None
+    return list(lines)
+
+
 def text() -> str:
     """The text of the file."""
-    lines = [HEAD]
+    found, lines = {verb: keys(verb) for verb in VERBS}, [HEAD]
     for verb in VERBS:
-        lines += [f"{verb} = [", *(f'  "{key}",' for key in keys(verb)), "]", ""]
+        lines += [f"{verb} = [", *(f'  "{line}",' for line in written(found, verb)), "]", ""]
     return "\n".join(lines)
 
 

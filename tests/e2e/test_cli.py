@@ -212,13 +212,6 @@ def test_new_show_and_analyze_a_file_of_ones_own(tmp_path: Path) -> None:
     )
 
 
-def test_presets_are_listed() -> None:
-    done = run("presets")
-    assert done.returncode == 0
-    for name in presets.display_names():
-        assert name in done.stdout
-
-
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full here")
 def test_output_that_does_not_fit_is_one_message_and_exit_code_two() -> None:
     with Path("/dev/full").open("w") as full:
@@ -253,8 +246,6 @@ def test_output_that_does_not_fit_is_one_message_and_exit_code_two() -> None:
         (("film", "--squeeze-number", "10", "--excursion", "1"), "below 1"),
         (("film", "--squeeze-number", "0", "--excursion", "0.5"), "at least 1e-10"),
         (("film", "--squeeze-number", "nan", "--excursion", "0.5"), "nan"),
-        (("film", "--squeeze-number", "10"), "--excursion"),
-        (("film", "--sweep"), "--out DIR"),
         (("plate", "biet2008-plate", "--mode", "eight"), "8,0"),
         (("plate", "biet2008-plate", "--band", "5 kHz:4 kHz"), "lower frequency first"),
         (("plate", "biet2008-plate", "--band", "33.6 kHz:33.7 kHz"), "no mode lies between"),

@@ -149,7 +149,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "constants": np.array([120e9, 75e9, 75e9, 110e9, 21e9, -5.0, 16.0, 12.0, 8e-9, 7e-9]) + 0j,
         "frequency": np.array([60e3, 70e3]),
     },
-    "plate.ring.pair.pair_motion": {"split": 0.5, "axis": 0.3},
     "plate.ring.pair.crest_speed": {"travelling": 1e-6},
     "plate.solid.screening.screened_modes": {"band": (30e3, 60e3)},
     "plate.ring.section.RingLayer": {

@@ -50,11 +50,6 @@ from squeezefilm.quantities import Unit
 
 
 @pytest.fixture(scope="module")
-def stator() -> Display:
-    return load_display("biet2008-stator")
-
-
-@pytest.fixture(scope="module")
 def point(stator: Display) -> Prediction:
     return predict(stator, vibration_amplitude=2e-6)
 

@@ -80,7 +80,9 @@ def _both(
         drive=DriveTable.linear(PER_VOLT, LIMIT / PER_VOLT),
         estimator=MotionEstimator.for_sensor(sensor),
         compensation=compensation,
-        relative_friction=FrictionTable.of_amplitude(np.array([0.0, LIMIT]), np.array([1.0, 0.6])),
+        relative_friction=FrictionTable(
+            np.array([0.0, LIMIT]), np.zeros(1), np.array([[1.0, 0.6]]), 0.0
+        ),
     )
     run = run_ticks(plan, stream_samples(stream), stream.arrival, offline.time.size)
     return offline, run
@@ -227,7 +229,7 @@ def test_lost_ticks_leave_the_compensator_where_the_resonator_is() -> None:
     plan = LoopPlan(
         lower(Amplitude(SineWave(1e-3), 0.1e-6, 0.9e-6), largest_amplitude=LIMIT), 5e3, envelope,
         DriveTable.linear(PER_VOLT, 100.0), MotionEstimator.for_sensor(LVDT_10_KHZ), "inverse",
-        FrictionTable.of_amplitude(np.array([0.0, LIMIT]), np.array([1.0, 0.0])),
+        FrictionTable(np.array([0.0, LIMIT]), np.zeros(1), np.array([[1.0, 0.0]]), 0.0),
     )  # fmt: skip
     rng = np.random.default_rng(8)
     delays = np.where(rng.random(2000) < 0.1, rng.exponential(1e-3, 2000), 0.0)

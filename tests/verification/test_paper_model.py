@@ -134,7 +134,8 @@ def test_printed_equation_14_hardly_leaves_one() -> None:
     printed = friction(AMPLITUDES, model="paper2008-printed")
     np.testing.assert_allclose(printed, 1, atol=2e-6)
     pressure = contact_mean_pressure(gap(), "paper2008-printed")
-    literal = paper.relative_friction_from_pressure_printed(pressure, FORCE / CONTACT**2)
+    # As printed: P∞ over ambient, P_f in Pa.
+    literal = 1 - (pressure - 1) / (FORCE / CONTACT**2)
     assert printed[3] == pytest.approx(literal, rel=1e-14)
     with pytest.raises(UnreachableError, match="paper2008-printed"):
         paper.vibration_amplitude_for(0.7, gap(), FORCE, AMBIENT, "paper2008-printed")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.sparse.linalg import LinearOperator, gmres
+from tests.verification.rims import rim_supports
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import ContradictionError, GeometryError, InputError, OutOfRangeError
@@ -19,7 +20,6 @@ from squeezefilm.plate.layout import (
     FoamSupport,
     GlueLayer,
     RectangularPlate,
-    rim_supports,
 )
 from squeezefilm.plate.solid.layers import COARSE
 from squeezefilm.plate.solid.mesh import plate_model

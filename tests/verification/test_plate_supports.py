@@ -7,13 +7,13 @@ import dataclasses
 
 import numpy as np
 import pytest
+from tests.verification.rims import rim_supports
 
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.layout import (
     CeramicPatch,
     FoamSupport,
     RectangularPlate,
-    rim_supports,
     turned,
 )
 from squeezefilm.plate.solid.guess import bare_frequency, screened_frequency, straightness

@@ -52,7 +52,6 @@ from squeezefilm.analysis.verdict import (
     verdict,
     why_not_good,
 )
-from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.pad_place import FacePlace
 from squeezefilm.chain.prediction import Prediction, predict
@@ -212,17 +211,13 @@ class Analysis(Result):
 
     def summary(self) -> dict[str, Any]:
         """The numbers, with units in the keys: what ``--json`` prints."""
-        p = self.prediction
+        p, unsure = self.prediction, self.uncertainty
         return {
             **p.summary(),
             "active_area": None if self.active_area is None else self.active_area.summary(),
-            "relative_friction_interval": None
-            if self.uncertainty is None
-            else list(self.uncertainty.interval),
-            "relative_friction_median": None
-            if self.uncertainty is None
-            else self.uncertainty.median,
-            **_intervals(self.uncertainty),
+            "relative_friction_interval": None if unsure is None else list(unsure.interval),
+            "relative_friction_median": None if unsure is None else unsure.median,
+            **_intervals(unsure),
             "wanted": None if self.wanted is None else self.wanted.summary(),
             "felt": None if self.felt is None else self.felt.summary(),
             "sound_at_ear": to_json(self.ears),
@@ -342,7 +337,7 @@ def _what_follows(
     mode = prediction.mode
     tau = prediction.envelope_time_constant
     tell("friction over the active area")
-    area = judged_area(display, prediction, active_area(display, prediction), samples=samples)
+    area = judged_area(display, prediction, samples=samples)
     tell("friction against amplitude")
     own = friction_curve(prediction, prediction.surface, prediction.model)
     tell("how sure the friction is")

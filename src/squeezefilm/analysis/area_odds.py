@@ -18,7 +18,7 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import FreeAmplitude, Outcome, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.uncertainty import sobol_points
-from squeezefilm.chain.active_area import CRITERIA, ActiveArea
+from squeezefilm.chain.active_area import CRITERIA, ActiveArea, active_area
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.pad_place import pad_place
 from squeezefilm.chain.prediction import Prediction
@@ -71,9 +71,7 @@ class JudgedArea(NamedTuple):
         return self.area.summary() | {"odds": None if self.odds is None else self.odds.summary()}
 
 
-def area_odds(
-    display: Display, prediction: Prediction, area: ActiveArea, *, seed: int = 1
-) -> AreaOdds | None:
+def area_odds(display: Display, prediction: Prediction, area: ActiveArea) -> AreaOdds | None:
     """The friction of an area by 64 draws of all that is uncertain in a display; None where the
     area has no friction, nothing vibrates or nothing touches."""
     p = prediction
@@ -81,7 +79,7 @@ def area_odds(
         return None
     over = _elsewhere(display, p, area)
     mixture, free = mixture_of(display, p), FreeAmplitude(display, p)
-    points = sobol_points(mixture, DRAWS, seed)
+    points = sobol_points(mixture, DRAWS, seed=1)
     samples = np.full((DRAWS, len(over)), np.nan)
     for row, point, draw in zip(samples, points, mixture.draws(points), strict=True):
         with contextlib.suppress(SqueezefilmError), as_drawn():
@@ -123,10 +121,9 @@ def _met(law: FrictionLaw, found: Outcome, over: list[_Elsewhere | None]) -> lis
     return [min(max(mean + tied, 0.0), 1.0) for mean in means]
 
 
-def judged_area(
-    display: Display, prediction: Prediction, area: ActiveArea | None, *, samples: int
-) -> JudgedArea | None:
-    """An area with its odds, where samples were asked for; None without an area."""
+def judged_area(display: Display, prediction: Prediction, *, samples: int) -> JudgedArea | None:
+    """The active area with its odds, where samples were asked for; None without an area."""
+    area = active_area(display, prediction)
     if area is None:
         return None
     return JudgedArea(area, area_odds(display, prediction, area) if samples else None)

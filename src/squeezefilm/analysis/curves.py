@@ -50,7 +50,7 @@ class FrictionCurve:
     """Relative friction against vibration amplitude on one surface: one curve of Fig 5.
 
     `amplitude_for_criterion` reaches µ′/µ = 0.7, `zero_friction_amplitude` zero; None where that is
-    out of reach of any amplitude up to 50 µm.
+    out of reach of any amplitude that `FrictionLaw.amplitude_for` looks at.
     """
 
     surface: str
@@ -107,6 +107,8 @@ def friction_curve(prediction: Prediction, surface: Surface, model: FrictionMode
     zero = _reached(law, 0.0)
     # Room for where the paper's finger floats; a solved one may never float.
     top = max(10e-6, 1.25 * p.vibration_amplitude, 1.1 * min(zero or 0.0, 15e-6))
+    # Of a mode that is hardly driven the face moves many times as far elsewhere.
+    top = min(top, law.largest_amplitude)
     amplitude = np.linspace(0.0, top, 201)
     if law.kind.film != "asymptote":
         # Dear points lie denser at small amplitudes, where most of the friction goes.
@@ -181,11 +183,11 @@ def model_curves(prediction: Prediction) -> tuple[ModelCurve, ...]:
         law = p.law.by(model)
         # Denser at small amplitudes, where a smooth film lifts the finger off.
         amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)
-        found.append(ModelCurve(model, amplitude, _as_far_as_it_goes(law, amplitude)))
+        found.append(ModelCurve(model, amplitude, as_far_as_it_goes(law, amplitude)))
     return tuple(found)
 
 
-def _as_far_as_it_goes(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
+def as_far_as_it_goes(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
     """µ′/µ at rising amplitudes (m), NaN from the first that the law refuses."""
     with contextlib.suppress(SqueezefilmError):
         return law.curve(amplitude)

@@ -105,10 +105,8 @@ def ear_exposure(
     display: Display,
     prediction: Prediction,
     unsure: UncertainFriction | None = None,
-    *,
-    distance: si.Metre = EAR_DISTANCE,
 ) -> EarExposure | None:
-    """What reaches an ear at a distance (m) from a display where a prediction was made.
+    """What reaches an ear at `EAR_DISTANCE` from a display where a prediction was made.
 
     The duty is the drive's. None where the plate's shape is not known (an amplitude that was given,
     a plate taken as a beam) or nothing vibrates. Raises `InputError` for a distance within the
@@ -119,7 +117,7 @@ def ear_exposure(
     surface = moving_surface(display, p) if p.voltage is not None and free > 0 else None
     if surface is None:
         return None
-    level = float(loudest_level(surface, distance))
+    level = float(loudest_level(surface, EAR_DISTANCE))
     low = high = 0.0
     if unsure is not None and unsure.amplitude_interval is not None and p.vibration_amplitude > 0:
         ends = np.maximum(unsure.amplitude_interval, 1e-3 * p.vibration_amplitude)
@@ -132,7 +130,7 @@ def ear_exposure(
         for one in found
         if one is not None
     )
-    return EarExposure(p.frequency, distance, duty, level, low, high, limits)
+    return EarExposure(p.frequency, EAR_DISTANCE, duty, level, low, high, limits)
 
 
 def _standing(low: float, high: float, limit: float) -> str:

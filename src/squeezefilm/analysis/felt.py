@@ -29,7 +29,6 @@ from squeezefilm.perception.felt import (
     tried_periods,
 )
 from squeezefilm.perception.observer import Observer, load_observer
-from squeezefilm.progress import SayProgress
 from squeezefilm.render.fidelity.survival import EXPLORING_SPEEDS
 from squeezefilm.render.resonator.envelope import envelope_time_constant, finest_period
 
@@ -101,22 +100,19 @@ def _row(one: FeltAt) -> dict[str, Any]:
 def felt_gratings(
     display: Display,
     prediction: Prediction,
-    observer: Observer | None = None,
     *,
     draws: int = DRAWS,
-    seed: int = 1,
-    progress: SayProgress | None = None,
 ) -> FeltGratings | None:
     """The finest gratings that are felt where a prediction was made, at the prediction's finger
     speed and at `EXPLORING_SPEEDS`.
 
-    `draws` is a power of two (0: no interval); the observer is the preset "fingertip" if none is
-    given. None where nothing vibrates. Raises what the friction's law raises at the amplitude.
+    `draws` is a power of two (0: no interval); the observer is the preset "fingertip". None where
+    nothing vibrates. Raises what the friction's law raises at the amplitude.
     """
     p = prediction
     if p.vibration_amplitude == 0 or p.relative_friction == 1:
         return None
-    senses = observer or load_observer()
+    senses = load_observer()
     tau = p.envelope_time_constant
 
     def described(
@@ -131,8 +127,7 @@ def felt_gratings(
         nominal.append(_finest(senses, tau, p.vibration_amplitude, law, Rubbed(base, pad, speed)))
     found, why = (None, "no draws were asked for")
     if draws and p.touch.sharing is not None:
-        tell = progress or (lambda _: None)
-        found, why = _drawn(display, p, senses, speeds, draws, seed, tell)
+        found, why = _drawn(display, p, senses, speeds, draws)
     rows = []
     for k, speed in enumerate(speeds):
         column = None if found is None else found[:, k]
@@ -167,18 +162,14 @@ def _drawn(
     senses: Observer,
     speeds: tuple[si.MetrePerSecond, ...],
     count: int,
-    seed: int,
-    tell: SayProgress,
 ) -> tuple[si.MetreArray | None, str]:
     """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
     none is, NaN where the draw is refused; None with the reason where too many are."""
     mixture = mixture_of(display, p)
     scale = FreeAmplitude(display, p)
     found = np.full((count, len(speeds)), np.nan)
-    points = sobol_points(mixture, count, seed)
+    points = sobol_points(mixture, count, seed=1)
     for number, draw in enumerate(mixture.draws(points)):
-        if number % max(count // 20, 1) == 0:
-            tell(f"what is felt of draw {number + 1} of {count}")
         try:
             high = mixture.outcome(points[number], draw, scale).amplitude
             found[number] = _felt_of(mixture, draw, high, senses, speeds)

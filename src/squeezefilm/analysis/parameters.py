@@ -17,6 +17,7 @@ from squeezefilm.distributions import Distribution, Uniform
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.materials import Piezoceramic
+from squeezefilm.plausibility.checks import described_numbers
 
 _Whole = TypeVar("_Whole")
 Origin = Literal["given", "assumed"]
@@ -200,20 +201,9 @@ def unit_at(whole: Any, path: str) -> tuple[si.Unit, bool]:
     return si.unit_of(hint) or si.Unit("1"), isinstance(getattr(owner, name), int)
 
 
-def number_paths(whole: Any, path: str = "") -> Iterator[str]:
+def number_paths(whole: Any) -> Iterator[str]:
     """The dotted paths of the numbers of a display or a part of one, as they are given."""
-    if isinstance(whole, bool | str):
-        return
-    if isinstance(whole, int | float):
-        yield path
-    elif isinstance(whole, tuple):
-        for number, item in enumerate(whole):
-            yield from number_paths(item, f"{path}.{number}")
-    elif dataclasses.is_dataclass(whole):
-        for one in dataclasses.fields(whole):
-            yield from number_paths(
-                getattr(whole, one.name), f"{path}.{one.name}" if path else one.name
-            )
+    return (".".join(map(str, path)) for _, path, _ in described_numbers(whole))
 
 
 def _place(whole: Any, path: str) -> tuple[Any, str]:

@@ -27,7 +27,6 @@ from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import Actuator, DiscPlate, RectangularPlate
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
-from squeezefilm.progress import SayProgress
 
 Effort = Literal["quick", "solved"]
 """How a changed plate is computed: "quick" by the beam, in milliseconds, and where its glue changes
@@ -136,11 +135,7 @@ class _Changed(NamedTuple):
 
 @as_drawn()
 def display_sensitivities(
-    display: Display,
-    prediction: Prediction,
-    effort: Effort = "quick",
-    *,
-    progress: SayProgress | None = None,
+    display: Display, prediction: Prediction, effort: Effort = "quick"
 ) -> DisplaySensitivities:
     """What each uncertain or toleranced value does where a prediction was made, its voltage kept.
 
@@ -153,15 +148,12 @@ def display_sensitivities(
     effort.
     """
     si.require_one_of("effort", effort, ("quick", "solved"))
-    tell = progress or (lambda _: None)
     p = prediction
     mixture = Mixture(display, p, driven=p.voltage is not None)
     bench = _Bench(display, p, mixture, effort)
     nominal = bench.friction(display, p.mode)
     rows = []
-    every = tuple(_every(display, mixture))
-    for number, one in enumerate(every, 1):
-        tell(f"sensitivity {number} of {len(every)}: {one.parameter.path}")
+    for one in _every(display, mixture):
         low, high = (bench.shift(one, value) for value in one.parameter.drawn(_ENDS))
         known = one.parameter
         rows.append(

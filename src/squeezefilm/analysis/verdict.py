@@ -20,6 +20,7 @@ from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.config.stated import source_doubt
 from squeezefilm.display import Display
+from squeezefilm.plate.heat.warming import too_hot
 from squeezefilm.render.fidelity.survival import FidelityTable
 
 # Below this drop of the relative friction a difference is not noticed: Fehlberg 2022 reports about
@@ -61,8 +62,32 @@ def verdict(
     yield from (Finding("doubt", doubt.text) for doubt in doubts)
     # Why is said above.
     why = None if why_not_good(display, p) is None else ""
-    for finding in _findings(display, p, own, table, unsure, why_not, area):
-        yield held_back(finding, why)
+
+    def found() -> Iterator[Finding]:
+        amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
+        yield from friction_verdict(p, unsure, why_not, area)
+        yield from _of_needed_amplitude(p, own)
+        if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
+            yield Finding(
+                "doubt",
+                f"{amplitude} is more than any bonded plate of this kind is known to do; ceramics "
+                "turn nonlinear and bonds fail long before, and nothing here sees that.",
+            )
+        if p.heat is not None and (hot := too_hot(p.heat)) is not None:
+            yield Finding("limit", hot)
+        if table is not None:
+            yield _of_gratings(table)
+        if MODEL_KINDS[p.model].film == "asymptote":
+            yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
+        if (doubt := source_doubt(display.provenance)) is not None:
+            yield Finding("doubt", doubt)
+        yield Finding(
+            "doubt",
+            "Friction against amplitude is not validated against measurements: no measured curve "
+            "of an ultrasonic display could be read anywhere.",
+        )
+
+    yield from (held_back(finding, why) for finding in found())
 
 
 def why_not_good(display: Display, p: Prediction) -> str | None:
@@ -77,38 +102,6 @@ def held_back(finding: Finding, why: str | None) -> Finding:
     if why is None or finding.kind != "good":
         return finding
     return replace(finding, kind="limit", text=f"{finding.text} {why}".strip())
-
-
-def _findings(
-    display: Display,
-    p: Prediction,
-    own: FrictionCurve,
-    table: FidelityTable | None,
-    unsure: UncertainFriction | None,
-    why_not: str,
-    area: JudgedArea | None,
-) -> Iterator[Finding]:
-    """The sentences of a verdict but for those on the working mode."""
-    amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
-    yield from friction_verdict(p, unsure, why_not, area)
-    yield from _of_needed_amplitude(p, own)
-    if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
-        yield Finding(
-            "doubt",
-            f"{amplitude} is more than any bonded plate of this kind is known to do; ceramics "
-            "turn nonlinear and bonds fail long before, and nothing here sees that.",
-        )
-    if table is not None:
-        yield _of_gratings(table)
-    if MODEL_KINDS[p.model].film == "asymptote":
-        yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
-    if (doubt := source_doubt(display.provenance)) is not None:
-        yield Finding("doubt", doubt)
-    yield Finding(
-        "doubt",
-        "Friction against amplitude is not validated against measurements: no measured curve "
-        "of an ultrasonic display could be read anywhere.",
-    )
 
 
 def ears_finding(ears: EarExposure | None) -> Finding:
@@ -171,7 +164,8 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
     if p.law.place is None:
         where += f", at {p.vibration_amplitude * 1e6:.3g} µm"
     elif abs(p.law.place.at_centre - 1) > 0.005:
-        where += f" and the best antinode {p.vibration_amplitude * 1e6:.3g} µm"
+        told_of = p.law.place.antinode_said
+        where += f" ({told_of}, of which amplitudes are told, {p.vibration_amplitude * 1e6:.3g} µm)"
     asked = f"{PAPER_CRITERION:.2f}, as the paper asks"
     if unsure is None:
         because = why_not or "no interval was computed"

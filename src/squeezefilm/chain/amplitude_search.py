@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
 
@@ -13,11 +14,14 @@ HIGHEST_AMPLITUDE: si.Metre = 50e-6
 
 
 def least_amplitude(
-    friction: Callable[[float], float], wanted: si.Dimensionless, model: str
+    friction: Callable[[float], float],
+    wanted: si.Dimensionless,
+    model: str,
+    highest: Annotated[si.Metre, si.Above(2e-8)] = HIGHEST_AMPLITUDE,
 ) -> si.Metre:
     """The least amplitude (m) at which `friction` of an amplitude falls to `wanted`.
 
-    Raises `UnreachableError` where none up to 50 µm does.
+    Raises `UnreachableError` where none up to `highest` (m, 50 µm) does.
     """
     from scipy.optimize import brentq
 
@@ -31,7 +35,7 @@ def least_amplitude(
     if excess(0.0) <= 0:
         return 0.0
     low, least = 0.0, 1.0
-    for high in np.geomspace(2e-8, HIGHEST_AMPLITUDE, 24):
+    for high in np.geomspace(2e-8, highest, 24):
         try:
             left = excess(float(high))
         except OutOfRangeError:
@@ -42,6 +46,6 @@ def least_amplitude(
         low, least = float(high), min(least, left + wanted)
     raise UnreachableError(
         f"relative_friction = {wanted:.4g} is not reached by any vibration amplitude up to "
-        f"{si.format_quantity(HIGHEST_AMPLITUDE, si.Unit('m'))}: the model '{model}' "
+        f"{si.format_quantity(highest, si.Unit('m'))}: the model '{model}' "
         f"gives {least:.4g} at the least; press less, take a smoother surface or ask for less"
     )

@@ -55,15 +55,6 @@ class AreaMap(NamedTuple):
     relative_friction: si.DimensionlessArray | None
     why_not: str
 
-    @property
-    def best_place(self) -> tuple[si.Metre, si.Metre] | None:
-        """Where µ′/µ is lowest (m), of places alike the one that moves most."""
-        if self.relative_friction is None:
-            return None
-        best = lowest(self.relative_friction, self.at_centre * self.lobe_amplitude)
-        i, j = np.unravel_index(best, self.relative_friction.shape)
-        return float(self.x[i]), float(self.y[j])
-
 
 def lowest(relative_friction: si.DimensionlessArray, moved: si.FloatArray) -> int:
     """Where a map of µ′/µ is lowest; of places alike the one that is moved most, so that a
@@ -88,9 +79,11 @@ def at_best_place(
     if drive.amplitude == 0 or law.kind.film != "shared" or law.kind.limit != "own":
         return law
     found = area_map(display, mode, law, drive)
-    if found is None or found.relative_friction is None or found.best_place is None:
+    if found is None or found.relative_friction is None:
         return law
-    place = PadPlace(found.shape, *found.best_place, is_best_of_area=True)
+    best = lowest(found.relative_friction, found.at_centre * found.lobe_amplitude)
+    i, j = np.unravel_index(best, found.relative_friction.shape)
+    place = PadPlace(found.shape, float(found.x[i]), float(found.y[j]), is_best_of_area=True)
     return dataclasses.replace(law, position=0.0, place=place)
 
 

@@ -163,14 +163,14 @@ class FrictionLaw(PadLaw):
     ) -> si.Metre:
         """The least amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
 
-        Raises `UnreachableError` where no amplitude up to 50 µm does.
+        Raises `UnreachableError` where no amplitude up to `largest_amplitude` does.
         """
         if self.kind.film == "asymptote":
             still, ambient = self.gap(0.0), self.gas.ambient_pressure
             return paper.vibration_amplitude_for(
                 relative_friction, still, self.normal_force, ambient, self._closed_form
             )
-        return least_amplitude(self._falling, relative_friction, self.model)
+        return least_amplitude(self._falling, relative_friction, self.model, self.largest_amplitude)
 
     def _falling(self, amplitude: float) -> float:
         """µ′/µ that goes on falling where the finger floats, so that a search finds its way."""

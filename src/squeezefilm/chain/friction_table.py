@@ -46,14 +46,6 @@ class FrictionTable:
             )
 
     @classmethod
-    def of_amplitude(
-        cls, amplitude: si.MetreArray, relative_friction: si.DimensionlessArray
-    ) -> FrictionTable:
-        """The table of a law that does not depend on the speed: µ′/µ (1) at amplitudes that rise
-        from 0 (m), both of shape (n,), n ≥ 2. Raises `InputError` for anything else."""
-        return cls(amplitude, np.zeros(1), np.asarray(relative_friction)[None, :], 0.0)
-
-    @classmethod
     def of_inverse(cls, inverse: FrictionInverse) -> FrictionTable:
         """The table that an inverse reads backwards: what a loop writes down, for a finger too."""
         return cls(

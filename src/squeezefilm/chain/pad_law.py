@@ -11,6 +11,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.amplitude_search import HIGHEST_AMPLITUDE
 from squeezefilm.chain.friction_models import (
     MODEL_KINDS,
     FrictionLimits,
@@ -173,6 +174,12 @@ class PadLaw:
         if self.place is None:
             return self._even_swings
         return self.place.met(self.finger, self.contact_side)
+
+    @cached_property
+    def largest_amplitude(self) -> si.Metre:
+        """The amplitude (m, zero-to-peak) up to which no ridge meets more than 50 µm: less than
+        that itself where the face at the place moves further than the antinode."""
+        return HIGHEST_AMPLITUDE / max(1.0, float(np.max(self.ridge_swings[0])))
 
     @cached_property
     def _even_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:

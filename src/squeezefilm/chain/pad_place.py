@@ -84,6 +84,11 @@ class PadPlace:
         """The amplitude at the pad's centre."""
         return float(self.shape.grid(np.array([self.x]), np.array([self.y]))[0, 0])
 
+    @property
+    def antinode_said(self) -> str:
+        """Which antinode amplitudes are told of, in words: elsewhere the face may move further."""
+        return f"the antinode at {place_words(self.shape.lobe)}"
+
     @functools.cached_property
     def _known(self) -> dict[tuple[float, float, float], tuple[si.FloatArray, si.FloatArray]]:
         """What was asked of `met`."""

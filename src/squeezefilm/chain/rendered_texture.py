@@ -183,12 +183,10 @@ class RenderAnalysis(Result):
             "rendered_friction_mean": float(np.mean(stroke.relative_friction_rendered)),
             "rendered_friction_rms_swing": float(np.std(stroke.relative_friction_rendered)),
             "friction_rms_error": self.rms_error,
-            "contrast_kept": None if judged is None else to_json(judged.contrast_kept),
-            "spatial_frequency_per_m": None
-            if judged is None
-            else to_json(judged.spatial_frequency),
-            "lag_m": None if judged is None else to_json(judged.lag),
-            "lag_s": None if judged is None else to_json(judged.lag_time),
+            "contrast_kept": judged and to_json(judged.contrast_kept),
+            "spatial_frequency_per_m": judged and to_json(judged.spatial_frequency),
+            "lag_m": judged and to_json(judged.lag),
+            "lag_s": judged and to_json(judged.lag_time),
             "saturated_share": stroke.saturated_top + stroke.saturated_bottom,
             "unreachable_samples": self.counters.unreachable,
             "unreachable": {

@@ -78,14 +78,10 @@ def new(
 
 
 @dataclass(frozen=True)
-class AnalyzeOptions:
-    """What `analyze` is asked for."""
+class PointOptions:
+    """The display and the working point that `analyze` and `friction` are asked for."""
 
     target: Target
-    out: Annotated[Path | None, written_to("Write result.json and report.html to this folder.")] = (
-        None
-    )
-    as_json: AsJson = False
     voltage: Voltage = None
     frequency: Frequency = None
     vibration_amplitude: Amplitude = None
@@ -101,6 +97,16 @@ class AnalyzeOptions:
         float | None,
         typer.Option("--wanted", help="A relative friction: which voltage reaches it?"),
     ] = None
+    as_json: AsJson = False
+
+
+@dataclass(frozen=True)
+class AnalyzeOptions(PointOptions):
+    """What `analyze` is asked for."""
+
+    out: Annotated[Path | None, written_to("Write result.json and report.html to this folder.")] = (
+        None
+    )
     sensitivities: Annotated[
         str,
         typer.Option(
@@ -154,35 +160,19 @@ def analyze(asked: AnalyzeOptions) -> None:
 
 
 @dataclass(frozen=True)
-class FrictionOptions:
+class FrictionOptions(PointOptions):
     """What `friction` is asked for."""
 
-    target: Target
-    voltage: Voltage = None
-    frequency: Frequency = None
-    vibration_amplitude: Amplitude = None
-    normal_force: Force = None
-    surface: OnSurface = None
-    model: Model = None
     position: Annotated[
         str | None,
         In("m"),
         typer.Option(help="The pad's centre from an antinode, along an even wave."),
     ] = None
-    speed: Speed = None
-    place: OnPlace = None
     ambient_pressure: Annotated[
         str | None,
         In("Pa"),
         typer.Option(help='Of the air around, like "2 kPa" for a vacuum experiment.'),
     ] = None
-    wanted_friction: Annotated[
-        float | None,
-        typer.Option("--wanted", help="A relative friction: which voltage reaches it?"),
-    ] = None
-    samples: Annotated[
-        int, typer.Option(help="Base samples of the uncertainty, a power of two; 0 for none.")
-    ] = 32
     seed: Annotated[int, typer.Option(help="Of the samples.")] = 1
     tell_apart: Annotated[
         bool,
@@ -191,7 +181,6 @@ class FrictionOptions:
         ),
     ] = False
     out: Annotated[Path | None, written_to("Folder for friction.json and figures.")] = None
-    as_json: AsJson = False
 
 
 @app.command()

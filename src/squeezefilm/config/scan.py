@@ -55,25 +55,24 @@ def require_quick_toml(text: str, file: str | Path | None = None) -> None:
         raise ConfigError(
             f"is nested {longest} deep by one key; at most {DEEPEST} are read", file=file
         )
-    if (depth := _depth(bare)) > DEEPEST:
-        raise ConfigError(f"is nested {depth} deep; at most {DEEPEST} are read", file=file)
+    _require_flat(bare, file)
 
 
-def require_quick_json(text: str, file: str | Path | None = None) -> None:
+def require_quick_json(text: str) -> None:
     """Refuse a JSON text of too many values, or nested too deeply. Raises `ConfigError`."""
     bare = _JSON_STRING.sub("s", text)
     if (parts := bare.count(",") + bare.count("[") + bare.count("{")) > MOST_JSON_PARTS:
         raise ConfigError(
-            f"has {parts} values; at most {MOST_JSON_PARTS} are read: make it smaller", file=file
+            f"has {parts} values; at most {MOST_JSON_PARTS} are read: make it smaller"
         )
-    if (depth := _depth(bare)) > DEEPEST:
-        raise ConfigError(f"is nested {depth} deep; at most {DEEPEST} are read", file=file)
+    _require_flat(bare)
 
 
-def _depth(bare: str) -> int:
-    """How many brackets are open at once."""
+def _require_flat(bare: str, file: str | Path | None = None) -> None:
+    """Refuse a text with too many brackets open at once."""
     depth = deepest = 0
     for bracket in re.findall(r"[\[\]{}]", bare):
         depth = depth + 1 if bracket in "[{" else max(depth - 1, 0)
         deepest = max(deepest, depth)
-    return deepest
+    if deepest > DEEPEST:
+        raise ConfigError(f"is nested {deepest} deep; at most {DEEPEST} are read", file=file)

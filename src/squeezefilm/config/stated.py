@@ -19,7 +19,8 @@ def stated_sources(built: Any, split: Split, original: Any = None) -> dict[str, 
     stands in the original's words has none either: that source is of the other value.
     """
     found = dict(split.sources)
-    for path in _paths(split.plain):
+    for parts, _ in tree_values(split.plain):
+        path = ".".join(map(str, parts))
         if path not in found and _is_number(built, path):
             table, _, _ = path.rpartition(".")
             found[path] = split.tables.get(table, Provenance("", UNSTATED))
@@ -28,16 +29,16 @@ def stated_sources(built: Any, split: Split, original: Any = None) -> dict[str, 
     return {path: _if_unchanged(built, original, path, one) for path, one in found.items()}
 
 
-def _paths(node: Any, path: str = "") -> Iterator[str]:
-    """The dotted paths of the values of a tree, in order; members of lists from 0."""
-    if isinstance(node, Mapping):
-        for key, item in node.items():
-            yield from _paths(item, f"{path}.{key}" if path else key)
-    elif isinstance(node, list):
-        for index, item in enumerate(node):
-            yield from _paths(item, f"{path}.{index}")
-    else:
-        yield path
+def tree_values(
+    node: Any, path: tuple[str | int, ...] = ()
+) -> Iterator[tuple[tuple[str | int, ...], Any]]:
+    """The values of a tree with the parts of their paths, in order; members of lists from 0."""
+    inner = node.items() if isinstance(node, Mapping) else enumerate(node)
+    for key, item in inner:
+        if isinstance(item, Mapping | list):
+            yield from tree_values(item, (*path, key))
+        else:
+            yield (*path, key), item
 
 
 def _is_number(built: Any, path: str) -> bool:

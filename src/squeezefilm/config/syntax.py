@@ -75,8 +75,8 @@ def _of_repetition(line: _Line, said: str, text: str) -> str | None:
     """A table or a key that stands twice."""
     if match := re.match(r"Cannot declare \((.+)\) twice", said):
         name = ".".join(part.strip(" '\"") for part in match[1].rstrip(",").split(","))
-        first = _first(text, rf"\s*\[\[?\s*{re.escape(name)}\s*\]", line.number)
-        before = "" if first is None else f", first in line {first}"
+        first = _lines(text, rf"\s*\[\[?\s*{re.escape(name)}\s*\]", line.number)[:1]
+        before = f", first in line {first[0]}" if first else ""
         return (
             f"the table [{name}] stands twice{before}; put all its keys below one of the two"
             f" (several of a kind are written [[{name}]])"
@@ -87,22 +87,16 @@ def _of_repetition(line: _Line, said: str, text: str) -> str | None:
                 f"[{header[1]}] stands twice, once as [{header[1]}] and once as [[{header[1]}]] or "
                 f"as a value; write [[{header[1]}]] each time, or only once"
             )
-        first = _last(text, rf"\s*{re.escape(line.key)}\s*=", line.number)
-        before = "" if first is None else f", first in line {first}"
+        first = _lines(text, rf"\s*{re.escape(line.key)}\s*=", line.number)[-1:]
+        before = f", first in line {first[0]}" if first else ""
         return f"the key '{line.key}' stands twice in its table{before}; keep one of them"
     return None
 
 
-def _first(text: str, pattern: str, before: int) -> int | None:
-    """The first line that a pattern begins, before a line."""
+def _lines(text: str, pattern: str, before: int) -> list[int]:
+    """The lines that a pattern begins, before a line."""
     lines = text.split("\n")[: before - 1]
-    return next((n for n, one in enumerate(lines, 1) if re.match(pattern, one)), None)
-
-
-def _last(text: str, pattern: str, before: int) -> int | None:
-    """The last line that a pattern begins, before a line."""
-    lines = text.split("\n")[: before - 1]
-    return max((n for n, one in enumerate(lines, 1) if re.match(pattern, one)), default=None)
+    return [n for n, one in enumerate(lines, 1) if re.match(pattern, one)]
 
 
 def _of_characters(line: _Line) -> str | None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from squeezefilm.config.load import load_text
 from squeezefilm.config.provenance import Provenance, split_provenance
 from squeezefilm.config.references import References
+from squeezefilm.config.stated import tree_values
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,16 +46,5 @@ def written_values(
     found: Mapping[str, Provenance] = built.provenance
     return tuple(
         WrittenValue(path, str(value), found.get(".".join(map(str, path))))
-        for path, value in _values(plain, ())
+        for path, value in tree_values(plain)
     )
-
-
-def _values(node: Any, path: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], Any]]:
-    if isinstance(node, Mapping):
-        for key, item in node.items():
-            yield from _values(item, (*path, key))
-    elif isinstance(node, list):
-        for index, item in enumerate(node):
-            yield from _values(item, (*path, index))
-    else:
-        yield path, node

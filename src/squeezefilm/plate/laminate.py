@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 
 CrossSection = Literal["paper", "plane_stress", "plane_strain"]
 SHEAR_CORRECTION = 5 / 6
@@ -79,7 +79,7 @@ def laminate(layers: Sequence[Layer]) -> Laminate:
 
 
 def plate_laminate(
-    plate: RectangularPlate, cross_section: CrossSection = "plane_strain"
+    plate: RectangularPlate | DiscPlate, cross_section: CrossSection = "plane_strain"
 ) -> Laminate:
     """The section of a plate where it carries ceramic; the gaps between ceramics are neglected.
 

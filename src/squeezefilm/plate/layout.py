@@ -22,7 +22,6 @@ __all__ = [
     "FoamSupport",
     "GlueLayer",
     "RectangularPlate",
-    "rim_supports",
     "turned",
 ]
 
@@ -92,29 +91,6 @@ class FoamSupport:
         shear = self.young_modulus / 3 if self.shear_modulus is None else self.shear_modulus
         along = shear / self.thickness
         return along, along, self.young_modulus / self.thickness
-
-
-@si.checked_numbers
-def rim_supports(
-    length: si.Metre,
-    width: si.Metre,
-    strip: si.Metre,
-    thickness: si.Metre,
-    young_modulus: si.Pascal,
-    quality_factor: si.Dimensionless = 3.0,
-    face: Face = "bottom",
-) -> tuple[FoamSupport, ...]:
-    """Four strips of foam of breadth `strip` around the rim of a plate of `length` × `width`."""
-
-    def one(x: float, y: float, a: float, b: float) -> FoamSupport:
-        return FoamSupport(x, y, a, b, thickness, young_modulus, quality_factor, None, face)
-
-    return (
-        one(0, 0, length, strip),
-        one(0, width - strip, length, strip),
-        one(0, strip, strip, width - 2 * strip),
-        one(length - strip, strip, strip, width - 2 * strip),
-    )
 
 
 _Part = TypeVar("_Part", CeramicPatch, FoamSupport)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
@@ -47,15 +47,7 @@ class SurfaceShape(ABC):
     along: Axis
     half_wavelength: si.Metre
     model: str
-
-    @property
-    @abstractmethod
-    def words(self) -> str:
-        """What the shape is taken from, in a sentence."""
-
-    @abstractmethod
-    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
-        """|w| over the lobe's on the grid of `x` × `y`, whether there is a face or not."""
+    words: ClassVar[str]
 
     @abstractmethod
     def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
@@ -101,6 +93,10 @@ class SurfaceShape(ABC):
     def _between(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         return self._points(*np.meshgrid(x, y, indexing="ij"))
 
+    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+        """|w| over the lobe's on the grid of `x` × `y`, whether there is a face or not."""
+        return self._between(x, y)
+
 
 @dataclass(frozen=True, eq=False)
 class SolvedSurface(SurfaceShape):
@@ -108,11 +104,9 @@ class SolvedSurface(SurfaceShape):
 
     response: HarmonicResponse
     number: int
-
-    @property
-    def words(self) -> str:
-        """See `SurfaceShape.words`."""
-        return "the solved plate's response at the drive's frequency, neighbouring modes included"
+    words: ClassVar[str] = (
+        "the solved plate's response at the drive's frequency, neighbouring modes included"
+    )
 
     @functools.cached_property
     def _at_lobe(self) -> float:
@@ -156,22 +150,15 @@ class BeamSurface(SurfaceShape):
     """Of a plate taken as a beam: its working mode along the wave, the same all across."""
 
     beam: BeamResponse
-
-    @property
-    def words(self) -> str:
-        """See `SurfaceShape.words`."""
-        return "a beam's mode, which moves alike all across the plate: a solved plate does not"
+    words: ClassVar[str] = (
+        "a beam's mode, which moves alike all across the plate: a solved plate does not"
+    )
 
     def _line(self, along: si.MetreArray) -> si.DimensionlessArray:
         mode = self.beam.mode
         at_lobe = mode.deflection_at(np.array([self.lobe[0 if self.along == "x" else 1]]))
         found: si.DimensionlessArray = np.abs(mode.deflection_at(along) / at_lobe)
         return found
-
-    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
-        if self.along == "x":
-            return np.repeat(self._line(x)[:, None], y.size, axis=1)
-        return np.repeat(self._line(y)[None, :], x.size, axis=0)
 
     def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         return self._line(x if self.along == "x" else y)
@@ -182,11 +169,7 @@ class DiscSurface(SurfaceShape):
     """Of a disc or a plate with a hole, u_z = W(r) cos mθ with θ from the x axis."""
 
     mode: AnnularMode
-
-    @property
-    def words(self) -> str:
-        """See `SurfaceShape.words`."""
-        return "the disc's own mode alone, turned so that the x axis crosses antinodes"
+    words: ClassVar[str] = "the disc's own mode alone, turned so that the x axis crosses antinodes"
 
     @si.checked_numbers
     def on_face(
@@ -195,9 +178,6 @@ class DiscSurface(SurfaceShape):
         """Whether points (m, broadcast) lie on the face."""
         r, known = np.hypot(x, y), self.mode.surface_radius
         return np.asarray((r >= known[0] - _EDGE) & (r <= known[-1] + _EDGE))
-
-    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
-        return self._points(*np.meshgrid(x, y, indexing="ij"))
 
     def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         known = self.mode.surface_radius
@@ -210,13 +190,10 @@ class DiscSurface(SurfaceShape):
 class TrackSurface(SurfaceShape):
     """Of a stator whose amplitude was measured: |cos(πx/λ_half)| along the mean circumference."""
 
-    @property
-    def words(self) -> str:
-        """See `SurfaceShape.words`."""
-        return (
-            "a standing wave along the track with one amplitude at all its antinodes, as measured "
-            "at one of them: how they differ, and what changes across the track, is not known"
-        )
+    words: ClassVar[str] = (
+        "a standing wave along the track with one amplitude at all its antinodes, as measured "
+        "at one of them: how they differ, and what changes across the track, is not known"
+    )
 
     @si.checked_numbers
     def on_face(
@@ -225,9 +202,6 @@ class TrackSurface(SurfaceShape):
         """Whether points (m, broadcast) lie on the face: the track is closed, so every x does."""
         _, _, inner, outer = self.bounds
         return np.asarray(np.broadcast_arrays((y >= inner - _EDGE) & (y <= outer + _EDGE), x)[0])
-
-    def _grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
-        return np.repeat(self._points(x, x)[:, None], y.size, axis=1)
 
     def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         return np.abs(np.cos(np.pi * x / self.half_wavelength))

@@ -14,7 +14,6 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
-from squeezefilm.plate.laminate import CrossSection
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.ring.body import (
     half_wavelength_of,
@@ -133,14 +132,13 @@ class WorkingMode:
 def working_mode(
     actuator: Actuator,
     theory: PlateTheory = "solid",
-    cross_section: CrossSection = "plane_strain",
     *,
     pace: Pace = NO_HURRY,
 ) -> WorkingMode:
     """The working mode of an actuator.
 
-    A plate is solved in three dimensions (see `solid_mode`), or taken as a beam of `cross_section`
-    (see `beam_response` for its range and error); a disc is solved by Fourier harmonics; a stator
+    A plate is solved in three dimensions (see `solid_mode`), or taken as a beam (see
+    `beam_response` for its range and error); a disc is solved by Fourier harmonics; a stator
     is taken as measured, linear in the voltage. `pace` says how long a solid may take. Raises
     `InputError` for another theory or a disc's mode that crosses no two nodal lines, and what the
     solvers raise.
@@ -174,7 +172,7 @@ def working_mode(
             solid=solid,
             beam=_beam_beside(actuator),
         )
-    beam = beam_response(actuator, theory, cross_section)
+    beam = beam_response(actuator, theory)
     shape, middle = beam.mode, beam.plate.width / 2
     lobe = _beam_lobe(beam)[0], middle
     return WorkingMode(

@@ -14,10 +14,9 @@ from squeezefilm.errors import ConfigError
 from squeezefilm.plausibility.bounds import Bound, bounds, shown
 from squeezefilm.plausibility.ratios import Path, Ratio, ratios
 
-# Slips of unit that people make: milli and kilo, micro and mega, centimetres, nano and giga; in
-# the order in which they are offered.
-_SLIPS = (1e3, 1e-3, 1e6, 1e-6, 1e-2, 1e2, 10.0, 0.1, 1e9, 1e-9)
-_NOT_LOOKED_AT = {"provenance"}
+# Slips that people make: milli and kilo, micro and mega, a digit or millimetres for centimetres,
+# metres for centimetres, nano and giga; in the order in which they are offered.
+_SLIPS = (1e3, 1e-3, 1e6, 1e-6, 10.0, 0.1, 1e-2, 1e2, 1e9, 1e-9)
 
 
 @dataclass(frozen=True)
@@ -50,7 +49,7 @@ def implausibilities(display: Display, voltage: si.Volt | None = None) -> tuple[
     known = bounds()
     single = [
         Ratio(of, path, value)
-        for owner, path, value in _values(display, ())
+        for owner, path, value in described_numbers(display)
         if (of := f"{owner}.{path[-1]}") in known
     ]
     found = _outside(display, single)
@@ -99,22 +98,20 @@ def _line(text: str, one: Implausible) -> str:
     return "" if line is None else f" (line {line})"
 
 
-def _values(owner: Any, path: Path) -> Iterator[tuple[str, Path, float]]:
-    """Every number of a description with the class that holds it and its path."""
+def described_numbers(owner: Any, path: Path = ()) -> Iterator[tuple[str, Path, float]]:
+    """Every number of a description or a part of one, with the class that holds it and its path."""
     if isinstance(owner, tuple):
         for number, item in enumerate(owner):
-            yield from _values(item, (*path, number))
+            yield from described_numbers(item, (*path, number))
         return
     if not dataclasses.is_dataclass(owner):
         return
     for field in dataclasses.fields(owner):
-        if field.name in _NOT_LOOKED_AT:
-            continue
         value = getattr(owner, field.name)
         if isinstance(value, float | int) and not isinstance(value, bool):
             yield type(owner).__name__, (*path, field.name), float(value)
         else:
-            yield from _values(value, (*path, field.name))
+            yield from described_numbers(value, (*path, field.name))
 
 
 def _said(display: Display, bound: Bound, value: Ratio) -> Implausible:

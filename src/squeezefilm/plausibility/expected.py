@@ -14,7 +14,7 @@ from typing import Annotated
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.beam.response import LEAST_COVERAGE, BeamResponse, beam_response
-from squeezefilm.plate.laminate import Layer, laminate
+from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.solid.guess import bare_frequency
 
@@ -103,23 +103,7 @@ def _of_disc(disc: DiscPlate) -> Expectation:
     """A thin free disc: λ² = (π/2 (n + 2s))² of n nodal diameters and s circles, for large ones;
     within a factor of two for the lowest (Leissa 1969, NASA SP-160, has 5.25 for n = 2, s = 0 and
     9.08 for n = 0, s = 1 where this gives 9.87)."""
-    substrate, ceramic = disc.substrate, disc.ceramic
-    section = laminate(
-        [
-            Layer(
-                disc.thickness,
-                substrate.plane_strain_modulus,
-                substrate.shear_modulus,
-                substrate.density,
-            ),
-            Layer(
-                disc.ceramic_thickness,
-                ceramic.in_plane_stiffness,
-                ceramic.shear_modulus,
-                ceramic.density,
-            ),
-        ]
-    )
+    section = plate_laminate(disc)
     order = disc.nodal_diameters + 2 * disc.nodal_circles
     number = math.pi / 2 * order / (disc.diameter / 2)
     frequency = (

@@ -77,7 +77,17 @@ _SUFFIX = re.compile(
 def catalogue() -> Mapping[str, tuple[str, ...]]:
     """The keys that each verb answers; ``*`` stands for a number from 0 on in a list."""
     text = resources.files("squeezefilm.search").joinpath("answers.toml").read_text("utf-8")
-    return {verb: tuple(tomllib.loads(text)[verb]) for verb in VERBS}
+    found: dict[str, tuple[str, ...]] = {}
+    for verb, lines in tomllib.loads(text).items():
+        keys: list[str] = []
+        for line in lines:
+            group, alike, other = line.partition(": ")
+            theirs = found[other] if alike else (line,)
+            keys += [
+                key for key in theirs if not alike or f"{key}.".startswith(group and f"{group}.")
+            ]
+        found[verb] = tuple(keys)
+    return found
 
 
 def numbers_of(summary: Any, path: str = "") -> Iterator[tuple[str, float]]:

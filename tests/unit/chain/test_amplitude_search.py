@@ -32,3 +32,15 @@ def test_what_no_amplitude_reaches_says_what_is_reached() -> None:
 
     with pytest.raises(UnreachableError, match="by hand"):
         least_amplitude(closing, 0.2, "by hand")
+
+
+def test_nothing_beyond_the_highest_amplitude_is_asked() -> None:
+    asked: list[float] = []
+
+    def told(amplitude: float) -> float:
+        asked.append(amplitude)
+        return falling(amplitude)
+
+    with pytest.raises(UnreachableError, match="up to 20 µm"):
+        least_amplitude(told, 0.0, "by hand", 20e-6)
+    assert max(asked) == pytest.approx(20e-6)

@@ -91,5 +91,5 @@ def test_what_is_no_table_is_refused(
 
 
 def test_what_a_solver_leaves_beyond_0_and_1_is_taken_off() -> None:
-    table = FrictionTable.of_amplitude(np.array([0.0, 1e-6]), np.array([1 + 1e-9, -1e-9]))
+    table = FrictionTable(np.array([0.0, 1e-6]), np.zeros(1), np.array([[1 + 1e-9, -1e-9]]), 0.0)
     assert table.relative_friction.tolist() == [[1.0, 0.0]]

@@ -23,11 +23,6 @@ def plate() -> Display:
     return load_display("biet2008-plate")
 
 
-@pytest.fixture(scope="module")
-def stator() -> Display:
-    return load_display("biet2008-stator")
-
-
 def test_no_vibration_leaves_friction_as_it_is(plate: Display) -> None:
     still = predict(plate, voltage=0.0)
     assert still.relative_friction == pytest.approx(1, abs=1e-12)

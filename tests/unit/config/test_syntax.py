@@ -15,7 +15,6 @@ TEXT = presets.path("biet2008-plate").read_text(encoding="utf-8")
 LENGTH = 'length = { value = "83 mm", source = "paper, section 3.1.2" }'
 VOLTAGE = 'voltage = { value = "15 V", source = "paper, section 3.1" }'
 LINES = "nodal_lines = { value = 8,"
-FORCE = 'normal_force = { value = "0.5 N"'
 
 
 def line_of(text: str, part: str) -> int:
@@ -61,19 +60,11 @@ WRITTEN = [
     (LENGTH, 'length = "40 kHz"', "it is a frequency, and a length is wanted"),
     (LENGTH, 'length = "83 %"', "and a length is wanted, in one of m, mm, µm, nm"),
     (LENGTH, 'length = "-83 mm"', "it must be at least 1 µm"),
-    (LENGTH, 'length = "83 MM"', 'write "83 mm"'),
-    (LENGTH, 'length = "3 inch"', 'write "76.2 mm"'),
     (LENGTH, 'length = "83 mm ± 0.1 mm"', "stands beside it, as its uncertainty"),
     (LENGTH, 'length = "eighty mm"', 'write a number and a unit, like "2 mm"'),
-    ('"0.6 um"', '"0.6 micron"', 'write "0.6 µm"'),
-    ('"8250 kg/m3"', '"8,250 kg/m3"', 'write "8.250 kg/m3" or "8250 kg/m3"'),
-    ('"8250 kg/m3"', '"8 250 kg/m3"', 'write "8250 kg/m3"'),
-    (VOLTAGE, 'voltage = "20 Vpp"', 'half of peak-to-peak; write "10 V"'),
-    (VOLTAGE, 'voltage = "20 Vrms"', 'write "28.284 V"'),
     (VOLTAGE, 'voltage = "20"', 'like "20 V"'),
     (VOLTAGE, "voltage = 20", 'like "20 V"'),
     (VOLTAGE, f'{VOLTAGE}\nlowest_frequency = "30 KHZ"', 'write "30 kHz"'),
-    (FORCE, 'normal_force = { value = "50 g"', 'write "0.49033 N"'),
     (LINES, 'nodal_lines = { value = "8",', "'8' is no whole number"),
     (LINES, "nodal_lines = { value = 8.0,", "8.0 is no whole number"),
     ('name = "bare"', "name = 3", "3 is no text; write it between quotation marks"),

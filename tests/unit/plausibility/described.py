@@ -1,7 +1,6 @@
 """Displays to describe wrongly: every number of one, and the same display with one changed."""
 
 import dataclasses
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,25 +10,20 @@ from squeezefilm import presets
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.plate.beam.response import beam_response
+from squeezefilm.plausibility.checks import described_numbers
 
 Path = tuple[str | int, ...]
 # Signs and places are no sizes.
 _NO_SIZE = ("polarity", "poling", "x", "y")
 
 
-def numbers(owner: Any, path: Path = ()) -> Iterator[tuple[Path, float]]:
+def numbers(display: Display) -> list[tuple[Path, float]]:
     """Every number of a description that has a size, with its path."""
-    if isinstance(owner, tuple):
-        for number, item in enumerate(owner):
-            yield from numbers(item, (*path, number))
-    elif dataclasses.is_dataclass(owner):
-        for field in dataclasses.fields(owner):
-            value = getattr(owner, field.name)
-            if isinstance(value, int | float) and not isinstance(value, bool):
-                if value != 0 and field.name not in _NO_SIZE:
-                    yield (*path, field.name), float(value)
-            elif field.name != "provenance":
-                yield from numbers(value, (*path, field.name))
+    return [
+        (path, value)
+        for _, path, value in described_numbers(display)
+        if value != 0 and path[-1] not in _NO_SIZE
+    ]
 
 
 def changed(owner: Any, path: Path, value: float) -> Any:

@@ -61,11 +61,3 @@ def made(**changes: Any) -> Any:
 
 def point(**changes: Any) -> Any:
     return SimpleNamespace(**{**vars(POINT), **changes})
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
-
-
-def labelled(axes: Any) -> dict[str, Any]:
-    return dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from tests.unit.report.drawn import words
 
 from squeezefilm.analysis.film.command import FilmMap, FilmRequest
 from squeezefilm.film.planar.film import FilmPlanar
@@ -27,10 +28,6 @@ MAP = FilmMap(
     damping_relative=np.zeros((121, 40)),
     force_error=np.zeros((121, 40)), model="a film of nothing",
 )  # fmt: skip
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
 
 
 def test_lines_of_equal_over_pressure_lie_where_it_is_so_high() -> None:

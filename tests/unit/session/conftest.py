@@ -29,8 +29,8 @@ def plan_of() -> Callable[..., LoopPlan]:
             "envelope": DrivenEnvelope(0.5e-3, 0.7e-3, 1e-6),
             "drive": DriveTable.linear(1e-8, 100.0),
             "estimator": MotionEstimator.for_sensor(LVDT_10_KHZ),
-            "relative_friction": FrictionTable.of_amplitude(
-                np.array([0.0, 2e-6]), np.array([1.0, 0.0])
+            "relative_friction": FrictionTable(
+                np.array([0.0, 2e-6]), np.zeros(1), np.array([[1.0, 0.0]]), 0.0
             ),
         }
         return LoopPlan(**{**fields, **changes})

@@ -187,12 +187,7 @@ def _answer(
     )
 
 
-def sweep_film(
-    request: FilmRequest,
-    *,
-    points: tuple[int, int] = (61, 40),
-    progress: Callable[[str], None] | None = None,
-) -> FilmMap:
+def sweep_film(request: FilmRequest, *, progress: Callable[[str], None] | None = None) -> FilmMap:
     """The map of a strip or a disc over σ from 0.01 to 10⁴ and ε from 0.02 to 0.95.
 
     Raises `InputError` for shapes in the plane, which are too slow for a map of thousands.
@@ -203,7 +198,7 @@ def sweep_film(
         raise InputError(
             f"a map of shape '{request.shape}' would take minutes; --sweep knows strip and disc"
         )
-    sigma, excursion = np.geomspace(0.01, 1e4, points[0]), np.linspace(0.02, 0.95, points[1])
+    sigma, excursion = np.geomspace(0.01, 1e4, 61), np.linspace(0.02, 0.95, 40)
 
     tenths = -1
 

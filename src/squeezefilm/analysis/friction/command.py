@@ -11,13 +11,12 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.analysis.claims.record import missed_by
-from squeezefilm.analysis.curves import ModelCurve, model_curves
+from squeezefilm.analysis.curves import ModelCurve, as_far_as_it_goes, model_curves
 from squeezefilm.analysis.friction.tell_apart import ToldApart, tell_apart
 from squeezefilm.analysis.friction.wanted import Wanted, wanted_friction
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
 from squeezefilm.analysis.verdict import Finding, friction_verdict, held_back, why_not_good
 from squeezefilm.arguments import called_with
-from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.pad_place import FacePlace
@@ -25,7 +24,6 @@ from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.display import Display, NamedDisplay
-from squeezefilm.errors import OutOfRangeError
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.results import Result, stamp, to_json
@@ -220,7 +218,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     )
     why = why_not_good(display, prediction)
     tell("ripple of the standing wave, and the active area")
-    area = judged_area(display, prediction, active_area(display, prediction), samples=asked.samples)
+    area = judged_area(display, prediction, samples=asked.samples)
     return FrictionAnalysis(
         display,
         prediction,
@@ -280,17 +278,10 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
     law = dataclasses.replace(
         p.law, model=p.law.model if p.law.model.startswith("partial") else DEFAULT_MODEL
     )
-    rows = np.full((points, points), np.nan)
+    rows = np.empty((points, points))
     for number, one in enumerate(force):
         at = dataclasses.replace(law, normal_force=float(one))
-        try:
-            rows[number] = at.curve(amplitude)
-        except OutOfRangeError:
-            for column, a in enumerate(amplitude):
-                try:
-                    rows[number, column] = at.at(float(a))
-                except OutOfRangeError:
-                    break
+        rows[number] = as_far_as_it_goes(at, amplitude)
     return FrictionMap(amplitude, force, rows, law.model)
 
 

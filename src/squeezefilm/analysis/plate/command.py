@@ -199,7 +199,7 @@ def solved_plate(
     tell, hurry = teller.tell, Hurry.of(plate, label, Pace(teller.budget))
     tell(f"mode ({label[0]},{label[1]})")
     shares = said_with_time_left(tell)
-    alone, pieces = solve_for_response(plate, label, _WORKING, shares, hurry.mode)
+    alone, pieces = solve_for_response(plate, label, _WORKING, shares, hurry.modes)
     at = alone.index(label)
     frequency, quality = float(alone.frequencies[at]), float(alone.quality_factors[at])
     wanted = band or (0.92 * frequency, 1.08 * frequency)
@@ -208,7 +208,7 @@ def solved_plate(
         tell("all modes in the band")
         shares = said_with_time_left(tell)
         modes = solve_modes(
-            plate, band=wanted, tolerance=_BESIDE, deadline=hurry.band, progress=shares
+            plate, band=wanted, tolerance=_BESIDE, deadline=hurry.modes, progress=shares
         )
     tell(f"response at {points} frequencies")
     response = harmonic_response(

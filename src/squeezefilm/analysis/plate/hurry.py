@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import OutOfTimeError
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.layers import COARSE, Resolution
@@ -34,39 +33,24 @@ class Hurry:
         allow the coarse meshes.
         """
         whole = pace.deadline()
-        if whole is None:
+        if whole is None or pace.budget is None:
             return cls()
         size = solve_size(plate, label, estimated_frequency(plate, label))
-        least = size.coarse + size.coarse_response
-        if not whole.allows(least):
-            seen = expectation(plate)
-            instead = "" if seen is None else f" Without a solve: {seen.sentence}."
-            raise OutOfTimeError(
-                f"the coarsest three-dimensional mesh takes about {least:.2g} s, more than the "
-                f"budget of {pace.budget:.3g} s; allow more.{instead}",
-                quantity="budget",
-            )
+        seen = expectation(plate)
+        instead = "" if seen is None else f". Without a solve: {seen.sentence}."
+        size.require_within(whole, pace.budget, instead)
         return cls(size, whole)
 
     @property
-    def mode(self) -> Deadline | None:
-        """When the working mode must be there."""
-        return self._before_response()
-
-    @property
-    def band(self) -> Deadline | None:
-        """When the band's modes must be there."""
-        return self._before_response()
-
-    def _before_response(self) -> Deadline | None:
+    def modes(self) -> Deadline | None:
+        """When the working mode and the band's modes must be there."""
         if self.whole is None or self.size is None:
             return None
         return self.whole.earlier(self.size.response)
 
     def allows_band(self, plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> bool:
         """Whether all modes of a band (Hz, Hz) can be looked for, on the coarse meshes at least."""
-        before = self._before_response()
-        return before is None or before.allows(band_seconds(plate, band[1]))
+        return self.modes is None or self.modes.allows(band_seconds(plate, band[1]))
 
     def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:
         """What the budget left out of the working mode and the band's modes, in sentences."""

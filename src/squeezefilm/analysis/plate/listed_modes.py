@@ -46,12 +46,12 @@ class ListedMode:
     largest_per_volt: si.MetrePerVolt
     symmetry: str
     audible: bool
-    neighbour: str | None
-    neighbour_distance: si.Dimensionless | None
-    neighbour_share: si.Dimensionless
-    unique: bool
-    straightness: si.Dimensionless | None
-    choice: str | None
+    neighbour: str | None = None
+    neighbour_distance: si.Dimensionless | None = None
+    neighbour_share: si.Dimensionless = 0.0
+    unique: bool = True
+    straightness: si.Dimensionless | None = None
+    choice: str | None = None
 
     @property
     def half_bandwidth(self) -> si.Hertz:
@@ -87,10 +87,6 @@ def listed_mode(mode: DrivenMode) -> ListedMode:
         largest_per_volt=mode.largest_per_volt,
         symmetry=symmetry_in_words(mode.parity),
         audible=mode.frequency < HEARING,
-        neighbour=None,
-        neighbour_distance=None,
-        neighbour_share=0.0,
-        unique=True,
         straightness=mode.straightness,
         choice=_choice(mode.label),
     )

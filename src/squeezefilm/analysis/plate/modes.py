@@ -184,11 +184,6 @@ def _of_ring(
                 largest_per_volt=row.amplitude_per_volt,
                 symmetry="alike all round" if mode.harmonic == 0 else "one of a pair",
                 audible=row.frequency < HEARING,
-                neighbour=None,
-                neighbour_distance=None,
-                neighbour_share=0.0,
-                unique=True,
-                straightness=None,
                 choice=None
                 if isinstance(display.actuator, AnnularStator) or row.label[0] != "B"
                 else f"nodal_circles = {row.label[2:].split(',')[0]}, nodal_diameters = "

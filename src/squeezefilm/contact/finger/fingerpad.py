@@ -1,8 +1,8 @@
 """The fingerpad as a mass between bone and surface: what its skin passes on of a changing friction.
 
 The skin under the contact (mass m) hangs on the bone by a spring k and a damper c. While it slides
-it obeys m ẍ + c (ẋ − v_bone) + k (x − x_bone) = −F with F the friction force. What is here is in
-closed form, and is what the solver in `sliding` is verified against.
+it obeys m ẍ + c (ẋ − v_bone) + k (x − x_bone) = −F with F the friction force. Its answer
+to a friction that is modulated is here in closed form.
 """
 
 from __future__ import annotations
@@ -10,8 +10,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from typing import Annotated, Any, cast
-
-import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.hard_limits import PAD_DAMPING, PAD_MASS, PAD_STIFFNESS
@@ -54,11 +52,6 @@ class FingerpadDynamics:
         return math.sqrt(self.stiffness / self.mass) / (2 * math.pi)
 
     @property
-    def damping_ratio(self) -> si.Dimensionless:
-        """Damping over critical damping (1); 1.3 with the defaults: the skin does not ring."""
-        return self.damping / (2 * math.sqrt(self.stiffness * self.mass))
-
-    @property
     def settling_time_constant(self) -> si.Second:
         """Slower time constant of the sliding skin (s); infinite without damping."""
         if self.damping == 0:
@@ -87,55 +80,3 @@ def skin_displacement_per_friction(
     omega = 2 * math.pi * frequency
     response: Any = -1 / (stiffness - mass * omega**2 + 1j * damping * omega)
     return cast(MetrePerNewtonComplexLike, response)
-
-
-@si.closed_form(positive="stiffness mass", nonnegative="damping frequency")
-def friction_transmitted(
-    frequency: si.HertzLike,
-    stiffness: si.NewtonPerMetreLike,
-    damping: si.NewtonSecondPerMetreLike,
-    mass: si.KilogramLike,
-) -> si.DimensionlessComplexLike:
-    """Complex force at the bone per friction force modulated at a frequency (1), sliding.
-
-    (k + icω)/(k − mω² + icω), ω = 2πf: 1 for slow changes, beyond the resonance the mass keeps
-    them. Arguments (Hz, N/m, N·s/m, kg) broadcast. Holds while the skin never stops. Raises
-    `InputError` for a stiffness or mass not above 0, or a negative damping or frequency.
-    """
-    omega = 2 * math.pi * frequency
-    path = stiffness + 1j * damping * omega
-    transmitted: Any = path / (path - mass * omega**2)
-    return cast(si.DimensionlessComplexLike, transmitted)
-
-
-@si.closed_form(positive="stiffness speed", nonnegative="friction_drop")
-def stick_duration(
-    friction_drop: si.NewtonLike, stiffness: si.NewtonPerMetreLike, speed: si.MetrePerSecondLike
-) -> si.SecondLike:
-    """How long an *undamped* skin sticks between two slips at a constant speed (s): 2Δ/(kv).
-
-    The classical belt oscillator: the spring is stretched from F_kinetic − Δ to F_static, where Δ
-    = F_static − F_kinetic is `friction_drop` (N). Arguments (N, N/m, m/s) broadcast. Raises
-    `InputError` for a negative drop, or a stiffness or speed not above 0.
-    """
-    return 2 * friction_drop / (stiffness * speed)
-
-
-@si.closed_form(positive="stiffness mass speed", nonnegative="friction_drop")
-def slip_duration(
-    friction_drop: si.NewtonLike,
-    stiffness: si.NewtonPerMetreLike,
-    mass: si.KilogramLike,
-    speed: si.MetrePerSecondLike,
-) -> si.SecondLike:
-    """How long an *undamped* skin slips between two sticks (s): (2/ω)(π − arctan(Δω/(kv))).
-
-    With ω = √(k/m) and Δ = F_static − F_kinetic, `friction_drop` (N): half a period for a great
-    drop or a slow finger, a whole one for none. With `stick_duration` the period of the belt
-    oscillator. Arguments (N, N/m, kg, m/s) broadcast. Raises `InputError` for a negative drop, or
-    anything else not above 0.
-    """
-    omega = np.sqrt(stiffness / mass)
-    angle = math.pi - np.arctan(friction_drop * omega / (stiffness * speed))
-    duration: si.SecondLike = 2 / omega * angle
-    return duration

@@ -34,18 +34,6 @@ def relative_friction_from_pressure(
     return np.maximum(0.0, 1 - over_pressure / normal_force)
 
 
-@si.closed_form(positive="mean_pressure finger_pressure")
-def relative_friction_from_pressure_printed(
-    mean_pressure: si.DimensionlessLike, finger_pressure: si.PascalLike
-) -> si.DimensionlessLike:
-    """Paper eq 14 as printed, 1 − (P∞ − 1)/P_f with P∞ over ambient and P_f in Pa (eq 13).
-
-    Not dimensionless, and practically 1 in SI units: `tests/dimensions` asserts that it fails.
-    Kept to show the misprint; use `relative_friction_from_pressure`.
-    """
-    return 1 - (mean_pressure - 1) / finger_pressure
-
-
 def _unclipped(gap: PaperGap, force: Any, ambient: float, model: PaperModel) -> Any:
     """1 − (⟨P̄⟩ − 1)/P_f, below zero where the finger would float away."""
     over_pressure = contact_mean_pressure(gap, model) - 1

@@ -9,7 +9,7 @@ Sources: Salbu 1964, 10.1115/1.3653080; Biet et al., equations 5 to 12.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
 from squeezefilm.film.gap import PaperGap
 
 PaperModel = Literal["paper2008", "paper2008-printed"]
-PAPER_MODELS: tuple[PaperModel, ...] = get_args(PaperModel)
 
 
 @si.closed_form(nonnegative="amplitude_ratio")
@@ -47,26 +46,6 @@ def asymptotic_load(
 
 
 @si.closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
-def paper_pressure(
-    X: si.DimensionlessLike,
-    T: si.DimensionlessLike,
-    amplitude_ratio: si.DimensionlessLike,
-    ridge_ratio: si.DimensionlessLike,
-    wave_number: si.Dimensionless,
-    ridge_number: si.Dimensionless,
-) -> si.DimensionlessLike:
-    """The pressure P(X, T) over ambient as σ → ∞, paper eq 11 corrected; broadcasts.
-
-    P = (a/a_B) √(a_B² + 1.5 b_B²) / (a + b cos T), a = 1 + δ cos k2X, b = ε cos k1X, B at
-    X = ½. Symmetric contact, static roughness; needs ε + δ < 1 (the gap stays open) and raises
-    `OutOfRangeError` where it would not be. Valid for σ → ∞ only.
-    """
-    a, b, trapped = _trapped(X, amplitude_ratio, ridge_ratio, wave_number, ridge_number)
-    value: si.DimensionlessLike = trapped / (a + b * np.cos(T))
-    return value
-
-
-@si.closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
 def paper_mean_pressure(
     X: si.DimensionlessLike,
     amplitude_ratio: si.DimensionlessLike,
@@ -74,9 +53,12 @@ def paper_mean_pressure(
     wave_number: si.Dimensionless,
     ridge_number: si.Dimensionless,
 ) -> si.DimensionlessLike:
-    """The mean over a period of `paper_pressure`, P̄(X) over ambient, paper eq 12 corrected.
+    """The mean over a period of the pressure as σ → ∞, P̄(X) over ambient, paper eqs 11 and 12
+    corrected; broadcasts.
 
-    P̄ = (a/a_B) √(a_B² + 1.5 b_B²) / √(a² − b²); letters, range and errors as `paper_pressure`.
+    P = (a/a_B) √(a_B² + 1.5 b_B²) / (a + b cos T), a = 1 + δ cos k2X, b = ε cos k1X, B at
+    X = ½; its mean has √(a² − b²) below. Symmetric contact, static roughness; needs ε + δ < 1 (the
+    gap stays open) and raises `OutOfRangeError` where it would not be. Valid for σ → ∞ only.
     """
     a, b, trapped = _trapped(X, amplitude_ratio, ridge_ratio, wave_number, ridge_number)
     value: si.DimensionlessLike = trapped / np.sqrt(a**2 - b**2)

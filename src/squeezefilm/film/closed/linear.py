@@ -1,4 +1,4 @@
-"""The film under small vibration: stiffness, damping and the mean load to second order.
+"""The film under small vibration: stiffness and damping.
 
 The force of the film on a rigid surface vibrating with amplitude ε h over an area A at ambient
 pressure p0 is p0 A ε Re[(−fk − i fd) exp(iT)]: fk is the relative stiffness, fd the relative
@@ -147,53 +147,4 @@ def relative_damping(
     value: si.DimensionlessLike = _plain(
         polytropic_exponent * np.imag(_force(planform, sigma, aspect_ratio))
     )
-    return value
-
-
-@si.closed_form(
-    nonnegative="amplitude_ratio squeeze_number knudsen_number",
-    positive="aspect_ratio",
-)
-def second_order_mean_load(
-    amplitude_ratio: si.DimensionlessLike,
-    squeeze_number: si.DimensionlessLike,
-    planform: Planform = "strip",
-    aspect_ratio: si.Dimensionless = 1.0,
-    polytropic_exponent: _Exponent = 1.0,
-    knudsen_number: si.DimensionlessLike = 0.0,
-    *,
-    strict: bool = True,
-) -> si.DimensionlessLike:
-    """The mean load W over p0 A of a rigid surface over a uniform gap, to second order in ε.
-
-    W = 1 + ε² n fk(σ/(n g)) [5/4 + 6 Kn − (3/2) Kn (1 − n)] / g with g = 1 + 6 Kn: 1 + (5/4) ε² n
-    fk(σ/n) without slip. Any planform; first-order slip with the local mean free path. Broadcasts.
-
-    Valid where the over-pressure W − 1 is at most some 10 % low: ε ≤ 0.3 for a film that springs
-    (fk ≥ 0.4: a strip at σ ≥ 10), ε ≤ 0.14 for one that leaks. Beyond, and for Kn > 0.1, raises
-    `OutOfRangeError`, or warns if not `strict`.
-
-    Derivation: average the Reynolds equation over a period to O(ε²). With p1 and H1 the first-order
-    pressure and gap, g⟨p2⟩ = −(3 + 12 Kn)⟨H1 p1⟩ − ½ (1/n + 6 Kn (1/n − 1))⟨p1²⟩; the linear
-    equation gives the area means ⟨H1 p1⟩ = −F/2 and ⟨p1²⟩ = n F/2 with F = n fk(σ/(n g)).
-    """
-    sigma = _effective(squeeze_number, polytropic_exponent, knudsen_number)
-    fk = np.real(_force(planform, sigma, aspect_ratio))
-    amplitude, springs = np.broadcast_arrays(amplitude_ratio, fk >= 0.4)
-    holds = "the second order in ε keeps the over-pressure within some 10 %"
-    si.require_valid("amplitude_ratio", amplitude[springs], 0, 0.3, holds, strict=strict)
-    si.require_valid(
-        "amplitude_ratio",
-        amplitude[~springs],
-        0,
-        0.14,
-        f"{holds} for a film that leaks (fk < 0.4)",
-        strict=strict,
-    )
-    si.require_valid(
-        "knudsen_number", knudsen_number, 0, 0.1, "first-order slip holds", strict=strict
-    )
-    slip = 1.25 + 6 * knudsen_number - 1.5 * knudsen_number * (1 - polytropic_exponent)
-    order = polytropic_exponent * fk * slip / (1 + 6 * knudsen_number)
-    value: si.DimensionlessLike = _plain(1 + amplitude_ratio**2 * order)
     return value

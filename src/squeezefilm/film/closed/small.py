@@ -44,8 +44,10 @@ def small_vibration(
     """The film of a strip or disc to second order in ε, for any law of slip (its number).
 
     With φ the flow factor at Kn and ψ = Kn dφ/dKn: F = n f(σ/(nφ)), W − 1 = ε² F [5/4 −
-    (ψ/φ)(1/2 − n/4)]; without slip (5/4) ε² n fk(σ/n). The derivation is that of
-    `linear.second_order_mean_load` with φ(Kn/(PH)) in place of 1 + 6 Kn/(PH).
+    (ψ/φ)(1/2 − n/4)]; without slip (5/4) ε² n fk(σ/n). Derivation, here
+    for first-order slip, g = 1 + 6 Kn: average the Reynolds equation over a period to O(ε²). With
+    p1 and H1 the first-order pressure and gap, g⟨p2⟩ = −(3 + 12 Kn)⟨H1 p1⟩ − ½ (1/n + 6 Kn (1/n −
+    1))⟨p1²⟩; the linear equation gives the area means ⟨H1 p1⟩ = −F/2 and ⟨p1²⟩ = n F/2.
     """
     n = polytropic_exponent
     phi, psi = flow_factor(knudsen_number, law)

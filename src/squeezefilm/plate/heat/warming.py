@@ -328,6 +328,23 @@ def _assumed(thermal: Thermal, body: ThermalBody) -> tuple[str, ...]:
     return tuple(said)
 
 
+def too_hot(found: Warming) -> str | None:
+    """That the plate gets warmer than the model knows, in a sentence; None where it does not."""
+    rise = max(found.tracked.temperature_rise, found.fixed.temperature_rise)
+    if found.tracked.temperature_rise >= _END:
+        return (
+            f"The plate finds no temperature below {_END:g} K at which it gives away what it "
+            "loses: driven for long it would be destroyed. Ask for a lower voltage."
+        )
+    if rise > KNOWN_RISE:
+        return (
+            f"Driven for long the plate warms by {rise:.0f} K, and only up to {KNOWN_RISE:g} K is "
+            "its ceramic taken to stay what it is (assumed). The numbers are those of the cold "
+            "plate: drive it in short bursts, or with a lower voltage."
+        )
+    return None
+
+
 def _doubts(found: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
     """What speaks against the cold, linear amplitude, in sentences."""
     said = []
@@ -348,16 +365,8 @@ def _doubts(found: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
             f"{1e6 * found.fixed.amplitude:.3g} µm is reached from cold, {others} by coming down "
             "from a higher frequency or a warmer plate"
         )
-    if rise >= _END:
-        said.append(
-            f"the plate finds no temperature below {_END:g} K at which it gives away what it "
-            "loses: it would be destroyed; ask for a lower voltage"
-        )
-    elif max(rise, found.fixed.temperature_rise) > KNOWN_RISE:
-        said.append(
-            f"{rise:.0f} K are more than the {KNOWN_RISE:g} K up to which the ceramic is taken to "
-            "stay what it is (assumed); a long drive at this voltage is outside of the model"
-        )
+    if (sentence := too_hot(found)) is not None:
+        said.append(sentence)
     hard = source.quality_of_ceramic is None or source.quality_of_ceramic >= HARD_QUALITY
     most = thermal.highest_speed or (HARD_SPEED if hard else SOFT_SPEED)
     if found.speed > most and thermal.rayleigh_softening == 0:

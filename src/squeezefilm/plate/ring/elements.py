@@ -40,9 +40,8 @@ class HarmonicSystem:
 
     `matrix` is the whole of [[K, G], [Gᵀ, −D]], shape (n + p, n + p), `mass` is (n, n); the first
     n unknowns are displacements. `force` (n,) is what one volt makes where the polarity is +1 all
-    round (angular integral left out), `clamped_capacitance_per_radian` its capacitance. `r`, `z`
-    are the nodes; `unknown` (nodes, 4) is the row of each field at each node, −1 where it is held,
-    and `sign` what to multiply it by.
+    round (angular integral left out). `r`, `z` are the nodes; `unknown` (nodes, 4) is the row of
+    each field at each node, −1 where it is held, and `sign` what to multiply it by.
     """
 
     harmonic: int
@@ -50,7 +49,6 @@ class HarmonicSystem:
     matrix: sparse.csc_matrix
     mass: sparse.csc_matrix
     force: si.FloatArray
-    clamped_capacitance_per_radian: float
     r: si.FloatArray
     z: si.FloatArray
     unknown: np.ndarray
@@ -169,7 +167,6 @@ def harmonic_system(
     masses: list[Entries] = []
     per_layer: list[list[Entries]] = [[] for _ in section.layers]
     force = np.zeros(total + 1)
-    capacitance = 0.0
     angular = 2 * np.pi if harmonic == 0 else np.pi
     for i, j in zip(*np.nonzero(mesh.layer >= 0), strict=True):
         layer = section.layers[mesh.layer[i, j]]
@@ -193,7 +190,6 @@ def harmonic_system(
             # law[:6, 6:] is −eᵀ: T = c S − eᵀ E.
             pull = (law[:6, 8] * field) @ np.tensordot(area, B[:, :6], axes=1) * signs
             np.add.at(force, np.where(rows < count, rows, total), -pull)
-            capacitance += -law[8, 8] * field**2 * area.sum()
     matrix = gathered(triples, total)
     mass = gathered(masses, count)
     return HarmonicSystem(
@@ -202,7 +198,6 @@ def harmonic_system(
         matrix=matrix,
         mass=mass,
         force=force[:count],
-        clamped_capacitance_per_radian=float(capacitance),
         r=np.repeat(r, z.size)[used],
         z=np.tile(z, r.size)[used],
         unknown=unknown[used],

@@ -9,7 +9,6 @@ answer with different phases a part of the wave travels and carries along what r
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -20,55 +19,15 @@ from squeezefilm.plate.ring.modes import AnnularMode, clamped_capacitance
 from squeezefilm.plate.ring.section import AnnularSection, SectorDrive
 
 
-@si.checked_numbers
-@dataclass(frozen=True)
-class PairMotion:
-    """Two waves around a ring, w = Re[(`forward` e^{−imθ} + `backward` e^{imθ}) e^{iωt}]: their
-    sizes, relative to the amplitude of one orientation driven alone at its resonance."""
-
-    forward: Annotated[si.Dimensionless, si.AtLeast(0.0)]
-    backward: Annotated[si.Dimensionless, si.AtLeast(0.0)]
-
-    @property
-    def travelling(self) -> si.Dimensionless:
-        """How much larger one is than the other: what is not cancelled into a standing wave."""
-        return abs(self.forward - self.backward)
-
-    @property
-    def standing_wave_ratio(self) -> si.Dimensionless:
-        """The largest amplitude around over the smallest: infinite where the wave stands, 1 where
-        it travels."""
-        if self.travelling <= 1e-12 * (self.forward + self.backward):
-            return math.inf
-        return (self.forward + self.backward) / self.travelling
-
-
-@si.checked_numbers
-def pair_motion(
-    split: Annotated[si.Dimensionless, si.AtLeast(0.0)],
-    axis: si.Radian,
-    detuning: si.Dimensionless = 0.0,
-) -> PairMotion:
-    """What one channel makes of a pair that is `split` half-bandwidths f/2Q apart.
-
-    `axis` is how far the channel's antinodes lie from those of the lower orientation, in phase mθ
-    (rad): at 0 and ±π/2 it drives one orientation only. `detuning` is the drive's distance from the
-    middle between the two, in half-bandwidths. Two modes of equal mass and Q, near resonance:
-    c = cos α/(1 + i(d + s/2)), s = sin α/(1 + i(d − s/2)); forward and backward are |c ± i s|/2.
-    Other modes left out. Source: superposition, as Graff's text on waves (1975) has it for rings.
-    """
-    lower = math.cos(axis) / complex(1.0, detuning + split / 2)
-    upper = math.sin(axis) / complex(1.0, detuning - split / 2)
-    return PairMotion(abs(lower + 1j * upper) / 2, abs(lower - 1j * upper) / 2)
-
-
 @si.closed_form(positive="split")
 def most_travelling(split: si.Dimensionless) -> si.Dimensionless:
-    """The largest `travelling` of a pair that is `split` half-bandwidths apart, over every axis of
-    the imperfection and every drive frequency: what a ring whose axis is not known does at worst.
+    """The largest share that travels of a pair `split` half-bandwidths f/2Q apart, over every
+    axis of the imperfection and drive frequency: what a ring of unknown axis does at worst.
 
-    (s/2)/(1 + s²/4) up to s = 2, driven in the middle with both orientations alike; 1/s beyond.
-    Tests compare with a search. Range: that of `pair_motion`.
+    How much larger one of the two waves around the ring is than the other, over the amplitude of
+    one orientation driven alone at its resonance: (s/2)/(1 + s²/4) up to s = 2, driven in the
+    middle with both orientations alike; 1/s beyond. Two modes of equal mass and Q near resonance,
+    others left out; tests compare with a search over their superposition.
     """
     return split / 2 / (1 + split**2 / 4) if split <= 2 else 1 / split
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import OutOfTimeError
 from squeezefilm.plate.elements.box_model import kept_products
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import class_fits
@@ -19,6 +20,7 @@ from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import Label
 from squeezefilm.plate.solid.reduced import resolved_frequency
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes
+from squeezefilm.progress import Deadline
 
 # Processor time of one thread of the machine that this was written on, fitted to 14 plates of metal
 # and glass (see `benchmarks/size.py`): products of a slice's unknowns that are worked off in a
@@ -43,6 +45,17 @@ class SolveSize(NamedTuple):
         """Of all that a working mode takes (s): within a factor of 2 of the processor time on 14
         plates, and by how fast the machine is and what else it does."""
         return self.coarse + self.refined + self.response
+
+    def require_within(self, deadline: Deadline, budget: si.Second, instead: str = "") -> None:
+        """Raise `OutOfTimeError` where a deadline, that of a budget (s), does not allow the coarse
+        meshes; `instead` follows what is said."""
+        least = self.coarse + self.coarse_response
+        if not deadline.allows(least):
+            raise OutOfTimeError(
+                f"the coarsest three-dimensional mesh takes about {least:.2g} s, more than the "
+                f"budget of {budget:.3g} s; allow more{instead}",
+                quantity="budget",
+            )
 
 
 def expected_seconds(solved: PlateModel) -> si.Second:

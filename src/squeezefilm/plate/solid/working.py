@@ -14,7 +14,6 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import OutOfTimeError
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.layers import Resolution
@@ -256,12 +255,7 @@ def _deadline_of_modes(plate: RectangularPlate, label: Label, pace: Pace) -> Dea
     if deadline is None or pace.budget is None:
         return None
     size = solve_size(plate, label, estimated_frequency(plate, label))
-    least = size.coarse + size.coarse_response
-    if not deadline.allows(least):
-        raise OutOfTimeError(
-            f"the coarsest three-dimensional mesh takes about {least:.2g} s, more than the budget "
-            f"of {pace.budget:.3g} s; allow more"
-        )
+    size.require_within(deadline, pace.budget)
     return deadline.earlier(size.response)
 
 

@@ -21,6 +21,7 @@ from squeezefilm.analysis.claims.prototype import (
     RATIO_ACCURACY,
 )
 from squeezefilm.report.kit import style
+from squeezefilm.report.kit.numbers import changed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,7 +58,7 @@ def comparison(study: PrototypeStudy) -> Table:
             "frequency with open terminals",
             "–",
             *(
-                f"{p.open_frequency / 1e3:.2f} kHz ({_percent(p.open_frequency / p.frequency - 1)})"
+                f"{p.open_frequency / 1e3:.2f} kHz ({changed(p.open_frequency / p.frequency - 1)})"
                 for p in (ours, printed)
             ),
         )
@@ -71,13 +72,13 @@ def sensitivity_table(study: PrototypeStudy) -> Table:
     rows = [
         (
             f"{row.name}: {row.change}",
-            _percent(row.frequency_shift),
-            "–" if row.amplitude_shift is None else _percent(row.amplitude_shift, 0),
+            changed(row.frequency_shift),
+            "–" if row.amplitude_shift is None else changed(row.amplitude_shift, 0),
             f"{100 * row.frequency_shift / wanted:.0f} %" if row.frequency_shift < -5e-5 else "–",
         )
         for row in study.sensitivities.rows
     ]
-    head = ("change", "frequency", "amplitude per volt", f"of the {_percent(wanted)} missing")
+    head = ("change", "frequency", "amplitude per volt", f"of the {changed(wanted)} missing")
     return head, rows
 
 
@@ -89,7 +90,7 @@ def explanation_table(study: PrototypeStudy) -> Table:
             f"{one.free}: {one.value}",
             f"{one.frequency / 1e3:.2f} kHz",
             *(f"{ratio:.4f}" for ratio in one.neighbour_ratios),
-            _percent(one.open_shift),
+            changed(one.open_shift),
             f"{one.amplitude * 1e6:.2f} µm (Q {one.quality_factor:.0f})",
             f"{one.quality_factor_for_measured:.0f}",
         )
@@ -131,7 +132,7 @@ def sentences(study: PrototypeStudy) -> list[str]:
     amplitudes = [one.amplitude_for_q_60 * 1e6 for one in study.explanations]
     worst = max(abs(one.frequency / MEASURED_FREQUENCY - 1) for one in study.explanations)
     return [
-        f"The prototype lies {_percent(missing)} from the perfectly bonded plate with d31. "
+        f"The prototype lies {changed(missing)} from the perfectly bonded plate with d31. "
         + (
             "Of the changes tried one by one "
             + (", ".join(f"{r.name}, {r.change}" for r in alone) or "none")
@@ -237,13 +238,9 @@ def _panel(
     return values, [v * AMPLITUDE_ACCURACY for v in values], "15 V, Q 60 (µm)"
 
 
-def _percent(share: float, digits: int = 1) -> str:
-    return f"{100 * share:+.{digits}f} %".replace("-", "−")
-
-
 def _kilohertz(value: float, paper: float) -> str:
-    return f"{value / 1e3:.2f} kHz ({_percent(value / paper - 1)})"
+    return f"{value / 1e3:.2f} kHz ({changed(value / paper - 1)})"
 
 
 def _micrometres(value: float, paper: float) -> str:
-    return f"{value * 1e6:.2f} µm ({_percent(value / paper - 1, 0)})"
+    return f"{value * 1e6:.2f} µm ({changed(value / paper - 1, 0)})"

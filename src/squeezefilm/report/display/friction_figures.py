@@ -106,10 +106,7 @@ def working_point(axes: Axes, analysis: Analysis) -> None:
     p, unsure = analysis.prediction, analysis.uncertainty
     at, words = 1e6 * p.vibration_amplitude, f"this display: {p.relative_friction:.2f}"
     if unsure is not None:
-        low, high = unsure.interval
-        axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
-        for end in (low, high):
-            axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
-        words += f" ({span(low, high)}, {si.percent(unsure.level)} interval)"
+        style.interval(axes, at, *unsure.interval)
+        words += f" ({span(*unsure.interval)}, {si.percent(unsure.level)} interval)"
     words += f" at {shown(p.vibration_amplitude, M, 3)}"
     style.mark(axes, at, p.relative_friction, 9, words)

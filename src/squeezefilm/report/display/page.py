@@ -15,7 +15,6 @@ from squeezefilm.report.display.figures import DECISION, FIGURES, MODELS, TEXTUR
 from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
 from squeezefilm.report.kit.decisions import interval_rows, sensitivity_rows
 from squeezefilm.report.kit.drawing_process import DrawingProcess
-from squeezefilm.report.kit.electronics import electronics_rows
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.model_rows import (
     MISSED_HEADING,
@@ -39,6 +38,7 @@ from squeezefilm.report.kit.page_style import (
     stamped,
     text_table,
 )
+from squeezefilm.report.kit.point_rows import electronics_rows
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:

@@ -63,12 +63,14 @@ def vibration_rows(p: Prediction) -> list[Row]:
     off = abs(p.frequency / mode.resonance_frequency - 1) > 1e-6
     at = f"{shown(p.frequency, HZ)}, {'beside the' if off else 'the'} resonance"
     per_volt = shown(mode.amplitude_per_volt, PER_VOLT)
-    drive, made = ("Drive", "none", f"amplitude given, at {at}"), "zero-to-peak, at antinodes"
+    place = p.law.place
+    of = "at antinodes" if place is None else f"at {place.antinode_said}"
+    drive, made = ("Drive", "none", f"amplitude given, at {at}"), f"zero-to-peak, {of}"
     if p.voltage is not None:
         drive = ("Drive", shown(p.voltage, V), f"peak, at {at}")
-        made = f"{per_volt} × {shown(p.voltage, V)}, at antinodes"
+        made = f"{per_volt} × {shown(p.voltage, V)}, {of}"
         if off:
-            made = f"at antinodes; at the resonance {per_volt}"
+            made = f"{of}; at the resonance {per_volt}"
     kept = f"the finger leaves {100 * p.touch.kept:.3g} %"
     if p.touch.mode is None:
         kept = "the finger is taken to change nothing: no modal mass is known"

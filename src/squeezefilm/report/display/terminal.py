@@ -13,8 +13,8 @@ from squeezefilm.report.kit.decisions import (
     sensitivity_rows,
     wanted_rows,
 )
-from squeezefilm.report.kit.electronics import electronics_rows
 from squeezefilm.report.kit.model_rows import film_rows, models, theory_rows
+from squeezefilm.report.kit.point_rows import electronics_rows
 from squeezefilm.report.kit.terminal import bullets, heading, plain_console, show_missed, table
 
 if TYPE_CHECKING:

@@ -95,9 +95,7 @@ def _models(
     at, words = 1e6 * p.vibration_amplitude, f"{p.relative_friction:.2f}"
     if unsure is not None:
         low, high = unsure.interval
-        axes.plot([at, at], [low, high], color=style.INK, lw=1.6, zorder=4)
-        for end in (low, high):
-            axes.plot([at], [end], "_", color=style.INK, ms=11, mew=1.6, zorder=4)
+        style.interval(axes, at, low, high)
         words += f" ({low:.2f}–{high:.2f}, {si.percent(unsure.level)}, median {unsure.median:.2f})"
     style.mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
     style.friction_axes(axes, float(x[-1]))

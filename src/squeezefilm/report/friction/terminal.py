@@ -8,7 +8,7 @@ from squeezefilm import quantities as si
 from squeezefilm.report.friction.told_apart import show_told_apart
 from squeezefilm.report.kit.decisions import interval_rows, wanted_rows
 from squeezefilm.report.kit.model_rows import group_words, influence_rows, weight_rows
-from squeezefilm.report.kit.numbers import HZ, M, N, V, shown
+from squeezefilm.report.kit.numbers import HZ, M, N, V, printable, shown
 from squeezefilm.report.kit.point_rows import heat_rows, place_rows, reduction_row, speed_row
 from squeezefilm.report.kit.terminal import heading, plain_console, show_missed, table
 
@@ -50,7 +50,7 @@ def show_friction(result: FrictionAnalysis) -> None:
     if result.apart is not None:
         show_told_apart(result.apart)
     for text in p.warnings:
-        console.print(f"! {text}")
+        console.print(f"! {printable(text)}")
 
 
 def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
@@ -106,7 +106,7 @@ def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     """The friction itself, between which limits it lies, its ripple, and what was asked for."""
     p = result.prediction
     rows = [
-        ("Relative friction µ′/µ", f"{p.relative_friction:.3f}", p.model),
+        ("Relative friction µ′/µ", f"{p.relative_friction:.2f}", p.model),
         *place_rows(p, result.active_area),
         reduction_row(p),
         ("Tangential force", shown(p.tangential_force, N, 3), "sliding steadily"),

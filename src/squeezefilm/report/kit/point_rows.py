@@ -1,4 +1,5 @@
-"""Rows of a working point that several verbs show: place, heat, sound, the finger's speed."""
+"""Rows of a working point that several verbs show: place, heat, sound, the finger's speed, what
+a plate asks of its amplifier; each a quantity, its value, a remark."""
 
 from __future__ import annotations
 
@@ -7,16 +8,18 @@ from typing import TYPE_CHECKING
 from squeezefilm import quantities as si
 from squeezefilm.chain.active_area import CRITERIA, percent
 from squeezefilm.chain.pad_place import place_words
-from squeezefilm.report.kit.numbers import HZ, SPEED, M, S, shown, signed
+from squeezefilm.report.kit.numbers import HZ, SPEED, A, M, S, V, W, shown, signed
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.area_odds import JudgedArea
     from squeezefilm.chain.prediction import Prediction
+    from squeezefilm.plate.electronics import ElectricalLoad
     from squeezefilm.plate.heat.warming import Warming
     from squeezefilm.plate.sound import SoundField
 
 Row = tuple[str, str, str]
 KELVIN = si.Unit("K")
+FARAD, HENRY = si.Unit("F"), si.Unit("H")
 
 
 def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
@@ -36,8 +39,8 @@ def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
         *rows,
         (
             "µ′/µ over the active area",
-            f"{area.best:.3f} to {area.worst:.3f}",
-            f"{places}; median {area.median:.3f}; {shares}",
+            f"{area.best:.2f} to {area.worst:.2f}",
+            f"{places}; median {area.median:.2f}; {shares}",
         ),
     ]
 
@@ -109,3 +112,51 @@ def reduction_row(p: Prediction) -> Row:
     """What vibration takes away of the friction."""
     reduction, coefficient = f"{p.friction_reduction:.3f}", f"{p.friction_coefficient:.3g}"
     return "Friction reduction µ − µ′", reduction, f"of µ = {coefficient}"
+
+
+def electronics_rows(load: ElectricalLoad | None) -> list[Row]:
+    """Current, power, slew, inductors, and which class of amplifier can do it."""
+    if load is None:
+        return [
+            ("Electrical load", "not known", "it takes a voltage, and an admittance solved near it")
+        ]
+    at = f"at {shown(load.voltage, V)} and {shown(load.frequency, HZ)}, without a finger"
+    each = f"{load.channels} ceramics in parallel, {{}} each on average"
+    rows = [("Electrical load", "assumed in part", load.assumed)] if load.assumed else []
+    if load.capacitance is not None and load.capacitance_per_channel is not None:
+        one = shown(load.capacitance_per_channel, FARAD, 3)
+        together = each.format(one) if load.channels > 1 else "beside the mode"
+        rows.append(("Electrode capacitance", shown(load.capacitance, FARAD, 3), together))
+    split = f"; {each.format(shown(load.current_per_channel, A, 3))}" if load.channels > 1 else ""
+    rows += [
+        ("Drive current, peak", shown(load.current, A, 3), at + split),
+        (
+            "Drive power",
+            shown(load.real_power, W, 3),
+            f"of {load.apparent_power:.3g} VA apparent; power factor {load.power_factor:.2f}",
+        ),
+        ("Slew rate", f"{load.slew_rate / 1e6:.3g} V/µs", "the sine's steepest slope"),
+    ]
+    if load.parallel_inductance is not None and load.series_inductance is not None:
+        rows += [
+            (
+                "Matching inductor",
+                f"{shown(load.parallel_inductance, HENRY, 3)} parallel",
+                f"the amplifier then gives {shown(load.matched_current, A, 3)} at the same voltage",
+            ),
+            (
+                "",
+                f"{shown(load.series_inductance, HENRY, 3)} in series",
+                f"the amplifier then gives {shown(load.matched_voltage, V, 3)} for "
+                f"{shown(load.voltage, V, 3)} at the ceramics",
+            ),
+        ]
+    for number, check in enumerate(load.amplifiers):
+        rows.append(
+            (
+                "Amplifier" if number == 0 else "",
+                "can" if check.suffices else "cannot",
+                f"{check.kind}, such as {check.part}: {check.why} ({check.source})",
+            )
+        )
+    return rows

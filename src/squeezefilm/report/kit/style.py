@@ -264,6 +264,13 @@ def mark(
     axes.plot([x], [y], "D", zorder=5, clip_on=clip_on, label=label, **look)
 
 
+def interval(axes: Axes, x: float, low: float, high: float) -> None:
+    """A bar from low to high with a stroke across each end, under a working point."""
+    axes.plot([x, x], [low, high], color=INK, lw=1.6, zorder=4)
+    for end in (low, high):
+        axes.plot([x], [end], "_", color=INK, ms=11, mew=1.6, zorder=4)
+
+
 def micrometres_beside(axes: Axes, voltage: float, label: str) -> None:
     """A second axis on the right of one in nm/V: micrometres at a voltage (V)."""
     micro = 1e-3 * voltage

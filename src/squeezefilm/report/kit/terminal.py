@@ -96,7 +96,7 @@ def show_rows(
     heading(console, title)
     table(console, ("", "", ""), rows, fixed=fixed)
     for text in warnings:
-        console.print(f"! {text}")
+        console.print(f"! {printable(text)}")
     return console
 
 

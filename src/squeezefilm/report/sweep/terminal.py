@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 
+from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 from squeezefilm.report.sweep.words import cells, labelled, name_of, step_words
 from squeezefilm.search.answers import catalogue, without_units
@@ -74,7 +75,9 @@ def show_sweep(found: Sweep) -> None:
         )
     # First what is so at some of the points only: that is what the points differ by.
     for text, count in sorted(found.warnings, key=lambda one: one[1] == points)[:_TOLD]:
-        console.print(f"! {text} (at {count} of {points} points, numbers as at one of them)")
+        console.print(
+            f"! {printable(text)} (at {count} of {points} points, numbers as at one of them)"
+        )
     if len(found.warnings) > _TOLD:
         console.print(f"! {len(found.warnings) - _TOLD} more warnings stand in sweep.json")
     console.print(f"{found.computed} answers computed, {found.kept} taken from before")

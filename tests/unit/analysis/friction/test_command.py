@@ -19,7 +19,7 @@ from squeezefilm.analysis.friction.command import (
     friction_map,
 )
 from squeezefilm.analysis.verdict import Finding
-from squeezefilm.display import Display, load_display
+from squeezefilm.display import Display
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.progress import NO_HURRY
 
@@ -70,11 +70,6 @@ def prediction(**changes: Any) -> Any:
         "place_was_asked": False,
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
-
-
-@pytest.fixture(scope="module")
-def stator() -> Display:
-    return load_display("biet2008-stator")
 
 
 def test_a_map_goes_over_amplitudes_and_forces(stator: Display) -> None:
@@ -129,7 +124,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
     stand_in("predict", PREDICTION)
     stand_in("wanted_friction", "the wanted")
-    names = ("model_curves", "friction_map", "_ripple", "tell_apart", "active_area", "judged_area")
+    names = ("model_curves", "friction_map", "_ripple", "tell_apart", "judged_area")
     for name in names:
         stand_in(name, f"the {name}")
     stand_in("interval_or_reason", ("the interval", "a reason"))
@@ -167,8 +162,7 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
             {"samples": 16, "seed": 9, "progress": said},
         ),
         ("tell_apart", (thin, PREDICTION), {"seed": 9, "progress": said}),
-        ("active_area", (thin, PREDICTION), {}),
-        ("judged_area", (thin, PREDICTION, "the active_area"), {"samples": 16}),
+        ("judged_area", (thin, PREDICTION), {"samples": 16}),
         ("_ripple", (PREDICTION,), {}),
         ("without_gas", ("the law", 2e-6), {}),
         ("friction_verdict", (PREDICTION, "the interval", "a reason", "the judged_area"), {}),
@@ -191,7 +185,7 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
 def test_what_is_not_asked_for_is_not_computed(stator: Display, parts: list[Any]) -> None:
     found = analyze_friction(stator, vibration_amplitude=2e-6, samples=0)
     assert [name for name, *_ in parts] == [
-        "predict", "model_curves", "friction_map", "interval_or_reason", "active_area",
+        "predict", "model_curves", "friction_map", "interval_or_reason",
         "judged_area", "_ripple", "without_gas", "friction_verdict",
     ]  # fmt: skip
     assert parts[0][1][0] is stator

@@ -22,11 +22,6 @@ from squeezefilm.errors import OutOfRangeError, UnreachableError
 
 
 @pytest.fixture(scope="module")
-def stator() -> Display:
-    return load_display("biet2008-stator")
-
-
-@pytest.fixture(scope="module")
 def point(stator: Display) -> Prediction:
     return predict(stator)
 

@@ -123,7 +123,7 @@ def test_what_is_doubtful_is_said_and_only_that() -> None:
     said = " ".join(hot.doubts)
     assert "drifts by -306 Hz" in said
     assert "half-bandwidth is 275 Hz" in said
-    assert "more than the 60 K" in said
+    assert "only up to 60 K" in said
     assert "soft ceramics" in said
     assert "coercive" not in said
     strong = dataclasses.replace(SOURCE, field=4e5, quality_of_ceramic=1000.0)

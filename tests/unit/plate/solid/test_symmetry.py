@@ -7,6 +7,7 @@ import itertools
 from typing import Any
 
 import pytest
+from tests.verification.rims import rim_supports
 
 from squeezefilm.errors import GeometryError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
@@ -15,7 +16,6 @@ from squeezefilm.plate.layout import (
     FoamSupport,
     GlueLayer,
     RectangularPlate,
-    rim_supports,
 )
 from squeezefilm.plate.solid.layers import COARSE, NORMAL
 from squeezefilm.plate.solid.mesh import plate_model

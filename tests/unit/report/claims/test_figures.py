@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from tests.unit.report.drawn import words
 
 from squeezefilm.display import load_display
 from squeezefilm.plate.beam.modes import timoshenko_frequency
@@ -26,10 +27,6 @@ def section() -> Laminate:
     plate = load_display("biet2008-plate").actuator
     assert isinstance(plate, RectangularPlate)
     return plate_laminate(plate, "paper")
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
 
 
 def test_two_beam_theories_are_drawn_with_where_they_meet_the_criterion(section: Laminate) -> None:

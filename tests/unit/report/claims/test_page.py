@@ -23,6 +23,7 @@ from squeezefilm.report.claims.page import (
     write_reproduction,
     write_validation_docs,
 )
+from squeezefilm.report.kit.page_style import bullets
 
 DESIGN = Design(
     lowest_frequency=20.56e3, longest_half_wavelength_euler=16e-3,
@@ -201,8 +202,7 @@ def test_the_page_has_claims_figures_procedure_and_errata(
         '<section><h2>5 &lt; 6</h2><figure><div class="scroll" tabindex="0"><svg>x</svg></div>'
         "</figure></section>" in text
     )
-    listed = "".join(f"<li>{html.escape(one)}</li>" for one in design_sentences(DESIGN))
-    assert f"<ul>{listed}</ul>" in text
+    assert bullets(design_sentences(DESIGN)) in text
     assert "<b>" not in text
     assert "Directions" not in text
     places = [text.index(one) for one in ("<h2>Claims", "5 &lt; 6", "<h2>The paper", "<h2>Errata")]

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from tests.unit.report.made_curves import AMPLITUDE, CURVES, GRID, labelled, made, point, words
+from tests.unit.report.drawn import labelled, words
+from tests.unit.report.made_curves import AMPLITUDE, CURVES, GRID, made, point
 
 from squeezefilm.analysis.curves import PressureProfile, WavelengthCurve
 from squeezefilm.report.claims import paper_figures

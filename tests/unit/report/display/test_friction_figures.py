@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from tests.unit.report.made_curves import AMPLITUDE, FILMS, GRID, labelled, made, words
+from tests.unit.report.drawn import labelled, words
+from tests.unit.report.made_curves import AMPLITUDE, FILMS, GRID, made
 
 from squeezefilm.report.display.friction_figures import film_models, own_friction
 from squeezefilm.report.kit.model_looks import look_of

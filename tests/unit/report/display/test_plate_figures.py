@@ -12,6 +12,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.patches import Circle, Rectangle, Wedge
+from tests.unit.report.drawn import labelled, words
 
 from squeezefilm.display import load_display
 from squeezefilm.plate.laminate import plate_laminate
@@ -37,14 +38,6 @@ def tpad(**changes: Any) -> DiscPlate:
     disc = load_display("winfield2007-tpad").actuator
     assert isinstance(disc, DiscPlate)
     return dataclasses.replace(disc, **changes)
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
-
-
-def labelled(axes: Any) -> dict[str, Any]:
-    return dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
 
 
 def data(line: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -24,6 +24,7 @@ def point(**changes: Any) -> Any:
         "surface": SimpleNamespace(name="polished", roughness=0.6e-6),
         "warnings": ("said already", "not yet"),
         "place": (0.03, 0.02), "place_said": "at the best antinode, x 30 mm, y 20 mm",
+        "law": SimpleNamespace(place=None),
     }  # fmt: skip
     return SimpleNamespace(**{**parts, **changes})
 

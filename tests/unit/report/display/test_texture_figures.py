@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.patches import Rectangle
+from tests.unit.report.drawn import words
 
 from squeezefilm.render.fidelity.survival import FidelityTable
 from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
@@ -30,10 +31,6 @@ def traced(grating: Any = GRATING, tau: float = 0.5e-3, swing: float = 0.2) -> F
 
 def analysis(trace: Any = None, table: Any = None) -> Any:
     return SimpleNamespace(texture=trace, fidelity=table, prediction=SimpleNamespace(model="a law"))
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
 
 
 @pytest.fixture(scope="module")

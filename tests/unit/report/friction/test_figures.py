@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from tests.unit.report.drawn import labelled, words
 
 from squeezefilm.analysis.curves import ModelCurve
 from squeezefilm.analysis.draws import Refusals
@@ -97,14 +98,6 @@ RESULT: Any = SimpleNamespace(
 
 def without(**changes: Any) -> Any:
     return SimpleNamespace(**{**vars(RESULT), **changes})
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
-
-
-def labelled(axes: Any) -> dict[str, Any]:
-    return dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
 
 
 def test_every_model_is_drawn_in_its_own_way() -> None:

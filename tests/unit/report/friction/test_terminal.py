@@ -131,7 +131,7 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "Ambient pressure 101.3 kPa",
         "Film carries 56.8 % of the load",
         "Asperities carry 43.2 % mean gap 1.23 µm",
-        "Relative friction µ′/µ 0.432 a-model",
+        "Relative friction µ′/µ 0.43 a-model",
         "Place of the finger x 30 mm, y 20 mm at the best antinode",
         "µ′/µ over the active area not known",
         "Friction reduction µ − µ′ 0.114 of µ = 0.2",

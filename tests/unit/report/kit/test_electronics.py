@@ -3,7 +3,7 @@
 import dataclasses
 
 from squeezefilm.plate.electronics import AmplifierCheck, ElectricalLoad
-from squeezefilm.report.kit.electronics import electronics_rows
+from squeezefilm.report.kit.point_rows import electronics_rows
 
 LOAD = ElectricalLoad(
     33.58e3, 15.0, 75.4e-9, 1.07, 8.04, 7.83, 0.974, 3.16e6, 293e-6, 1.04, 15e-6, 14.6, 7, 0.153,

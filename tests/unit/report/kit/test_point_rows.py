@@ -22,11 +22,11 @@ def test_rows_and_figure_say_the_range_and_its_places() -> None:
     assert AREA is not None
     assert AREA.best_place is not None
     assert AREA.worst_place is not None
-    judged = judged_area(STATOR, POINT, AREA, samples=0)
+    judged = judged_area(STATOR, POINT, samples=0)
     first, second = place_rows(POINT, judged)
     assert first[1] == place_words(POINT.place)
     assert first[2] == POINT.place_said.replace(f"{first[1]}, ", "")
-    assert second[1] == f"{AREA.best:.3f} to {AREA.worst:.3f}"
+    assert second[1] == f"{AREA.best:.2f} to {AREA.worst:.2f}"
     assert place_words(AREA.worst_place) in second[2]
     assert f"{percent(AREA.share_below(0.7))} below 0.70" in second[2]
     drawn = figure_of(_analysis(judged))
@@ -40,7 +40,7 @@ def test_without_an_area_nothing_is_known_and_the_figure_says_why() -> None:
 
 def test_a_model_without_ridges_of_their_own_says_why() -> None:
     p = predict(STATOR, model="paper2008")
-    judged = judged_area(STATOR, p, active_area(STATOR, p), samples=32)
+    judged = judged_area(STATOR, p, samples=32)
     assert judged is not None
     assert judged.odds is None
     assert "paper2008" in place_rows(p, judged)[1][2]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from tests.unit.report.drawn import labelled, words
 from tests.unit.report.made_results import made_result
 
 from squeezefilm.analysis.plate.command import PlateAnalysis
@@ -84,14 +85,6 @@ def solved(label: tuple[int, int] = (4, 0), volts: float = 15.0, **changes: Any)
         "summary": lambda: {"mode": "µ"},
     }  # fmt: skip
     return made_result(PlateAnalysis, **{**parts, **changes})
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
-
-
-def labelled(axes: Any) -> dict[str, Any]:
-    return dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
 
 
 def data(line: Any) -> tuple[np.ndarray, np.ndarray]:

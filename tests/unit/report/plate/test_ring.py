@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.patches import Circle, Wedge
+from tests.unit.report.drawn import labelled, words
 from tests.unit.report.made_results import WARM, made_result
 
 from squeezefilm.analysis.plate.ring import RingAnalysis
@@ -78,14 +79,6 @@ DISC = made(
         drive=SectorDrive(((0.0, 2 * math.pi, 1),)),
     ),
 )
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
-
-
-def labelled(axes: Any) -> dict[str, Any]:
-    return dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
 
 
 def wedges(axes: Any) -> list[Wedge]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from matplotlib.colors import to_hex
+from tests.unit.report.drawn import words
 
 from squeezefilm.analysis.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
 from squeezefilm.report.kit.style import BLUE, ORANGE
@@ -16,10 +17,6 @@ POINT = WorkingPoint((8, 0), 33e3, 10.0, 1e-7, 60.0, 34e3)
 
 def row(name: str, shift: float, amplitude: float | None) -> Sensitivity:
     return Sensitivity(name, "changed", 33e3, shift, None, amplitude, 1.0)
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
 
 
 def bars(axes: Any) -> list[tuple[float, float, str]]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from tests.unit.report.drawn import labelled, words
 
 from squeezefilm.bench.played_session import PlayedWay
 from squeezefilm.report.kit.style import BLUE, GREEN, ORANGE
@@ -56,14 +57,6 @@ def session(**changes: Any) -> Any:
     }  # fmt: skip
     known = {**parts, **changes}
     return SimpleNamespace(**known, last=lambda kind: known[kind]())
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
-
-
-def labelled(axes: Any) -> dict[str, Any]:
-    return dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
 
 
 def test_friction_is_drawn_over_the_pass_in_the_middle() -> None:

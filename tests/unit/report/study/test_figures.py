@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from tests.unit.report.drawn import words
 
 from squeezefilm.report.kit.style import BLUE, MUTED, ORANGE
 from squeezefilm.report.study.figures import (
@@ -77,10 +78,6 @@ def analysis(**changes: Any) -> Any:
         "sensitivity": THURSTONE, "choice": CHOICE, "choice_map": POINTS, "notes": (),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
 
 
 def data(line: Any) -> list[list[float]]:

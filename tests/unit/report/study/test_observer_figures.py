@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from tests.unit.report.drawn import words
 
 from squeezefilm.perception.observer import SensoryChannel, load_observer
 from squeezefilm.perception.percepts import Apparatus
@@ -51,10 +52,6 @@ def tables(**changes: Any) -> ChainTables:
         ),
     )  # fmt: skip
     return dataclasses.replace(found, **changes)
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
 
 
 def test_channels_are_drawn_as_they_pass_vibration() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from tests.unit.report.drawn import words
 
 from squeezefilm.report.kit.style import BLUE, ORANGE
 from squeezefilm.report.study.time_figures import psychometric_function
@@ -23,10 +24,6 @@ def fit(axis: Any) -> Any:
         trials=np.array([10.0, 10.0, 40.0, 20.0]), level=0.9,
         posterior_interval={"threshold": (2.25, 4.125), "width": (1.0, 9.0)},
     )  # fmt: skip
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
 
 
 @pytest.mark.parametrize("axis", ["linear", "log"])

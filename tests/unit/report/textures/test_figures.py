@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.unit.report.drawn import labelled, words
 
 from squeezefilm.render.program.inverse import FrictionInverse
 from squeezefilm.report.textures.figures import contrast, drive, friction, ripple, way
@@ -71,14 +72,6 @@ def made(**changes: Any) -> Any:
 
 
 RESULT = made()
-
-
-def words(text: str) -> str:
-    return text.replace("\u00a0", " ").replace("\n", " ")
-
-
-def labelled(axes: Any) -> dict[str, Any]:
-    return dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
 
 
 def texts(axes: Any) -> list[str]:

@@ -45,9 +45,9 @@ def test_a_drives_table_must_rise_from_zero(amplitude: list[float], voltage: lis
 
 def test_a_friction_curve_must_be_one() -> None:
     with pytest.raises(InputError, match="no table"):
-        FrictionTable.of_amplitude(np.array([0.0, 0.0]), np.array([1.0, 0.5]))
+        FrictionTable(np.array([0.0, 0.0]), np.zeros(1), np.array([[1.0, 0.5]]), 0.0)
     with pytest.raises(InputError, match="relative_friction"):
-        FrictionTable.of_amplitude(np.array([0.0, 1.0]), np.array([1.2, 0.5]))
+        FrictionTable(np.array([0.0, 1.0]), np.zeros(1), np.array([[1.2, 0.5]]), 0.0)
 
 
 def test_the_lead_is_the_middle_of_the_step_or_compensated_its_end(plan_of: PlanOf) -> None:
