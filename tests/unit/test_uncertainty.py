@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.analysis import draws, uncertainty
+from squeezefilm.analysis import draws, free_amplitude, uncertainty
 from squeezefilm.analysis.draws import (
     Draw,
-    FreeAmplitude,
     Mixture,
     Outcome,
     Refusals,
     outcome_of,
 )
+from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.influences import GroupInfluence, Influence
 from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.model_choices import HEIGHT_LAW, MOISTURE, SHEAR, SLIP
@@ -283,7 +283,10 @@ def made_up(
             return Outcome(value, 1e-6 * value + free, np.nan)
 
         monkeypatch.setattr(draws, "outcome_of", one)
-        monkeypatch.setattr(uncertainty, "mixture_of", draws.mixture_of.__wrapped__)
+        # Of what is made up nothing is kept.
+        monkeypatch.setattr(
+            uncertainty, "mixture_of", lambda display, p: Mixture(display, p, driven=False)
+        )
         return uncertain_friction(stator, point, **more)
 
     return found
@@ -526,10 +529,10 @@ def test_the_free_amplitude_follows_voltage_quality_and_dimensions(
     )
     # A made-up actuator moves with its thickness, a plate (as a beam) ten times as far.
     monkeypatch.setattr(
-        draws, "beam_response", lambda a: SimpleNamespace(amplitude_per_volt=10 * a.thickness)
+        free_amplitude, "beam_response", lambda a: SimpleNamespace(amplitude_per_volt=10 * a.thickness)
     )
     monkeypatch.setattr(
-        draws, "working_mode",
+        free_amplitude, "working_mode",
         lambda a: SimpleNamespace(amplitude_per_volt=getattr(a, "thickness", 1.0)),
     )  # fmt: skip
 
@@ -563,7 +566,7 @@ def test_a_disc_of_a_draw_is_told_from_few_solved_ones(monkeypatch: pytest.Monke
         solved.append(actuator)
         return working_mode(actuator)
 
-    monkeypatch.setattr(draws, "working_mode", counted)
+    monkeypatch.setattr(free_amplitude, "working_mode", counted)
     free = FreeAmplitude(disc, _predicted(voltage=15.0))
     reference = working_mode(disc.actuator).amplitude_per_volt
     rng = np.random.default_rng(18)

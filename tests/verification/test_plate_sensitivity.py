@@ -76,7 +76,8 @@ def test_open_ceramics_stiffen_like_open_terminals(frequencies: SensitivityTable
     terminals are open, so the mode lies at least as high. (The specification lists +4.1 %.)"""
     row = next(row for row in frequencies.rows if row.name == "ceramics open")
     terminals = frequencies.reference.open_frequency / frequencies.reference.frequency - 1
-    assert row.frequency_shift == pytest.approx(terminals, abs=5e-4)
+    assert row.frequency_shift is not None
+    assert terminals < row.frequency_shift < terminals + 1e-3
     assert row.amplitude_per_volt is None
 
 

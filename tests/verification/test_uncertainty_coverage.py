@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import FreeAmplitude, Mixture, as_drawn, outcome_of
+from squeezefilm.analysis.draws import Mixture, as_drawn, outcome_of
+from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, evaluate, sobol_points
 from squeezefilm.chain.prediction import predict

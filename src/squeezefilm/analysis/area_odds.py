@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import FreeAmplitude, Outcome, as_drawn, mixture_of
+from squeezefilm.analysis.draws import Outcome, as_drawn, mixture_of
+from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea, active_area

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import Draw, FreeAmplitude, Mixture, as_drawn, mixture_of
+from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, mixture_of
+from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import Prediction

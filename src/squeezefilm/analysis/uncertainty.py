@@ -11,7 +11,6 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import (
-    FreeAmplitude,
     Mixture,
     Outcome,
     Refusals,
@@ -20,6 +19,7 @@ from squeezefilm.analysis.draws import (
     between_limits,
     mixture_of,
 )
+from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.influences import (
     GroupInfluence,
     Influence,

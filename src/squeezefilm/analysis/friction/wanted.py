@@ -12,13 +12,13 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import (
     Draw,
-    FreeAmplitude,
     Mixture,
     Refusals,
     Tally,
     as_drawn,
     between_limits,
 )
+from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, refusal_words, sobol_points
 from squeezefilm.chain.amplitude_search import HIGHEST_AMPLITUDE

@@ -7,7 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.draws import FreeAmplitude, Mixture, outcome_of
+from squeezefilm.analysis.draws import Mixture, outcome_of
+from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.friction import wanted as room
 from squeezefilm.analysis.friction.wanted import (
     VoltageInterval,

@@ -43,7 +43,9 @@ def test_a_recording_or_its_path_reaches_the_fit(
         fit_recording({})  # type: ignore[arg-type]
 
 
-SCAN = kinds.GridScan(np.array([0.01, 0.02]), np.array([0.01, 0.02]), np.ones(2) + 0j, 33.6e3)
+SCAN = kinds.GridScan(
+    np.linspace(0.01, 0.07, 16), np.linspace(0.01, 0.03, 16), np.ones(16) + 0j, 33.6e3
+)
 
 
 def test_a_grid_scan_needs_a_plate() -> None:
