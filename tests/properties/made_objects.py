@@ -78,6 +78,7 @@ from squeezefilm.plate.surface_shape import (
     surface_shape,
 )
 from squeezefilm.plate.working_mode import WorkingMode, working_mode
+from squeezefilm.progress import Deadline
 from squeezefilm.quantities import Unit
 from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
 from squeezefilm.render.motion.finger_path import FingerPath, OverPath
@@ -188,6 +189,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     RectangularPlate: lambda: PLATE,
     Actuator: lambda: PLATE,
     Thermal: Thermal,
+    Deadline: lambda: Deadline(ends=1e12),
     HeatSource: lambda: HeatSource(30e3, 60.0, 1e-6, 1.0),
     CeramicPatch: lambda: PLATE.patches[0],
     LoadedMode: lambda: LoadedMode(30e3, 60.0, 0.01 + 0.01j),

@@ -529,7 +529,9 @@ def test_the_free_amplitude_follows_voltage_quality_and_dimensions(
     )
     # A made-up actuator moves with its thickness, a plate (as a beam) ten times as far.
     monkeypatch.setattr(
-        free_amplitude, "beam_response", lambda a: SimpleNamespace(amplitude_per_volt=10 * a.thickness)
+        free_amplitude,
+        "beam_response",
+        lambda a: SimpleNamespace(amplitude_per_volt=10 * a.thickness),
     )
     monkeypatch.setattr(
         free_amplitude, "working_mode",

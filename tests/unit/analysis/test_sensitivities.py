@@ -44,7 +44,7 @@ def test_a_row_is_the_prediction_of_the_changed_display() -> None:
             a = there.mode.amplitude_per_volt / p.mode.amplitude_per_volt - 1
             assert (end.frequency_shift, end.amplitude_shift) == pytest.approx((f, a), abs=1e-9)
             # Another plate's shape differs a little from the described one's, which stands in.
-            assert end.relative_friction == pytest.approx(there.relative_friction, abs=2e-5)
+            assert end.relative_friction == pytest.approx(there.relative_friction, abs=2e-4)
     for path in ("finger.plateau_width", "surfaces.0.friction_coefficient"):
         row = _row(found, path)
         for end in (row.low, row.high):

@@ -35,7 +35,7 @@ def test_every_kind_of_recording_has_its_fit() -> None:
 def test_a_recording_or_its_path_reaches_the_fit(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    stand_in(monkeypatch, "impedance", fit_impedance=lambda sweep: sweep.told.name)
+    stand_in(monkeypatch, "circuit.impedance", fit_impedance=lambda sweep: sweep.told.name)
     path = written(tmp_path, impedance_text())
     assert fit_recording(path) == fit_recording(str(path)) == "synthetic resonator"
     assert fit_recording(sf.read_recording(path)) == "synthetic resonator"
@@ -61,7 +61,7 @@ def test_a_grid_scan_meets_the_solved_modes_near_its_frequency(
 ) -> None:
     stand_in(
         monkeypatch,
-        "grid_scan",
+        "vibration.grid_scan",
         shapes_at=lambda modes, x, y, lobe: (modes, x, y, lobe),
         fit_grid_scan=lambda scan, shapes: shapes,
     )
@@ -76,7 +76,11 @@ def test_a_grid_scan_meets_the_solved_modes_near_its_frequency(
 def test_signals_are_fitted_by_the_response_that_they_give(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    stand_in(monkeypatch, "frequency_response", fit_frequency_response=lambda one: one.frequency)
+    stand_in(
+        monkeypatch,
+        "vibration.frequency_response",
+        fit_frequency_response=lambda one: one.frequency,
+    )
     f = np.linspace(1e4, 2e4, 5)
     response = kinds.FrequencyResponse(f, np.ones(5) + 0j)
     found: Any = response_fit(SimpleNamespace(response=response))  # type: ignore[arg-type]
