@@ -9,6 +9,7 @@ import pytest
 from scipy.interpolate import RegularGridInterpolator
 
 from squeezefilm.chain.friction import TABLE_SPEEDS, friction_law
+from squeezefilm.chain.prediction import predict
 from squeezefilm.contact.sliding.dry_friction import DryFriction, SpeedFriction
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.display import load_display
@@ -80,7 +81,11 @@ def test_a_stroke_is_what_slide_makes_of_the_same_bone_and_amplitude() -> None:
     mode, display = point().mode, point().display
     # The law's own table, finer than the twin's and not the twin's.
     law = friction_law(
-        display, mode.half_wavelength, mode.resonance_frequency, normal_force=FORCE
+        display,
+        mode.half_wavelength,
+        mode.resonance_frequency,
+        normal_force=FORCE,
+        place=predict(display).law.place,
     ).table(point().highest_amplitude, 257)
     rows = coefficient() * law.over_speeds(truth["amplitude_m"]).T
     found = dragged(truth, SpeedFriction(law.speed, rows), speed)

@@ -140,7 +140,7 @@ def _electrical_rows(analysis: Analysis) -> list[Row]:
     if load is None:
         said = "it takes a voltage, and an admittance solved near it"
         return [("Current", "not known", said)]
-    real = f"{shown(load.real_power, W, 3)} of them are real power"
+    real = f"{shown(load.real_power, W, 3)} of it real"
     able = {
         can: [check.part for check in load.amplifiers if check.suffices == can]
         for can in (True, False)

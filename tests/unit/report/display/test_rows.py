@@ -94,7 +94,7 @@ def test_what_the_amplifier_has_to_give_and_which_can() -> None:
     assert said["Current"] == ("300 mA", "zero-to-peak, without a finger")
     load.assumed = "its ceramic"
     assert rows_of(analysis(drive_electronics=load))["Current"][1].endswith("of an assumed ceramic")
-    assert said["Apparent power"] == ("1.5 VA", "1.2 W of them are real power")
+    assert said["Apparent power"] == ("1.5 VA", "1.2 W of it real")
     assert said["Amplifiers that can"] == ("1 of 3", "B can; A and C cannot")
     assert rows_of(analysis())["Current"][0] == "not known"
 
