@@ -569,6 +569,7 @@ def test_a_disc_of_a_draw_is_told_from_few_solved_ones(monkeypatch: pytest.Monke
         return working_mode(actuator)
 
     monkeypatch.setattr(free_amplitude, "working_mode", counted)
+    FreeAmplitude._per_volt.cache_clear()  # of what other tests asked for
     free = FreeAmplitude(disc, _predicted(voltage=15.0))
     reference = working_mode(disc.actuator).amplitude_per_volt
     rng = np.random.default_rng(18)
