@@ -36,8 +36,7 @@ class CalibratedValue:
     def sentence(self) -> str:
         """As one says it."""
         middle, low, high = (
-            si.format_quantity(one, self.unit, 4).replace(" um", " µm")
-            for one in (self.median, *self.interval)
+            si.format_quantity(one, self.unit, 4) for one in (self.median, *self.interval)
         )
         return f"{self.path} = {middle} ({low} to {high})"
 
