@@ -55,7 +55,7 @@ def test_a_texture_is_played_on_a_twin_and_judged(tmp_path: Path) -> None:
     assert trace.metadata["seed"] == 0
     assert len(trace.metadata["config_sha256"]) == 64
     page = (out / "play.html").read_text()
-    assert "Truth: contrast at 4 mm" in page
+    assert "Truth: contrast at 4\u00a0mm" in page  # a number and its unit stay on one line
     run("export", str(out / "trace.sqft"), "--to", str(tmp_path / "rows.csv"))
     table = table_from_csv(tmp_path / "rows.csv")
     assert table.column("x_m").size == len(trace.rows)
