@@ -101,6 +101,39 @@ def test_what_is_given_stands_before_what_is_assumed(stator: Display) -> None:
     assert damping not in {p.path for p in uncertain_parameters(bare, driven=True)}
 
 
+def test_a_ceramic_varies_as_makers_grant_unless_a_range_is_given() -> None:
+    """All its stiffnesses by 10 %, all its d by 20 %, or the e31 that is believed instead."""
+    stiff, charge, stress = (
+        f"actuator.ceramic.{one}"
+        for one in ("in_plane_stiffness", "charge_coefficient", "stress_coefficient")
+    )
+    for name in ("touchpad-glass", "winfield2007-tpad", "biet2008-plate"):
+        display = load_display(name)
+        found = {one.path: one for one in uncertain_parameters(display, driven=True)}
+        for path, reach in ((stiff, 0.1), (charge, 0.2)):
+            nominal = value_at(display, path)[0]
+            ends = sorted(((1 - reach) * nominal, (1 + reach) * nominal))
+            assert found[path].distribution.support == pytest.approx(ends, rel=1e-12)
+            assert "makers grant" in found[path].source
+            assert found[path].origin == "assumed"
+        assert stress not in found
+        still = {one.path for one in uncertain_parameters(display, driven=False)}
+        assert not still & {stiff, charge}
+    known = _given(display, actuator__ceramic__charge_coefficient=(-250e-12, -240e-12))
+    own = {one.path: one for one in uncertain_parameters(known, driven=True)}[charge]
+    assert (own.origin, own.distribution.support) == ("given", (-250e-12, -240e-12))
+    ceramic = dataclasses.replace(display.actuator.ceramic, data_set="printed_e31")  # type: ignore[union-attr]
+    printed = dataclasses.replace(
+        display,
+        actuator=dataclasses.replace(display.actuator, ceramic=ceramic),
+    )
+    of_it = {one.path for one in uncertain_parameters(printed, driven=True)}
+    assert of_it & {stiff, charge, stress} == {stiff, stress}
+    # A stator's amplitude is measured, whatever its ceramic.
+    stator = uncertain_parameters(load_display("biet2008-stator"), driven=True)
+    assert not any("ceramic" in one.path for one in stator)
+
+
 def test_each_law_of_contact_has_its_own_parameters(stator: Display) -> None:
     rough = {p.path.split(".")[-1] for p in uncertain_parameters(stator, driven=False)}
     assert {"roughness", "modulus", "hurst_exponent", "longest_wavelength"} < rough
@@ -395,7 +428,7 @@ def test_refused_draws_are_counted_with_their_reason(made_up: Callable[..., Any]
     assert found.samples.size == found.amplitudes.size == 31
     assert found.summary()["refused"] == 3
     # A refused draw is not below anything.
-    assert found.probability_below(2.0) == pytest.approx(1 - 3 / 200)
+    assert found.probability_below(2.0) == pytest.approx(31 / 32)
 
 
 def test_above_two_per_cent_there_is_no_interval(
@@ -431,13 +464,13 @@ def test_an_uncertain_friction_is_said_and_listed() -> None:
     parameter = Parameter("finger.p", 2e-4, Unit("m"), Uniform(150e-6, 350e-6), "given", "a paper")
     found = UncertainFriction(
         nominal=0.412, median=0.43, interval=(0.281, 0.549), level=0.9,
-        samples=np.array([0.3, 0.7]), amplitudes=np.zeros(2),
+        samples=np.array([0.3, 0.7]), amplitudes=np.zeros(2), draws=3,
         influences=(Influence(parameter, 0.1, 0.2, 0.3, 0.4),),
         groups=(GroupInfluence("measurable", 0.5, 0.7, 0.1),),
         refused=Refusals(1, 64, Counter({"why": 1}), Counter(), ""), seed=5, model="a-model",
     )  # fmt: skip
     assert found.sentence == "µ′/µ = 0.41 as described (0.28–0.55, median 0.43)"
-    assert found.probability_below(0.5) == pytest.approx(0.5 * 63 / 64)
+    assert found.probability_below(0.5) == pytest.approx(1 / 3)
     assert found.summary() == {
         "relative_friction": 0.412, "relative_friction_median": 0.43,
         "relative_friction_interval": [0.281, 0.549], "interval_level": 0.9, "evaluations": 64,

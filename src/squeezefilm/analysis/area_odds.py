@@ -18,7 +18,7 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Outcome, as_drawn, mixture_of
 from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.intervals import quantiles
-from squeezefilm.analysis.uncertainty import sobol_points
+from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, sobol_points
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea, active_area
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.pad_place import pad_place
@@ -26,7 +26,6 @@ from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 
-DRAWS = 64
 WHERE = ("best", "median", "worst")
 
 
@@ -72,20 +71,28 @@ class JudgedArea(NamedTuple):
         return self.area.summary() | {"odds": None if self.odds is None else self.odds.summary()}
 
 
-def area_odds(display: Display, prediction: Prediction, area: ActiveArea) -> AreaOdds | None:
-    """The friction of an area by 64 draws of all that is uncertain in a display; None where the
-    area has no friction, nothing vibrates or nothing touches."""
+def area_odds(
+    display: Display,
+    prediction: Prediction,
+    area: ActiveArea,
+    *,
+    samples: int = SAMPLES,
+    seed: int = 1,
+) -> AreaOdds | None:
+    """The friction of an area by the draws that its prediction's interval is of, see
+    `uncertain_friction`; None where the area has no friction, nothing vibrates or nothing
+    touches."""
     p = prediction
     if p.touch.sharing is None or p.vibration_amplitude == 0 or not area.of_note:
         return None
     over = _elsewhere(display, p, area)
     mixture, free = mixture_of(display, p), FreeAmplitude(display, p)
-    points = sobol_points(mixture, DRAWS, seed=1)
-    samples = np.full((DRAWS, len(over)), np.nan)
-    for row, point, draw in zip(samples, points, mixture.draws(points), strict=True):
+    points = sobol_points(mixture, POINTS * samples, seed)
+    drawn = np.full((len(points), len(over)), np.nan)
+    for row, point, draw in zip(drawn, points, mixture.draws(points), strict=True):
         with contextlib.suppress(SqueezefilmError), as_drawn():
             row[:] = _met(mixture.law(draw), mixture.outcome(point, draw, free), over)
-    return AreaOdds(samples)
+    return AreaOdds(drawn)
 
 
 class _Elsewhere(NamedTuple):
@@ -122,9 +129,13 @@ def _met(law: FrictionLaw, found: Outcome, over: list[_Elsewhere | None]) -> lis
     return [min(max(mean + tied, 0.0), 1.0) for mean in means]
 
 
-def judged_area(display: Display, prediction: Prediction, *, samples: int) -> JudgedArea | None:
+def judged_area(
+    display: Display, prediction: Prediction, *, samples: int, seed: int = 1
+) -> JudgedArea | None:
     """The active area with its odds, where samples were asked for; None without an area."""
     area = active_area(display, prediction)
     if area is None:
         return None
-    return JudgedArea(area, area_odds(display, prediction, area) if samples else None)
+    if not samples:
+        return JudgedArea(area, None)
+    return JudgedArea(area, area_odds(display, prediction, area, samples=samples, seed=seed))

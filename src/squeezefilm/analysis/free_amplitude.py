@@ -6,6 +6,7 @@ import dataclasses
 import functools
 import math
 import warnings
+from collections.abc import Iterator
 from operator import attrgetter
 
 from squeezefilm import quantities as si
@@ -16,6 +17,9 @@ from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import Actuator, AnnularStator, RectangularPlate
 from squeezefilm.plate.working_mode import working_mode
 
+# What a rectangular plate is beside its layout; how much each moves it is asked for once.
+_MADE_OF = ("substrate", "ceramic", "glue", "quality_factor")
+_CONSTANTS = "ceramic.constants."
 # How far the discs are from the described one that say how each number moves the amplitude.
 _APART = 1.1
 
@@ -23,8 +27,9 @@ _APART = 1.1
 class FreeAmplitude:
     """The amplitude (m) without a finger of a display with other values, from a prediction's.
 
-    A rectangular plate's own dimensions and constants move it as a beam's would, a disc's each by
-    itself as three solved discs say (`_moved`), Q and an uncertain voltage in proportion.
+    What a plate or disc is made of moves it constant by constant, as three beams or three solved
+    discs say (`_moved`), a disc's dimensions likewise; a rectangular plate's layout moves it as a
+    beam's would, Q and an uncertain voltage in proportion.
     """
 
     def __init__(self, display: Display, prediction: Prediction) -> None:
@@ -43,10 +48,14 @@ class FreeAmplitude:
             # At resonance, in proportion; a stator's amplitude is measured, whatever its Q.
             measured = isinstance(here, AnnularStator)
             return free * (1 if measured else here.quality_factor / nominal.quality_factor)
+        values = _values(here, nominal, self._paths)
+        share = math.prod(self._moved(path, value) for path, value in values)
         if isinstance(here, RectangularPlate):
-            return free * self._per_volt(here) / self.reference
-        values = [(path, attrgetter(path)(here)) for path in self._paths]
-        return free * math.prod(self._moved(path, value) for path, value in values)
+            as_made: dict[str, Any] = {one: getattr(nominal, one) for one in _MADE_OF}
+            laid_out = dataclasses.replace(here, **as_made)
+            if laid_out != nominal:
+                share *= self._per_volt(laid_out) / self.reference
+        return free * share
 
     def _volts(self, display: Display) -> float:
         """An uncertain drive in proportion; a voltage asked for stands as it is."""
@@ -56,14 +65,17 @@ class FreeAmplitude:
 
     @functools.cached_property
     def _paths(self) -> tuple[str, ...]:
-        """The numbers of the actuator, by their dotted paths."""
+        """The numbers of the actuator that move it one by one, by their dotted paths."""
         actuator = self.nominal.actuator
-        return tuple(path for path in number_paths(actuator) if attrgetter(path)(actuator))
+        paths = number_paths(actuator)
+        if isinstance(actuator, RectangularPlate):
+            paths = (path for path in paths if path.split(".")[0] in _MADE_OF)
+        return tuple(path for path in paths if attrgetter(path)(actuator))
 
     def _moved(self, path: str, value: float) -> float:
         """By how much one number alone moves the amplitude per volt: a parabola in logarithms
-        through discs with 10 % less, as described and with 10 % more. A solve for every draw would
-        take minutes; at a tenth off in all numbers at once they differ by some per cent."""
+        through beams or discs with 10 % less, as described and with 10 % more. A disc for every
+        draw would take minutes; a tenth off in all numbers at once they differ by some per cent."""
         actuator = self.nominal.actuator
         nominal = attrgetter(path)(actuator)
         if value == nominal:
@@ -89,3 +101,22 @@ class FreeAmplitude:
             if isinstance(actuator, RectangularPlate):
                 return beam_response(actuator).amplitude_per_volt
             return working_mode(actuator).amplitude_per_volt
+
+
+def _values(
+    here: Actuator, nominal: Actuator, paths: tuple[str, ...]
+) -> Iterator[tuple[str, float]]:
+    """The values at paths. Of a ceramic's full constants what went along with its in-plane
+    stiffness or its d31 counts with these."""
+    with_it = {"compliance": 1.0, "charge": 1.0}
+    if any(path.startswith(_CONSTANTS) for path in paths):
+        now, then = (attrgetter("ceramic")(one) for one in (here, nominal))
+        with_it["compliance"] = then.in_plane_stiffness / now.in_plane_stiffness
+        with_it["charge"] = now.charge_coefficient / then.charge_coefficient
+    for path in paths:
+        value, own = attrgetter(path)(here), attrgetter(path)(nominal)
+        if path.startswith(_CONSTANTS):
+            kind = path.removeprefix(_CONSTANTS).split("_")[0]
+            alone = own if value is None else value / with_it.get(kind, 1.0)
+            value = own if math.isclose(alone, own, rel_tol=1e-9) else alone
+        yield path, value

@@ -71,6 +71,10 @@ class _Assumed(NamedTuple):
     absolute: bool = False
 
 
+_CHARGE, _STRESS = (f"actuator.ceramic.{one}_coefficient" for one in ("charge", "stress"))
+_MAKERS = "APC International, Piezo Technologies"
+_GRANT = "makers grant ±20 % on d33 (APC International) or ±10 % (Piezo Technologies)"
+
 # None was measured on a display: they keep an interval from being narrow for want of anybody's
 # saying how wide it is.
 _ASSUMED: dict[str, _Assumed] = {
@@ -99,6 +103,11 @@ _ASSUMED: dict[str, _Assumed] = {
     "surface.roughness": _Assumed(0.75, 1.25, "one average for a whole surface; illustrative"),
     "surface.friction_coefficient": _Assumed(0.7, 1.3, "of skin at rest; illustrative"),
     "actuator.quality_factor": _Assumed(0.7, 1.3, "the losses of a bonded assembly; illustrative"),
+    "actuator.ceramic.in_plane_stiffness": _Assumed(
+        0.9, 1.1, f"makers grant ±5 % on frequencies ({_MAKERS}), twice that"
+    ),
+    _CHARGE: _Assumed(0.8, 1.2, _GRANT),
+    _STRESS: _Assumed(0.8, 1.2, f"of d31: {_GRANT}"),
 }
 # Each other width takes a table of solved films, each other shape of a spectrum its law.
 _STEPS = {
@@ -143,7 +152,7 @@ def uncertain_parameters(
         if nominal == 0 and not known.absolute:
             continue
         nominal = force if path == FORCE else nominal
-        low, high = (end if known.absolute else end * nominal for end in known[:2])
+        low, high = sorted(end if known.absolute else end * nominal for end in known[:2])
         most = display.finger.ridge_period if name == "finger.plateau_width" else known.most
         spread = Uniform(low, min(high, most))
         found[path] = Parameter(
@@ -162,8 +171,15 @@ def uncertain_parameters(
 
 
 def _has(display: Display, path: str) -> bool:
-    """Whether there is such a value: laws of asperities have fields of their own."""
+    """Whether there is such a value: laws of asperities have fields of their own, a stator has no
+    ceramic of its own, and of d31 and e31 the one counts that is believed."""
     *_, part, name = path.split(".")
+    if part == "ceramic":
+        ceramic = getattr(display.actuator, "ceramic", None)
+        believed = {"from_d31": _CHARGE, "printed_e31": _STRESS}
+        return ceramic is not None and (
+            path not in (_CHARGE, _STRESS) or path == believed[ceramic.data_set]
+        )
     law = display.finger.asperities
     return part != "asperities" or name in {one.name for one in dataclasses.fields(law)}
 

@@ -17,7 +17,13 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Mixture, as_drawn, outcome_of
-from squeezefilm.analysis.parameters import Origin, Parameter, value_at, with_values
+from squeezefilm.analysis.parameters import (
+    Origin,
+    Parameter,
+    uncertain_parameters,
+    value_at,
+    with_values,
+)
 from squeezefilm.analysis.plate.coarse_shift import CoarseShifts
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.touch import TOLERANCE
@@ -54,12 +60,6 @@ _USUAL: dict[str, _Usual] = {
     "actuator.substrate.young_modulus": _Usual(0.065, "alloys and glasses by handbooks; assumed"),
     "actuator.substrate.density": _Usual(0.013, "alloys and glasses by handbooks; assumed"),
     "actuator.substrate.poisson_ratio": _Usual(0.03, "by handbooks; assumed", absolute=True),
-    "actuator.ceramic.in_plane_stiffness": _Usual(
-        0.1, "makers grant ±5 % on frequencies (APC International, Piezo Technologies), twice that"
-    ),
-    "actuator.ceramic.charge_coefficient": _Usual(
-        0.2, "makers grant ±20 % on d33 (APC International) or ±10 % (Piezo Technologies)"
-    ),
     "actuator.glue.thickness": _Usual(0.5, "pressed by hand; assumed"),
     "actuator.glue.young_modulus": _Usual(0.5, "by cure and temperature; assumed"),
     "actuator.reference_amplitude": _Usual(0.1, "a vibrometer on one specimen; assumed"),
@@ -172,13 +172,19 @@ def _every(display: Display, mixture: Mixture) -> Iterator[_Changed]:
             yield _Changed(one, functools.partial(_with, path=one.path))
     if mixture.prediction.voltage is None:
         return
-    given = {path.replace(".0.", ".*.") for path in mixture.paths}
+    # Of a calibrated plate, whose amplitude is drawn as a whole, what its own values may be.
+    of_plate = uncertain_parameters(display, mixture.prediction.surface.name, driven=True)
+    for one in of_plate:
+        if one.path.startswith("actuator.") and one.path not in mixture.paths:
+            yield _Changed(one, functools.partial(_with, path=one.path))
+    known_paths = {*mixture.paths, *(one.path for one in of_plate)}
+    given = {path.replace(".0.", ".*.") for path in known_paths}
     for path, usual in _USUAL.items():
         try:
             nominal, unit = value_at(display, path)
         except InputError:
             continue
-        if path in given or path in mixture.paths:
+        if path in given | known_paths:
             continue
         reach = usual.either_way * (1 if usual.absolute else abs(nominal))
         spread = Uniform(nominal - reach, nominal + reach)

@@ -41,7 +41,8 @@ SAMPLES, POINTS = 32, 4
 @dataclass(frozen=True, eq=False)
 class UncertainFriction:
     """µ′/µ with its interval: `nominal` as described, `interval` between the 5 % and 95 % quantiles
-    of `samples` (µ′/µ) with their `amplitudes` (m), parameters, laws and mechanisms drawn at once.
+    of `samples` (µ′/µ) with their `amplitudes` (m), parameters, laws and mechanisms drawn at once,
+    `draws` in number.
 
     `influences` are ranked, the most important to know better first; `groups` are what could be
     measured and what nobody knows. Draws that are `refused` (asperities pressed through) have no
@@ -57,6 +58,7 @@ class UncertainFriction:
     level: si.Dimensionless
     samples: si.DimensionlessArray
     amplitudes: si.MetreArray
+    draws: int
     influences: tuple[Influence, ...]
     groups: tuple[GroupInfluence, ...]
     refused: Refusals
@@ -87,9 +89,8 @@ class UncertainFriction:
 
     @si.checked_numbers
     def probability_below(self, relative_friction: si.Dimensionless) -> si.Dimensionless:
-        """The share of all draws with µ′/µ at or below a value; a refused one is not below."""
-        below = np.count_nonzero(self.samples <= relative_friction)
-        return float(below / self.samples.size * (1 - self.refused.share))
+        """The share of the draws with µ′/µ at or below a value; a refused one is not below."""
+        return float(np.count_nonzero(self.samples <= relative_friction) / self.draws)
 
     def summary(self) -> dict[str, Any]:
         """The numbers for ``--json``, with units in the keys where there are any."""
@@ -175,6 +176,7 @@ def uncertain_friction(
         level=LEVEL,
         samples=friction[known],
         amplitudes=drawn.amplitude[:count][known],
+        draws=count,
         influences=influences_of(mixture.inputs, kept),
         groups=groups_of(kept),
         refused=refused,

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from squeezefilm.analysis import area_odds as room
-from squeezefilm.analysis.area_odds import area_odds
+from squeezefilm.analysis.area_odds import area_odds, judged_area
 from squeezefilm.analysis.draws import Outcome
+from squeezefilm.analysis.uncertainty import uncertain_friction
 from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
@@ -56,3 +57,19 @@ def test_no_draw_is_asked_for_more_amplitude_than_the_face_has() -> None:
     assert not np.isnan(odds.samples).any()
     middle = np.median(odds.samples, axis=0)
     assert middle == pytest.approx([area.best, area.median, area.worst], abs=0.1)
+
+
+def test_at_the_place_of_the_prediction_the_odds_are_those_of_its_interval() -> None:
+    """One set of draws, one number."""
+    display = load_display("winfield2007-tpad")
+    p = predict(display)
+    sure = uncertain_friction(display, p, samples=8, seed=3)
+    judged = judged_area(display, p, samples=8, seed=3)
+    assert judged is not None
+    assert judged.odds is not None
+    assert judged.odds.samples[:, 0] == pytest.approx(sure.samples, abs=1e-12)
+    for criterion in (0.05, 0.1, 0.3, 0.7):
+        assert judged.odds.probabilities_below(criterion)[0] == sure.probability_below(criterion)
+    unasked = judged_area(display, p, samples=0)
+    assert unasked is not None
+    assert unasked.odds is None

@@ -53,7 +53,8 @@ def said(p: Prediction, needed: float | None = 2.5e-6, **changes: Any) -> tuple[
 def unsure(low: float, high: float, samples: list[float], refused: int = 0) -> Any:
     return UncertainFriction(
         nominal=0.51, median=0.4, interval=(low, high), level=0.9, samples=np.array(samples),
-        amplitudes=np.zeros(len(samples)), influences=(), groups=(),
+        amplitudes=np.zeros(len(samples)), draws=len(samples) + refused, influences=(),
+        groups=(),
         refused=Refusals(refused, 100, Counter(), Counter(), ""), seed=1, model="a-model",
     )  # fmt: skip
 
@@ -85,7 +86,8 @@ def test_a_verdict_is_the_probability_of_the_criterion(point: Prediction) -> Non
 
 def test_refused_draws_do_not_meet_the_criterion(point: Prediction) -> None:
     (found,) = friction_verdict(point, unsure(0.2, 0.9, [0.2, 0.9], refused=2), "")
-    assert "with probability 0.49" in found.text
+    # 1 of 4.
+    assert "with probability 0.25" in found.text
 
 
 def test_without_an_interval_nothing_is_good(point: Prediction) -> None:

@@ -218,7 +218,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     )
     why = why_not_good(display, prediction)
     tell("ripple of the standing wave, and the active area")
-    area = judged_area(display, prediction, samples=asked.samples)
+    area = judged_area(display, prediction, samples=asked.samples, seed=asked.seed)
     return FrictionAnalysis(
         display,
         prediction,

@@ -162,7 +162,7 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
             {"samples": 16, "seed": 9, "progress": said},
         ),
         ("tell_apart", (thin, PREDICTION), {"seed": 9, "progress": said}),
-        ("judged_area", (thin, PREDICTION), {"samples": 16}),
+        ("judged_area", (thin, PREDICTION), {"samples": 16, "seed": 9}),
         ("_ripple", (PREDICTION,), {}),
         ("without_gas", ("the law", 2e-6), {}),
         ("friction_verdict", (PREDICTION, "the interval", "a reason", "the judged_area"), {}),

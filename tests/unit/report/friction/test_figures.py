@@ -79,7 +79,7 @@ def influence(number: int, path: str) -> Influence:
 
 UNSURE = UncertainFriction(
     nominal=0.62, median=0.6, interval=(0.41, 0.83), level=0.9,
-    samples=np.array([0.01, 0.41, 0.43, 0.83, 0.99]), amplitudes=np.full(5, 1.5e-6),
+    samples=np.array([0.01, 0.41, 0.43, 0.83, 0.99]), amplitudes=np.full(5, 1.5e-6), draws=5,
     influences=tuple(influence(number, path) for number, path in enumerate(PATHS)),
     groups=(), refused=Refusals(0, 77, Counter(), Counter(), ""), seed=1,
     model="a model of nothing",

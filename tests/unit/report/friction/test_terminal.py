@@ -72,7 +72,7 @@ SHEAR = Choice(
 )
 SURE = UncertainFriction(
     nominal=0.432, median=0.44, interval=(0.283, 0.551), level=0.9, samples=np.zeros(3),
-    amplitudes=np.zeros(3),
+    amplitudes=np.zeros(3), draws=3,
     influences=(
         influence(0, "assumed", 0.25, 0.4, 0.05),
         influence(1, "given", -0.02, 0.1, 0.012),
