@@ -8,6 +8,7 @@ import math
 import warnings
 from collections.abc import Iterator
 from operator import attrgetter
+from typing import Any
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.parameters import number_paths, with_values
