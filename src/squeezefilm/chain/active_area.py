@@ -130,11 +130,18 @@ class ActiveArea:
         return float(np.nanmin(under)), float(np.nanmax(under))
 
     @property
+    def _size_said(self) -> str:
+        """Its size as it follows "the active area"; a disc's has no corners."""
+        sides = [1e3 * float(axis[-1] - axis[0]) for axis in (self.x, self.y)]
+        if np.isnan(self.amplitude[0, 0]):
+            return f", a disc of {sides[0]:.3g} mm"
+        size = " × ".join(f"{side:.3g} mm" for side in sides if side > 0)
+        return f" of {size or 'one place'}"
+
+    @property
     def sentence(self) -> str:
         """The range, its places and the share, for people."""
-        sides = [1e3 * float(axis[-1] - axis[0]) for axis in (self.x, self.y)]
-        size = " × ".join(f"{side:.3g} mm" for side in sides if side > 0) or "one place"
-        head = f"Over the active area of {size} ({self.rule})"
+        head = f"Over the active area{self._size_said} ({self.rule})"
         if self.best_place is None or self.worst_place is None:
             low, high = (1e6 * one for one in self.amplitude_range)
             return (

@@ -126,11 +126,9 @@ class Prediction(Result):
             which = "the best place of the active area, " if at.is_best_of_area else ""
             return f"at {which}{where}, where the face moves {1e6 * self.amplitude_at_place:.3g} µm"
         if self.law.position:
-            return (
-                f"{1e3 * self.law.position:.4g} mm along the wave from the best antinode, {where}"
-            )
+            return f"{1e3 * self.law.position:.4g} mm along the wave from the antinode, {where}"
         half = f"{1e3 * self.mode.half_wavelength:.3g} mm"
-        return f"at the best antinode, {where}, taken as an even wave of half wavelength {half}"
+        return f"at the antinode, {where}, taken as an even wave of half wavelength {half}"
 
     @property
     def amplitude_at_place(self) -> si.Metre:

@@ -65,7 +65,7 @@ def test_a_verdict_is_the_probability_of_the_criterion(point: Prediction) -> Non
     half = f"{1e3 * p.mode.half_wavelength:.3g} mm"
     assert inside == Finding(
         "limit",
-        "µ′/µ is 0.51 as described at the best antinode, x 0 mm, y 5 mm, taken as an even wave of "
+        "µ′/µ is 0.51 as described at the antinode, x 0 mm, y 5 mm, taken as an even wave of "
         f"half wavelength {half}, at 2 µm. With all that is uncertain drawn, its median is 0.40 "
         "(90 % interval 0.20–0.81); it is below 0.70, as the paper asks, with probability 0.50, "
         "and below 0.80, where people notice it, with probability 0.75. The criterion lies inside "
@@ -96,7 +96,7 @@ def test_without_an_interval_nothing_is_good(point: Prediction) -> None:
     (found,) = friction_verdict(p, None, "too many draws are refused")
     assert found == Finding(
         "doubt",
-        "µ′/µ is 0.30 as described at the best antinode, x 0 mm, y 5 mm, taken as an even wave of "
+        "µ′/µ is 0.30 as described at the antinode, x 0 mm, y 5 mm, taken as an even wave of "
         f"half wavelength {half}, at 2 µm by the model '{p.model}'. How probable it is that it "
         "lies below 0.70, as the paper asks, is not known: too many draws are refused.",
     )

@@ -261,7 +261,7 @@ def test_a_place_names_itself_and_its_amplitude() -> None:
     assert (where["is_best_of_area"], where["is_on_even_wave"]) == (False, False)
     best = predicted("plate")
     assert best.place == best.mode.lobe
-    assert "best antinode" in best.place_said
+    assert best.place_said.startswith("at the antinode, ")
     assert best.amplitude_at_place == best.vibration_amplitude
     beside = predict(PLATE, theory="timoshenko", position=2e-3)
     assert beside.place_said.startswith("2 mm along the wave")
@@ -300,3 +300,17 @@ def test_pads_turn_with_the_wave() -> None:
     assert swings.shape == (1, points[0].size)
     # The beam's line is that of y then: only the points are compared.
     assert other.shape == swings.shape
+
+
+def test_the_active_area_of_a_disc_is_said_to_be_a_disc() -> None:
+    display = load_display("winfield2007-tpad")
+    area = active_area(display, predict(display))
+    assert area is not None
+    across = 1e3 * (area.x[-1] - area.x[0])
+    assert area.sentence.startswith(f"Over the active area, a disc of {across:.3g} mm (the face ")
+    # A region that the display states is a rectangle, on a disc too.
+    region = ActiveRegion(-3e-3, 3e-3, -2e-3, 2e-3)
+    of_its_own = dataclasses.replace(display, active_area=region)
+    stated = active_area(of_its_own, predict(of_its_own))
+    assert stated is not None
+    assert stated.sentence.startswith("Over the active area of 6 mm × 4 mm (as the display's ")

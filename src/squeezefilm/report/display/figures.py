@@ -30,9 +30,9 @@ DECISION: tuple[FigureOf, ...] = (
         "mode",
         "Mode shape and nodal lines",
         plate_figures.mode_shape,
-        "Deflection at the two extremes of a period, along the line through the best antinode. "
-        "The dashed lines are its zeros: nothing moves there, but a finger is wide enough to meet "
-        "the antinodes beside them.",
+        "Deflection at the two extremes of a period, along the line through the antinode of which "
+        "amplitudes are told. The dashed lines are its zeros: nothing moves there, but a finger is "
+        "wide enough to meet the antinodes beside them.",
     ),
     FigureOf(
         "area",

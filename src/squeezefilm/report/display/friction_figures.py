@@ -66,9 +66,11 @@ def film_models(analysis: Analysis) -> Figure:
         said = "Without vibration no film carries anything."
         return style.message_figure("Nothing vibrates", said)
     shares = [r.load_share for r in films.results if np.isfinite(r.load_share)]
+    most = max(shares)
     title = (
-        f"At {shown(p.vibration_amplitude, M, 3)} the film carries from {carried(min(shares))} "
-        f"to {carried(max(shares))} of the finger: how ridges are drawn decides"
+        f"At {shown(p.vibration_amplitude, M, 3)} the film would carry from "
+        f"{carried(min(shares))} to {carried(most)}{'' if most > 1 else ' of'} the finger's load: "
+        "how ridges are drawn decides"
     )
     figure = style.new_figure(
         title, f"all at {shown(p.frequency, HZ, 3)}, with slip but for the asymptote", 5.4
@@ -84,7 +86,7 @@ def film_models(analysis: Analysis) -> Figure:
     left, right = (1e6 * float(films.curves[0].amplitude[end]) for end in (0, -1))
     axes.set(
         xlim=(left, right),
-        ylim=(1e-4, max(30.0, 2 * max(shares))),
+        ylim=(1e-4, max(30.0, 2 * most)),
         xlabel="vibration amplitude, zero-to-peak (µm)",
     )
     axes.set(ylabel="film's pressure over the finger's")

@@ -12,7 +12,12 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.report.display.figures import DECISION, FIGURES, MODELS, TEXTURES, drawing
-from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
+from squeezefilm.report.display.rows import (
+    decision_rows,
+    more_rows,
+    unsaid_warnings,
+    working_point,
+)
 from squeezefilm.report.kit.decisions import interval_rows, sensitivity_rows
 from squeezefilm.report.kit.drawing_process import DrawingProcess
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
@@ -145,7 +150,7 @@ def report_page(
         part("textures", "Appendix: textures through the resonator", _TEXTURES),
         *shown(TEXTURES),
         part("origin", "Appendix: where the numbers come from", ""),
-        section("More numbers", text_table("At the working point", _HEAD, more_rows(analysis))),
+        section("More numbers", text_table("Beside the key numbers", _HEAD, more_rows(analysis))),
         section("How sure the friction is", _how_sure(analysis)),
         section("What each value does", _sensitivities(analysis)),
         section("Where the values come from", _provenance(analysis)),
@@ -201,13 +206,14 @@ def _key_numbers(analysis: Analysis) -> str:
             for label, text, remark in of_subject
         ]
         kinds += ["subject", *[""] * len(of_subject)]
-    return html_table("At the working point", _HEAD, rows, kinds=kinds)
+    here = working_point(analysis.prediction)
+    return html_table(f"{here[0].upper()}{here[1:]}", _HEAD, rows, kinds=kinds)
 
 
 def _electronics(analysis: Analysis) -> str:
     """What the plate asks of its amplifier, and which can give it."""
     rows = electronics_rows(analysis.drive_electronics) + interval_rows(analysis.uncertainty)[1:]
-    return text_table("Driven at the working point, without a finger", _HEAD, rows)
+    return text_table("Without a finger, but for the power taken", _HEAD, rows)
 
 
 def _sensitivities(analysis: Analysis) -> str:

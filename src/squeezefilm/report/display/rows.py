@@ -56,6 +56,15 @@ def decision_rows(analysis: Analysis) -> list[Rows]:
     return groups
 
 
+def working_point(p: Prediction) -> str:
+    """What the key numbers are at, in words."""
+    driven = shown(p.vibration_amplitude, M, 3) if p.voltage is None else shown(p.voltage, V)
+    return (
+        f"at {driven} and {shown(p.frequency, HZ)}, finger of {shown(p.normal_force, N)} at "
+        f"{shown(p.speed, SPEED)} on {printable(p.surface.name)}"
+    )
+
+
 def vibration_rows(p: Prediction) -> list[Row]:
     """Resonance and drive, and the amplitude with and without the finger."""
     mode, free = p.mode, p.touch.free_amplitude

@@ -6,7 +6,13 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from squeezefilm.report.display.rows import Rows, decision_rows, more_rows, unsaid_warnings
+from squeezefilm.report.display.rows import (
+    Rows,
+    decision_rows,
+    more_rows,
+    unsaid_warnings,
+    working_point,
+)
 from squeezefilm.report.kit.decisions import (
     felt_rows,
     interval_rows,
@@ -43,7 +49,7 @@ def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
     if cut:
         heading(console, "Warnings")
         bullets(console, [("!", text, "yellow") for text in cut])
-    heading(console, "Key numbers")
+    heading(console, f"Key numbers {working_point(analysis.prediction)}")
     groups = decision_rows(analysis)
     rows = [row for group in groups for row in (group.rows if whole else _short(group))]
     table(console, ("", "", ""), rows, fixed=(0, 1))

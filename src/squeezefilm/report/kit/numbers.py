@@ -59,8 +59,8 @@ def changed(share: float, decimals: int = 1) -> str:
 
 
 def carried(share: float) -> str:
-    """How much of the finger's load something carries, e.g. ``"3020 %"`` or ``"0.23 %"``."""
-    return f"{float(f'{100 * share:.3g}'):g} %"
+    """How much of the finger's load something carries, e.g. ``"0.23 %"`` or ``"30.2 times"``."""
+    return f"{share:.3g} times" if share > 1 else f"{float(f'{100 * share:.3g}'):g} %"
 
 
 def span(low: float, high: float) -> str:

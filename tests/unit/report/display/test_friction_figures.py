@@ -76,7 +76,8 @@ def test_films_are_compared_by_the_share_they_carry() -> None:
     assert axes.yaxis.get_major_formatter()(0.01) == "0.01"
     # A film that could not be solved counts neither as the least nor as the most.
     assert words(figure.get_suptitle()) == (
-        "At 2 µm the film carries from 0.4 % to 190 % of the finger: how ridges are drawn decides"
+        "At 2 µm the film would carry from 0.4 % to 1.9 times the finger's load: how ridges are "
+        "drawn decides"
     )
     assert words(figure.get_supxlabel()) == (
         "Model: all at 40 kHz, with slip but for the asymptote"

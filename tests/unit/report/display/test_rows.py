@@ -8,7 +8,12 @@ from typing import Any
 import numpy as np
 from tests.unit.report.made_results import WARM
 
-from squeezefilm.report.display.rows import decision_rows, unsaid_warnings, vibration_rows
+from squeezefilm.report.display.rows import (
+    decision_rows,
+    unsaid_warnings,
+    vibration_rows,
+    working_point,
+)
 from squeezefilm.report.kit.point_rows import heat_rows
 
 
@@ -23,7 +28,7 @@ def point(**changes: Any) -> Any:
         "relative_friction": 0.312, "normal_force": 0.5, "speed": 0.08, "heat": WARM,
         "surface": SimpleNamespace(name="polished", roughness=0.6e-6),
         "warnings": ("said already", "not yet"),
-        "place": (0.03, 0.02), "place_said": "at the best antinode, x 30 mm, y 20 mm",
+        "place": (0.03, 0.02), "place_said": "at the antinode, x 30 mm, y 20 mm",
         "law": SimpleNamespace(place=None),
     }  # fmt: skip
     return SimpleNamespace(**{**parts, **changes})
@@ -115,3 +120,8 @@ def test_a_plate_whose_power_is_not_known_says_so() -> None:
 
 def test_what_the_verdict_says_is_not_warned_of_again() -> None:
     assert unsaid_warnings(analysis()) == ["not yet"]
+
+
+def test_the_working_point_is_said_by_what_drives_and_who_touches() -> None:
+    assert working_point(point()) == "at 20 V and 30 kHz, finger of 0.5 N at 80 mm/s on polished"
+    assert working_point(point(voltage=None)).startswith("at 1.5 µm and 30 kHz, finger of ")

@@ -52,7 +52,7 @@ def prediction(**changes: Any) -> SimpleNamespace:
         "surface": SimpleNamespace(name="copper", roughness=0.7e-6), "friction_reduction": 0.11357,
         "friction_coefficient": 0.2, "tangential_force": 0.043216, "speed": 0.08,
         "relative_friction_limits": (0.41, 0.49), "heat": WARM,
-        "warnings": ("mind this", "and that"), "place_said": "at the best antinode",
+        "warnings": ("mind this", "and that"), "place_said": "at the antinode",
         "place": (0.03, 0.02),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
@@ -132,7 +132,7 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "Film carries 56.8 % of the load",
         "Asperities carry 43.2 % mean gap 1.23 µm",
         "Relative friction µ′/µ 0.43 a-model",
-        "Place of the finger x 30 mm, y 20 mm at the best antinode",
+        "Place of the finger x 30 mm, y 20 mm at the antinode",
         "µ′/µ over the active area not known",
         "Friction reduction µ − µ′ 0.114 of µ = 0.2",
         "Tangential force 43.2 mN sliding steadily",

@@ -258,7 +258,7 @@ class DesignView {
     say(n.frequency, quantity(found.resonance_frequency_Hz, "Hz", 5), error ? `± ${quantity(error, "Hz", 2)} of the solver` : `mode ${found.mode}`);
     say(n.amplitude, quantity(found.vibration_amplitude_m, "m"), `${quantity(found.free_amplitude_m, "m")} without finger`);
     const pace = `at ${plain(found.finger_speed_m_per_s * 1e3)} mm/s`;
-    say(n.friction, plain(found.relative_friction), `µ′/µ, 1 = no effect; ${pace}, at the best antinode`);
+    say(n.friction, plain(found.relative_friction), `µ′/µ, 1 = no effect; ${pace}, ${found.place.is_best_of_area ? "at the best place of the active area" : found.place.said}`);
     const area = found.active_area, range = area?.relative_friction;
     say(n.area, range ? `${plain(range.best)} to ${plain(range.worst)}` : "–",
       range ? `below 0.70 on ${plain(100 * area.share_below["0.70"])} % of it` : "known when the plate is solved");
