@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
-from squeezefilm.plate.heat.warming import Warming, heat_source, warming
 from squeezefilm.plate.sound import SoundField
 from squeezefilm.results import Result, stamp, to_json
+
+if TYPE_CHECKING:
+    from squeezefilm.plate.heat.warming import Warming
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,9 @@ class SolvedBody(Result):
 
         All of it is lost in its materials, foam included: the solved body radiates nothing.
         """
+        # Compiled code comes with it, which a list of modes has no use for.
+        from squeezefilm.plate.heat.warming import heat_source, warming
+
         volts, at, mode = self.display.drive.voltage, self.response.resonance, self.working
         source = heat_source(
             self.display.actuator,

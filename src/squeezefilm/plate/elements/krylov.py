@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.optimize import linear_sum_assignment
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
@@ -82,6 +81,9 @@ def modes_near(
         elif values.size < start.shape[1]:
             continue
         else:
+            # A tenth of a second of imports that few solves need.
+            from scipy.optimize import linear_sum_assignment
+
             index = linear_sum_assignment(-((start.T @ MQ @ coefficients) ** 2))[1]
         now = values[index]
         if (

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from squeezefilm import quantities as si
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
@@ -100,6 +99,9 @@ def _disc(disc: DiscPlate) -> RingBody:
 @si.checked_numbers
 def surface_profile(mode: AnnularMode, radius: si.MetreArray) -> si.DimensionlessArray:
     """The mode's u_z on the surface at radii (m), between its nodes by a cubic spline."""
+    # Imports that a list of modes has no use for.
+    from scipy.interpolate import CubicSpline
+
     values: si.DimensionlessArray = CubicSpline(mode.surface_radius, mode.surface_shape)(radius)
     return values
 

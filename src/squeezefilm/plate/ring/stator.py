@@ -7,8 +7,6 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from scipy.optimize import brentq, root_scalar
-
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, UnreachableError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
@@ -226,6 +224,8 @@ class _Ring:
 
         Sought with elements of a low degree, and from there with those of this one.
         """
+        from scipy.optimize import root_scalar
+
         if self.degree <= _ROUGH:
             return self._crossing(teeth, self.degree, _NEAR)
         try:
@@ -250,6 +250,10 @@ class _Ring:
     def _crossing(self, teeth: ToothModel, degree: int, near: float) -> float:
         """The same with elements of one degree, between the ends and to so many metres."""
 
+        from scipy.optimize import brentq
+
+        # The ends are asked for twice.
+        @functools.cache
         def above(thickness: float) -> float:
             return self.frequency_of(thickness, teeth, degree) - self.frequency
 
