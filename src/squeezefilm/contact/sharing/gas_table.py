@@ -128,12 +128,8 @@ class FilmTable:
         Raises `ConvergenceError` where the largest number of nodes does not reach the tolerance.
         """
         with self._lock:
-            wanted = [panel]
-            while True:
-                missing = [p for p in wanted if not self._built.flat[p]]
-                if not missing:
-                    return
-                worst = max(self._solve(p) for p in missing)
+            while not self._built.flat[panel]:
+                worst = self._solve(panel)
                 if worst <= self.tolerance:
                     return
                 if self._nodes >= _MOST:
@@ -143,8 +139,9 @@ class FilmTable:
                         f"{worst:.3g} between nodes. Ask a larger tolerance",
                         residual=worst,
                     )
-                # All panels have the same nodes, so that they meet without a step.
-                wanted = sorted({panel, *map(int, np.flatnonzero(self._built))})
+                # All panels have the same nodes, so that they meet without a step. The others are
+                # solved again where they are asked for again: for a gap of a tenth of a millimetre
+                # and the nodes that it takes all of them would take minutes.
                 nx, nt = self._nodes
                 self._nodes = (min(nx + 4, _MOST[0]), min(nt + 4, _MOST[1]))
                 self._empty()
