@@ -14,7 +14,7 @@ from squeezefilm.measure.calibration.calibration import CalibratedValue
 from squeezefilm.measure.calibration.folder import FolderCalibration
 from squeezefilm.measure.calibration.identified import IDENTIFIED, NOT_TOLD
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.numbers import shown, span
+from squeezefilm.report.kit.numbers import changed, shown, span
 from squeezefilm.report.kit.page_style import FigureOf
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _PRIOR: dict[str, Any] = {"color": style.MUTED, "lw": 1.4}
 _POSTERIOR: dict[str, Any] = {"color": style.BLUE, "lw": 4.5, "solid_capstyle": "butt"}
 _ROW, _REST = 0.29, 1.6
 _FINE = 1e-3  # up to which a difference is drawn in proportion, beyond it by its logarithm
-_TICKS = (-0.5, -0.1, -0.01, -0.001, 0.0, 0.001, 0.01, 0.1, 0.5)
+_TICKS = (-0.1, -0.01, -0.001, 0.0, 0.001, 0.01, 0.1, 1.0)
 MOST_NEXT = 8
 """Measurements that could be made next, of which the most telling are shown."""
 
@@ -69,7 +69,7 @@ def values_figure(found: FolderCalibration) -> Figure:
 
 @style.drawn
 def compared_figure(found: FolderCalibration) -> Figure:
-    """What the model alone says of every observation, before and after, beside what was measured."""
+    """What the model alone says of every measured number, before and after."""
     rows = found.calibration.compared
     far = [one for one in rows if one.after and abs(deviation(one)) > 2]
     title = (
@@ -94,7 +94,7 @@ def compared_figure(found: FolderCalibration) -> Figure:
     _rows(axes, [row_name(one) for one in rows])
     axes.axvline(0, **style.ZERO)
     axes.set_xscale("symlog", linthresh=_FINE, linscale=0.6)
-    axes.set_xticks(_TICKS, [f"{100 * one:+g} %" if one else "0" for one in _TICKS])
+    axes.set_xticks(_TICKS, [changed(one, 1) if one else "0" for one in _TICKS])
     axes.minorticks_off()
     axes.set_xlim(-0.95, 2)
     axes.set_xlabel("model over measured, less 1")
@@ -122,7 +122,7 @@ def deviation(one: ComparedAnswer) -> float:
 
 def row_name(one: ComparedAnswer) -> str:
     """An observation by its name, and its recording where it has one."""
-    return f"{one.said} ({one.recording})" if one.recording else one.said
+    return style.plain(f"{one.said} ({one.recording})" if one.recording else one.said, 90)
 
 
 @style.drawn
@@ -176,9 +176,7 @@ def next_figure(found: FolderCalibration) -> Figure:
 
 def _rows(axes: Axes, names: list[str]) -> None:
     """Rows from above, each with its name."""
-    axes.set_yticks(
-        range(len(names)), [style.plain(one, 80) if "\n" not in one else one for one in names]
-    )
+    axes.set_yticks(range(len(names)), names)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.grid(visible=False, axis="y")
     axes.tick_params(axis="y", length=0)

@@ -51,7 +51,7 @@ def write_calibration(found: FolderCalibration, folder: Path) -> Path:
     get = pictures.get
     body = section(
         "What was measured is explained" if calibration.fits else "The model does NOT explain it",
-        bullets([*calibration.doubts, *(one.sentence for one in calibration.misfits)]),
+        bullets([*calibration.doubts, *_misfits(calibration)]),
     )
     body += get("friction", "") + get("compared", "")
     body += section("Every measured number", _compared(calibration.compared))
@@ -82,6 +82,15 @@ def write_calibration(found: FolderCalibration, folder: Path) -> Path:
     return folder / PAGE
 
 
+def _misfits(calibration: Calibration) -> list[str]:
+    """The judgements, each with what it is of."""
+    of_friction = [one.worst.startswith("relative friction") for one in calibration.misfits]
+    return [
+        f"{'Friction' if friction else 'The plate'}: {one.sentence}"
+        for one, friction in zip(calibration.misfits, of_friction, strict=True)
+    ]
+
+
 def value_rows(found: FolderCalibration) -> list[tuple[str, ...]]:
     """Each value: its interval before, its median and interval after, how much spread is left."""
     return [
@@ -107,7 +116,7 @@ def _compared(rows: Sequence[ComparedAnswer]) -> str:
             (
                 row_name(one),
                 one.measured,
-                f"± {si.percent(one.error, 2)}",
+                f"± {100 * one.error:.2g} %",
                 _difference(one.before),
                 _difference(one.after),
                 _apart(deviation(one)),
@@ -139,17 +148,14 @@ def _by_kind(rows: Sequence[ComparedAnswer]) -> str:
     for kind, members in kinds.items():
         known = [abs(deviation(one)) for one in members if one.after]
         square = math.sqrt(sum(off**2 for off in known) / len(known)) if known else math.nan
-        table.append(
-            (kind, f"{len(members)}", _apart(square), _apart(max(known, default=math.nan)))
-        )
+        largest = max(known, default=math.nan)
+        table.append((kind, f"{len(members)}", _apart(square), _apart(largest)))
     caption = "By the median of the calibrated model, in standard errors of both together"
     return text_table(caption, ("what", "numbers", "root mean square", "largest"), table)
 
 
 def _computed(calibration: Calibration) -> str:
-    errors = [
-        f"{name}: {si.percent(error, 2)}" for name, error in calibration.emulator_errors.items()
-    ]
+    errors = [f"{name} {100 * error:.2g} %" for name, error in calibration.emulator_errors.items()]
     said = [
         f"{calibration.solves} plates were solved; a fast stand-in between them was off, at plates "
         f"it was not shown, by {', '.join(errors)} (root mean square)."
