@@ -37,16 +37,15 @@ def calibrate(
     from squeezefilm.report.measured.calibrated import show_calibration
     from squeezefilm.report.measured.calibration_page import DISPLAY_FILE, write_calibration
 
-    alone = out.suffix == ".toml"
-    if not alone:
+    folder_too = out.suffix != ".toml"
+    if folder_too:
         require_folder(out)
+    file = out / DISPLAY_FILE if folder_too else out
     described = to_be_solved(display, quiet=as_json)
     with working(as_json) as step:
-        found = calibrate_display(
-            described, folder, out if alone else None, seed=seed, progress=step
-        )
-        page = None if alone else write_calibration(found, out)
-    answer(as_json, found, show_calibration, display=found.file or out / DISPLAY_FILE, page=page)
+        found = calibrate_display(described, folder, file, seed=seed, progress=step)
+        page = write_calibration(found, out) if folder_too else None
+    answer(as_json, found, show_calibration, display=file, page=page)
     if not found.calibration.fits:
         raise typer.Exit(1)
 
