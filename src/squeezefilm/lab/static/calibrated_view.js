@@ -5,7 +5,7 @@ import { element, plain } from "./numbers.js";
 const SVG = "http://www.w3.org/2000/svg";
 const FINE = 1e-3; // up to which a difference is drawn in proportion, beyond it by its logarithm
 const FAR = 1;
-const TICKS = [[-0.1, "−10 %"], [-0.01, "−1 %"], [0, "0"], [0.01, "+1 %"], [0.1, "+10 %"]];
+const TICKS = [[-0.1, "−10 %"], [-0.001, "−0.1 %"], [0, "0"], [0.001, "+0.1 %"], [0.1, "+10 %"]];
 
 export class CalibratedView {
   constructor() {
@@ -47,13 +47,13 @@ function row({ said, recording: file, measured, error, before, after }) {
   line(bar, "measured", 0, 0, 4, 16);
   return element("tr", {},
     element("th", { scope: "row" }, said, file ? element("small", { text: file }) : null),
-    element("td", {}, measured, element("small", { text: `± ${plain(100 * error, 2)} %` })),
-    element("td", { class: "bar" }, bar, element("small", { text: words })));
+    element("td", {}, measured, element("small", { text: `±\u00a0${plain(100 * error, 2)}\u00a0%` })),
+    element("td", { class: "range" }, bar, element("small", { text: words })));
 }
 
 function change(share) {
   const off = 100 * (share - 1);
-  return `${off >= 0 ? "+" : "−"}${plain(Math.abs(off), 2)} %`;
+  return `${off >= 0 ? "+" : "−"}${plain(Math.abs(off), 2)}\u00a0%`;
 }
 
 /** The row that says what the bars are drawn on. */
@@ -67,7 +67,7 @@ function scale() {
     bar.append(label);
   }
   const said = element("small", { text: "grey: before, blue: calibrated (90 %), orange: measured ± one standard error" });
-  return element("tr", {}, element("td", { colspan: "2" }, said), element("td", { class: "bar" }, bar));
+  return element("tr", {}, element("td", { colspan: "2" }, said), element("td", { class: "range" }, bar));
 }
 
 function drawing(words) {
@@ -101,6 +101,7 @@ export function drawMeasured(plot, colour, points) {
   g.clip();
   for (const point of points) {
     const at = [x(point.x[0]), y(point.y[0])];
+    g.setLineDash([]);
     g.strokeStyle = colour("blue");
     g.lineWidth = 4 * devicePixelRatio;
     g.beginPath();

@@ -73,7 +73,10 @@ def test_friction_is_narrowed_and_the_file_has_the_same_interval(
     measured = {path for path, one in read.provenance.items() if one.evidence == "measured"}
     assert measured
     assert all(path.startswith(("finger", "surfaces", "gas")) for path in measured)
-    assert "# observed: relative_friction 0.85" in file.read_text(encoding="utf-8")
+    assert read.calibration is not None
+    assert [one.measured for one in read.calibration.compared] == ["0.85", "0.7", "0.55"]
+    for one in read.calibration.compared:
+        assert one.before[0] < one.after[0] <= one.after[2] < one.before[2]
     assert set(json.loads(json.dumps(calibration.summary()))["laws"]) >= {"height_law"}
 
 
