@@ -60,7 +60,8 @@ ORANGE = """(number) => {
   let found = 0;
   // The diamonds' own colour; curves of that colour are thin, and blended at their edges.
   for (let k = 0; k < data.length; k += 4) {
-    if (data[k] > 160 && data[k + 1] > 55 && data[k + 1] < 95 && data[k + 2] < 40 && data[k + 3] > 250) found += 1;
+    const [red, green, blue, alpha] = data.slice(k, k + 4);
+    if (red > 160 && green > 55 && green < 95 && blue < 40 && alpha > 250) found += 1;
   }
   return found;
 }"""

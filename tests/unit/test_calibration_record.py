@@ -1,4 +1,4 @@
-"""What a calibrated display's file keeps of its calibration, and that it is no value of the display."""
+"""What a calibrated display's file keeps of its calibration, which is no value of the display."""
 
 from __future__ import annotations
 

@@ -32,8 +32,8 @@ export class CalibratedView {
   }
 }
 
-function recording({ file, kind, who, when, instrument, sha256 }) {
-  return [file, kind, who && `by ${who}`, when, instrument, sha256 && `SHA-256 ${sha256.slice(0, 12)}…`].filter(Boolean).join(", ");
+function recording({ file, kind, who, when, instrument, origin, sha256 }) {
+  return [file, kind, who && `by ${who}`, when, instrument, origin, sha256 && `SHA-256 ${sha256.slice(0, 12)}…`].filter(Boolean).join(", ");
 }
 
 function row({ said, recording: file, measured, error, before, after }) {

@@ -156,7 +156,8 @@ def folder_observations(
 def _used(file: Path, kind: str, told: Any) -> UsedRecording:
     with file.open("rb") as content:
         digest = hashlib.file_digest(content, "sha256").hexdigest()
-    return UsedRecording(file.name, kind, told.who, told.when, told.instrument, digest)
+    taken = (told.who, told.when, told.instrument, told.source)
+    return UsedRecording(file.name, kind, *taken, digest)
 
 
 def usable(observation: Observation) -> str:

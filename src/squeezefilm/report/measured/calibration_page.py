@@ -172,10 +172,14 @@ def _computed(calibration: Calibration) -> str:
 
 
 def _recordings(found: FolderCalibration) -> str:
-    head = ("file", "kind", "who", "when", "instrument", "SHA-256")
+    head = ("file", "kind", "who", "when", "instrument", "from", "SHA-256")
     rows = [
-        (one.file, one.kind, one.who or "not told", one.when or "not told",
-         one.instrument or "not told", one.sha256)
+        (
+            one.file,
+            one.kind,
+            *(text or "not told" for text in (one.who, one.when, one.instrument, one.origin)),
+            one.sha256,
+        )
         for one in found.recordings
-    ]  # fmt: skip
+    ]
     return text_table("Recordings that were used", head, rows)

@@ -33,7 +33,7 @@ def test_a_plate_is_drawn_from_its_priors_and_from_its_posterior() -> None:
         problem=Plate(), posterior=SimpleNamespace(scores=np.zeros((100, 1)))
     )
     (one,) = compared((MASS,), exact, None, 0, seed=1)
-    assert (one.said, one.measured, one.recording) == ("mass", "200 g", "a.csv")
+    assert (one.said, one.measured, one.recording) == ("mass", "0.2 kg", "a.csv")
     assert one.error == pytest.approx(0.05)
     assert one.after == (1.0, 1.0, 1.0)
     # 90 % of a normal score lie within 1.645.

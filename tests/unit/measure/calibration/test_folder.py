@@ -33,9 +33,9 @@ def ring_down(folder: Path, name: str = "ring") -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     np.savetxt(data, np.column_stack([time, motion]), delimiter=",", header="t,w", comments="")
     data.with_suffix(".toml").write_text(
-        'kind = "ring-down"\nname = "made up"\nwho = "A. Builder"\nwhen = "2026-11-01"\n'
-        'amplitude = "zero-to-peak"\n[time]\ncolumn = "t"\nunit = "s"\n'
-        '[displacement]\ncolumn = "w"\nunit = "m"\n'
+        'kind = "ring-down"\nname = "made up"\nsource = "made up"\nwho = "A. Builder"\nwhen = "2026-11-01"\n'
+        '[columns]\ntime = { column = "t", unit = "s" }\n'
+        'displacement = { column = "w", unit = "m" }\n'
     )
     return data
 
@@ -48,7 +48,7 @@ def test_observations_know_their_recording_and_recordings_their_file(tmp_path: P
     assert {one.recording for one in found.observations} == {"ring.csv"}
     (used,) = found.recordings
     assert used == UsedRecording(
-        "ring.csv", "ring-down", "A. Builder", "2026-11-01", "",
+        "ring.csv", "ring-down", "A. Builder", "2026-11-01", "", "made up",
         hashlib.sha256(data.read_bytes()).hexdigest(),
     )  # fmt: skip
     assert any(one.startswith("torn") for one in found.left_out)
@@ -108,8 +108,8 @@ def test_a_prediction_is_scored_on_a_folder_made_since(tmp_path: Path) -> None:
     file = tmp_path / "p.json"
     ask = "relative_friction: vibration_amplitude=1 um"
     made = sf.predict_measurement(STATOR, ask, file)
+    ring_down(tmp_path / "later")
     with pytest.raises(InputError, match="nothing that was measured"):
-        ring_down(tmp_path / "later")
         sf.score_prediction(file, tmp_path / "later", STATOR)
     median = made.predictions[0].median
     seen = Observation("relative_friction", median, 0.02, {"vibration_amplitude": 1e-6})

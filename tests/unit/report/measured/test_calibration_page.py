@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 import squeezefilm as sf
-from squeezefilm import quantities as si
 from squeezefilm.calibration_record import ComparedAnswer, UsedRecording
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
@@ -27,12 +26,14 @@ from squeezefilm.measure.calibration.discrepancy import Misfit
 from squeezefilm.measure.calibration.folder import FolderCalibration
 from squeezefilm.measure.calibration.identified import Combination, Identification, Known
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.report.kit.numbers import M, N
 from squeezefilm.report.measured.calibration_figures import FIGURES, deviation, values_figure
 from squeezefilm.report.measured.calibration_page import value_rows, write_calibration
 
 FORCE, LENGTH = "finger.normal_force", "finger.contact_length"
 NOTHING = np.zeros((4, 0))
-MET = ComparedAnswer("relative friction at 1 µm", "0.6", 0.05, (0.4, 0.9, 1.3), (0.9, 1.0, 1.1), "b.csv", 0.6, 1e-6)  # fmt: skip
+AT_1 = "relative friction at 1 µm"
+MET = ComparedAnswer(AT_1, "0.6", 0.05, (0.4, 0.9, 1.3), (0.9, 1.0, 1.1), "b.csv", 0.6, 1e-6)
 MISSED = ComparedAnswer("mass", "100 g", 0.001, (0.9, 1.0, 1.1), (1.02, 1.03, 1.04), "<b>.csv")
 
 
@@ -44,15 +45,15 @@ def made(**changed: Any) -> FolderCalibration:
         display=display,
         observations=(Observation("mass", 0.1, 1e-4),),
         values=(
-            CalibratedValue(LENGTH, si.Unit("m"), (8e-3, 12e-3), 1e-2, 1e-3, (8.1e-3, 1.19e-2), 0.97),
-            CalibratedValue(FORCE, si.Unit("N"), (0.3, 0.7), 0.4, 0.02, (0.38, 0.42), 0.1),
+            CalibratedValue(LENGTH, M, (8e-3, 12e-3), 1e-2, 1e-3, (8.1e-3, 1.19e-2), 0.97),
+            CalibratedValue(FORCE, N, (0.3, 0.7), 0.4, 0.02, (0.38, 0.42), 0.1),
         ),
         identification=Identification(
             (Known(FORCE, 0.1), Known(LENGTH, 0.97)),
             (Combination(0.2, ((FORCE, 0.8), (LENGTH, -0.6))),),
         ),
         laws={"height_law": {"gaussian": 0.25, "exponential": 0.75}},
-        misfits=(Misfit(1.0, 3, 0.8, "mass", 0.4), Misfit(40.0, 4, 1e-6, "relative friction at 1 µm", 5.0)),
+        misfits=(Misfit(1.0, 3, 0.8, "mass", 0.4), Misfit(40.0, 4, 1e-6, AT_1, 5.0)),
         before=FrictionInterval(0.4, (0.1, 0.8), 1.9e-6),
         after=FrictionInterval(0.5, (0.4, 0.6), 2e-6),
         next_measurements=(
@@ -63,11 +64,15 @@ def made(**changed: Any) -> FolderCalibration:
         solves=40,
         seed=7,
         doubts=("The draws are few.",),
-        joint=Joint((), NOTHING, (), NOTHING, (), NOTHING, np.full(4, 2e-6), np.full(4, np.nan), np.zeros(4)),
+        joint=Joint(
+            (), NOTHING, (), NOTHING, (), NOTHING, np.full(4, 2e-6), np.full(4, np.nan), np.zeros(4)
+        ),
         compared=(MET, MISSED),
-    )  # fmt: skip
+    )
     laws_free = dataclasses.replace(calibration, **changed)
-    recordings = (UsedRecording("b.csv", "friction bench", "A. <B>", "2026-11-01", "", "ab" * 32),)
+    recordings = (
+        UsedRecording("b.csv", "friction bench", "A. <B>", "2026-11-01", sha256="ab" * 32),
+    )
     return FolderCalibration(laws_free, recordings, ("c.csv: its fit is not adequate",))
 
 
