@@ -18,9 +18,11 @@ _Ends = tuple[Annotated[si.Dimensionless, si.AtLeast(0)], ...]
 @si.checked_numbers
 @dataclass(frozen=True)
 class UsedRecording:
-    """A recording that a calibration learned from: its file's name and SHA-256, what it is, who took
-    it when with what, and where it is from (one that was made up says so); an empty text is not
-    told."""
+    """A recording that a calibration learned from: its file's name and SHA-256, its kind, who took
+    it when with what, and where it is from (one that was made up says so).
+
+    An empty text is not told.
+    """
 
     file: str
     kind: str = ""

@@ -97,12 +97,14 @@ def score(
 ) -> None:
     """Compare a prediction with what was then measured: error, inside its interval or not, and the
     logarithm of its density there."""
+    from squeezefilm.display import load_display
     from squeezefilm.measure.calibration.blind import keep_scores
     from squeezefilm.measure.calibration.folder import score_prediction
     from squeezefilm.results import to_json
 
+    described = load_display(display)
     with working(as_json) as step:
-        found, left_out = score_prediction(prediction, folder, display, progress=step)
+        found, left_out = score_prediction(prediction, folder, described, progress=step)
     if keep:
         keep_scores(display, prediction, found)
     if as_json:

@@ -12,6 +12,7 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.calibration import calibrate, predict_unseen, score, synthetic
+from squeezefilm.display import load_display
 from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted, Score
 from squeezefilm.measure.fits.estimate import Observation
 
@@ -110,7 +111,7 @@ def test_a_score_is_kept_with_the_display_where_that_is_asked(
     kept = stands_in("measure.calibration.blind:keep_scores", None, tells=False)
     done = run("measure", "score", str(tmp_path / "p.json"), str(tmp_path), PLATE, "--keep")
     assert done.returncode == 0, done.stderr
-    assert asked.given == (tmp_path / "p.json", tmp_path, PLATE)
+    assert asked.given == (tmp_path / "p.json", tmp_path, load_display(PLATE))
     assert kept.given[:2] == (PLATE, tmp_path / "p.json")
     assert "inside the 90 % interval" in " ".join(done.stdout.split())
     assert "left out: a.csv: torn" in done.stdout

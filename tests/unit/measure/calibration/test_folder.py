@@ -33,7 +33,8 @@ def ring_down(folder: Path, name: str = "ring") -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     np.savetxt(data, np.column_stack([time, motion]), delimiter=",", header="t,w", comments="")
     data.with_suffix(".toml").write_text(
-        'kind = "ring-down"\nname = "made up"\nsource = "made up"\nwho = "A. Builder"\nwhen = "2026-11-01"\n'
+        'kind = "ring-down"\nname = "made up"\nsource = "made up"\n'
+        'who = "A. Builder"\nwhen = "2026-11-01"\n'
         '[columns]\ntime = { column = "t", unit = "s" }\n'
         'displacement = { column = "w", unit = "m" }\n'
     )
