@@ -99,3 +99,10 @@ def test_the_lab_is_given_the_record_and_the_points_of_its_charts() -> None:
     assert friction["vibration_amplitude_m"] == 1e-6
     assert friction["relative_friction"] == pytest.approx([0.62, 0.558, 0.682])
     assert friction["standard_error"] == pytest.approx(0.031)
+    odd = (dataclasses.replace(RECORD.compared[0], measured="some kHz"), *RECORD.compared[1:])
+    changed = dataclasses.replace(
+        calibrated(), calibration=dataclasses.replace(RECORD, compared=odd)
+    )
+    again = calibration_of(changed)
+    assert again is not None
+    assert again["responses"] == []

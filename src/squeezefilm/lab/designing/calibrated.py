@@ -8,6 +8,7 @@ from typing import Any
 from squeezefilm import quantities as si
 from squeezefilm.calibration_record import CalibrationRecord, ComparedAnswer
 from squeezefilm.display import Display
+from squeezefilm.errors import QuantityError
 from squeezefilm.results import to_json
 
 _FREQUENCY, _AMPLITUDE = "resonance frequency", "amplitude per volt"
@@ -44,15 +45,20 @@ def _responses(record: CalibrationRecord) -> list[dict[str, Any]]:
     by_recording: dict[str, dict[str, ComparedAnswer]] = {}
     for one in record.compared:
         by_recording.setdefault(one.recording, {})[one.said] = one
-    return [
-        {
-            "recording": name,
-            "frequency_Hz": _quantity(answers[_FREQUENCY], "Hz"),
-            "amplitude_per_volt_m_per_V": _quantity(answers[_AMPLITUDE], "m/V"),
-        }
-        for name, answers in by_recording.items()
-        if _FREQUENCY in answers and _AMPLITUDE in answers
-    ]
+    found = []
+    for name, answers in by_recording.items():
+        if not {_FREQUENCY, _AMPLITUDE} <= set(answers):
+            continue
+        try:
+            point = {
+                "recording": name,
+                "frequency_Hz": _quantity(answers[_FREQUENCY], "Hz"),
+                "amplitude_per_volt_m_per_V": _quantity(answers[_AMPLITUDE], "m/V"),
+            }
+        except QuantityError:
+            continue  # words that somebody changed are shown as they are, and no point is drawn
+        found.append(point)
+    return found
 
 
 def _quantity(one: ComparedAnswer, unit: str) -> list[float | None]:
