@@ -19,7 +19,12 @@ from squeezefilm.measure.calibration.blind import Score, load_prediction, score
 from squeezefilm.measure.calibration.calibrate import calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.friction_likelihood import touching
-from squeezefilm.measure.calibration.solved_answers import FRICTION, asked_by
+from squeezefilm.measure.calibration.solved_answers import (
+    FRICTION,
+    MODE_FREQUENCY,
+    PLATE_ANSWERS,
+    asked_by,
+)
 from squeezefilm.measure.calibration.written_display import calibrated_display, write_calibrated
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.progress import SayProgress
@@ -145,7 +150,11 @@ def folder_observations(
             left_out.append(f"{name}: {fit.adequacy.sentence}")
             continue
         used = [dataclasses.replace(seen, recording=name) for seen in fit.observations]
-        left_out += [f"{name}: {why}" for why in map(usable, used) if why]
+        left_out += [
+            f"{name}, its {seen.answer.replace('_', ' ')}: {why}"
+            for seen in used
+            if (why := usable(seen))
+        ]
         used = [seen for seen in used if not usable(seen)]
         observations += used
         if used:
@@ -162,10 +171,12 @@ def _used(file: Path, kind: str, told: Any) -> UsedRecording:
 
 def usable(observation: Observation) -> str:
     """Why a calibration cannot use an observation; empty where it can."""
+    if observation.answer not in (*PLATE_ANSWERS, MODE_FREQUENCY, FRICTION):
+        return "a calibration has no use for it"
     try:
         _ = touching(observation) if observation.answer == FRICTION else asked_by(observation)
     except InputError as error:
         return str(error)
     if not (observation.value > 0 and observation.standard_error > 0):
-        return f"{observation.answer} is not above 0, or has no error"
+        return "it is not above 0, or has no error"
     return ""

@@ -149,6 +149,9 @@ def test_what_cannot_be_used_is_refused_before_any_work() -> None:
         asked_by(Observation(MODE_FREQUENCY, 3e4, 10.0))
     assert "not above 0" in usable(Observation("mass", 0.0, 0.1))
     assert usable(Observation("mass", 0.1, 0.001)) == ""
+    assert (
+        usable(Observation("friction_coefficient", 0.5, 0.1)) == "a calibration has no use for it"
+    )
 
 
 def test_what_is_solved_of_a_display() -> None:
