@@ -14,7 +14,7 @@ from squeezefilm.measure.calibration.calibration import CalibratedValue
 from squeezefilm.measure.calibration.folder import FolderCalibration
 from squeezefilm.measure.calibration.identified import IDENTIFIED, NOT_TOLD
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.numbers import changed, shown, span
+from squeezefilm.report.kit.numbers import shown, span
 from squeezefilm.report.kit.page_style import FigureOf
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _PRIOR: dict[str, Any] = {"color": style.MUTED, "lw": 1.4}
 _POSTERIOR: dict[str, Any] = {"color": style.BLUE, "lw": 4.5, "solid_capstyle": "butt"}
 _ROW, _REST = 0.29, 1.6
 _FINE = 1e-3  # up to which a difference is drawn in proportion, beyond it by its logarithm
-_TICKS = (-0.1, -0.01, -0.001, 0.0, 0.001, 0.01, 0.1, 1.0)
+_TICKS = (-0.1, -0.01, -0.001, 0.0, 0.001, 0.01, 0.1)
 MOST_NEXT = 8
 """Measurements that could be made next, of which the most telling are shown."""
 
@@ -94,7 +94,9 @@ def compared_figure(found: FolderCalibration) -> Figure:
     _rows(axes, [row_name(one) for one in rows])
     axes.axvline(0, **style.ZERO)
     axes.set_xscale("symlog", linthresh=_FINE, linscale=0.6)
-    axes.set_xticks(_TICKS, [changed(one, 1) if one else "0" for one in _TICKS])
+    axes.set_xticks(
+        _TICKS, [f"{'−+'[one > 0]}{100 * abs(one):g} %" if one else "0" for one in _TICKS]
+    )
     axes.minorticks_off()
     axes.set_xlim(-0.95, 2)
     axes.set_xlabel("model over measured, less 1")
