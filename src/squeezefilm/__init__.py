@@ -46,7 +46,11 @@ _NAMES = {
     "read_trace": "session.record.trace",
     # Measured
     "read_recording": "measure.recordings.read",
+    "check_recording": "measure.recordings.read",
     "fit_recording": "measure.fits.by_kind",
+    "calibrate_display": "measure.calibration.folder",
+    "predict_measurement": "measure.calibration.questions",
+    "score_prediction": "measure.calibration.folder",
     # Studies
     "plan_study": "study.design.plan",
     "run_study": "report.study.session",

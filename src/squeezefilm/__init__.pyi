@@ -24,10 +24,14 @@ if TYPE_CHECKING:
     from squeezefilm.chain.rendered_texture import RenderAnalysis
     from squeezefilm.display import Display, NamedDisplay
     from squeezefilm.display import load_display as load_display
+    from squeezefilm.distributions import Distribution
     from squeezefilm.errors import SqueezefilmError as SqueezefilmError
     from squeezefilm.film.periodic.profile import GapFunction, GapProfile
     from squeezefilm.formats.trajectories import NamedMotion
+    from squeezefilm.measure.calibration.blind import BlindPrediction, Score
+    from squeezefilm.measure.calibration.folder import FolderCalibration
     from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
+    from squeezefilm.measure.recordings.read import check_recording as check_recording
     from squeezefilm.measure.recordings.read import read_recording as read_recording
     from squeezefilm.perception.observer import NamedObserver
     from squeezefilm.plate.working_mode import PlateTheory
@@ -338,7 +342,33 @@ if TYPE_CHECKING:
         recording: NamedRecording | str | Path, display: NamedDisplay | str | Path | None = ...
     ) -> Fit:
         """What goes with the kind of a recording: a circuit with an impedance, modes with a frequency"""
-
+    def calibrate_display(
+        display: NamedDisplay | str | Path,
+        folder: str | Path,
+        out: str | Path | None = ...,
+        *,
+        parameters: Mapping[str, Distribution | None] | None = ...,
+        seed: int = ...,
+        progress: SayProgress | None = ...,
+    ) -> FolderCalibration:
+        """A display's uncertain values learned from all recordings of a folder."""
+    def predict_measurement(
+        display: NamedDisplay | str | Path,
+        ask: str | Sequence[str],
+        out: str | Path,
+        *,
+        seed: int = ...,
+        progress: SayProgress | None = ...,
+    ) -> BlindPrediction:
+        """Write what will be measured of a display, with its interval and a SHA-256, before it is."""
+    def score_prediction(
+        prediction: str | Path,
+        folder: str | Path,
+        display: NamedDisplay | str | Path,
+        *,
+        progress: SayProgress | None = ...,
+    ) -> tuple[tuple[Score, ...], tuple[str, ...]]:
+        """A prediction's file compared with a folder of recordings made since: error, inside its"""
     def plan_study(
         design: NamedDesign | str | Path, participants: int = ..., seed: int = ...
     ) -> StudyPlan:

@@ -10,6 +10,7 @@ from typing import Annotated, ClassVar
 
 from squeezefilm import presets
 from squeezefilm import quantities as si
+from squeezefilm.calibration_record import CalibrationRecord
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.config.references import References
 from squeezefilm.contact.finger.fingertip import Finger
@@ -144,7 +145,8 @@ class Display(Result):
 
     Read one with `load_display`. The first of `surfaces` is the default. `active_area` is where
     fingers are meant to be; without one all of the face that a contact does not overhang.
-    `joint` stands in a calibrated display: what its measurements say of its values together.
+    `joint` and `calibration` stand in a calibrated display: what its measurements say of its values
+    together, and what they were.
     `provenance` says where each value is from, by its dotted path in the file. In a file
     `references` are resolved: a material by its name, and the preset that it is a changed copy of.
     """
@@ -166,7 +168,8 @@ class Display(Result):
     gas: Gas
     thermal: Thermal = _STILL_AIR
     active_area: ActiveRegion | None = None
-    joint: JointSpread | None = None
+    joint: JointSpread | None = field(default=None, metadata={"found": True})
+    calibration: CalibrationRecord | None = field(default=None, metadata={"found": True})
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )

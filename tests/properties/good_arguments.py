@@ -226,6 +226,15 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "spatial_periods": (2e-3,),
         "speeds": (1.0,),
     },
+    "calibration_record.ComparedAnswer": {
+        "said": "mass",
+        "measured": "0.1 kg",
+        "error": 0.01,
+        "before": (0.9, 1.0, 1.1),
+        "after": (0.99, 1.0, 1.01),
+        "relative_friction": 0.5,
+        "vibration_amplitude": 1e-6,
+    },
     "render.motion.finger_path.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
     "render.program.inverse.FrictionInverse.from_function": _FALL,
     "render.program.inverse.FrictionInverse.over_speeds": {

@@ -24,7 +24,7 @@ ROOMS = {
     "film", "plate", "contact", "render", "chain.friction", "chain.prediction", "chain.touch",
     "chain.pad_place",
     "materials",
-    "quantities", "distributions", "formats",
+    "quantities", "distributions", "formats", "calibration_record",
 }  # fmt: skip
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 _NUMBERS = (int, float, _REAL_ARRAY)

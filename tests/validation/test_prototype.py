@@ -4,19 +4,21 @@ import dataclasses
 
 import pytest
 
-from squeezefilm.analysis.claims import prototype
-from squeezefilm.analysis.claims.prototype import (
+from squeezefilm.analysis.claims.paper_plate import (
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,
-    MEASUREMENTS,
-    Explanation,
-    PrototypeStudy,
     paper_plate,
     paper_points,
-    prototype_study,
 )
 from squeezefilm.analysis.plate.sensitivity import plate_sensitivity, usual_changes
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.measure.prototype import explanations as prototype
+from squeezefilm.measure.prototype.explanations import (
+    MEASUREMENTS,
+    Explanation,
+    PrototypeStudy,
+    prototype_study,
+)
 from squeezefilm.report.claims.page import prototype_sections
 from squeezefilm.report.claims.prototype import (
     identifiability,

@@ -20,21 +20,32 @@ def calibrate(
     folder: Annotated[
         Path, typer.Argument(metavar="FOLDER", help="Recordings, each with its TOML file beside.")
     ],
-    out: Annotated[Path, written_to("The calibrated display, a TOML file.")] = Path(
-        "calibrated.toml"
-    ),
+    out: Annotated[
+        Path,
+        written_to(
+            "Folder for the calibrated display (calibrated.toml), a page, pictures and numbers; a "
+            "name that ends in .toml: that file alone."
+        ),
+    ] = Path("calibrated"),
     seed: Seed = 1,
     as_json: AsJson = False,
 ) -> None:
     """Learn a display's uncertain values from all recordings of a folder, and write the display
     that they make of it. A few minutes for eight values; stopped, it goes on where it was."""
-    from squeezefilm.measure.calibration.folder import calibrate_folder
+    from squeezefilm.measure.calibration.folder import calibrate_display
+    from squeezefilm.report.kit.folder import require_folder
     from squeezefilm.report.measured.calibrated import show_calibration
+    from squeezefilm.report.measured.calibration_page import DISPLAY_FILE, write_calibration
 
+    folder_too = out.suffix != ".toml"
+    if folder_too:
+        require_folder(out)
+    file = out / DISPLAY_FILE if folder_too else out
     described = to_be_solved(display, quiet=as_json)
     with working(as_json) as step:
-        found = calibrate_folder(described, folder, out, seed=seed, progress=step)
-    answer(as_json, found, show_calibration, display=found.file)
+        found = calibrate_display(described, folder, file, seed=seed, progress=step)
+        page = write_calibration(found, out) if folder_too else None
+    answer(as_json, found, show_calibration, display=file, page=page)
     if not found.calibration.fits:
         raise typer.Exit(1)
 
@@ -56,15 +67,15 @@ def predict_unseen(
     as_json: AsJson = False,
 ) -> None:
     """Write what will be measured, with its interval and a hash, before it is."""
-    from squeezefilm.measure.calibration.blind import predict_blind
-    from squeezefilm.measure.calibration.questions import question
+    from squeezefilm.measure.calibration.questions import predict_measurement, question
     from squeezefilm.report.measured.calibrated import prediction_lines
     from squeezefilm.results import to_json
 
-    asked = [question(one) for one in ask]
+    for one in ask:
+        question(one)  # refused before the display is looked at
     described = to_be_solved(display, quiet=as_json)
     with working(as_json) as step:
-        found = predict_blind(described, asked, out, seed=seed, progress=step)
+        found = predict_measurement(described, ask, out, seed=seed, progress=step)
     if as_json:
         print_json(to_json(found))
         return
@@ -87,16 +98,13 @@ def score(
     """Compare a prediction with what was then measured: error, inside its interval or not, and the
     logarithm of its density there."""
     from squeezefilm.display import load_display
-    from squeezefilm.measure.calibration.blind import keep_scores, load_prediction
-    from squeezefilm.measure.calibration.blind import score as scored
-    from squeezefilm.measure.calibration.folder import folder_observations
+    from squeezefilm.measure.calibration.blind import keep_scores
+    from squeezefilm.measure.calibration.folder import score_prediction
     from squeezefilm.results import to_json
 
-    load_prediction(prediction)  # refused, if it was changed, before the data are opened
     described = load_display(display)
     with working(as_json) as step:
-        observations, left_out = folder_observations(described, folder, step)
-    found = scored(prediction, observations)
+        found, left_out = score_prediction(prediction, folder, described, progress=step)
     if keep:
         keep_scores(display, prediction, found)
     if as_json:

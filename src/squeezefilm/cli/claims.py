@@ -37,6 +37,7 @@ def reproduce(
         _measured_curves(data, out, as_json)
         return
     from squeezefilm.analysis.claims.command import reproduce as run
+    from squeezefilm.measure.prototype.explanations import prototype_study
     from squeezefilm.report.claims.page import checkout, write_reproduction, write_validation_docs
     from squeezefilm.report.claims.terminal import show_claims
 
@@ -44,7 +45,8 @@ def reproduce(
         # Minutes of work lie before the writing.
         checkout()
     with working(as_json) as step:
-        result = run(prototype=out is not None or write_docs, progress=step)
+        study = prototype_study if out is not None or write_docs else None
+        result = run(prototype=study, progress=step)
         written = None
         if out is not None:
             written = write_reproduction(result, out, progress=step)

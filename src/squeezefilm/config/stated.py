@@ -19,7 +19,7 @@ def stated_sources(built: Any, split: Split, original: Any = None) -> dict[str, 
     stands in the original's words has none either: that source is of the other value.
     """
     found = dict(split.sources)
-    for parts, _ in tree_values(split.plain):
+    for parts, _ in tree_values(described(type(built), split.plain)):
         path = ".".join(map(str, parts))
         if path not in found and _is_number(built, path):
             table, _, _ = path.rpartition(".")
@@ -27,6 +27,13 @@ def stated_sources(built: Any, split: Split, original: Any = None) -> dict[str, 
     if original is None:
         return found
     return {path: _if_unchanged(built, original, path, one) for path, one in found.items()}
+
+
+def described(cls: type[Any], tree: Mapping[str, Any]) -> dict[str, Any]:
+    """The part of a file's tree that somebody describes a thing by: all but what a program found
+    and wrote, fields with ``metadata={"found": True}``, whose numbers need no source."""
+    found = {one.name for one in dataclasses.fields(cls) if one.metadata.get("found")}
+    return {key: item for key, item in tree.items() if key not in found}
 
 
 def tree_values(

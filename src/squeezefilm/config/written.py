@@ -11,7 +11,7 @@ from typing import Any
 from squeezefilm.config.load import load_text
 from squeezefilm.config.provenance import Provenance, split_provenance
 from squeezefilm.config.references import References
-from squeezefilm.config.stated import tree_values
+from squeezefilm.config.stated import described, tree_values
 
 
 @dataclasses.dataclass(frozen=True)
@@ -33,7 +33,8 @@ class _Typed(str):
 def written_values(
     cls: type[Any], text: str, *, file: str | Path | None = None
 ) -> tuple[WrittenValue, ...]:
-    """Every value that a text states of a dataclass with `provenance`, in the text's order.
+    """Every value that a text states of a dataclass with `provenance`, in the text's order, but for
+    what a program found and wrote.
 
     Raises `ConfigError` as `load_text` does: what is shown can be built.
     """
@@ -46,5 +47,5 @@ def written_values(
     found: Mapping[str, Provenance] = built.provenance
     return tuple(
         WrittenValue(path, str(value), found.get(".".join(map(str, path))))
-        for path, value in tree_values(plain)
+        for path, value in tree_values(described(cls, plain))
     )

@@ -23,12 +23,15 @@ from squeezefilm.bench.played_session import PlayedSession
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.errors import InputError
+from squeezefilm.measure.calibration.folder import FolderCalibration
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.report import film_map
 from squeezefilm.report.display.figures import FIGURES
 from squeezefilm.report.display.page import write_analysis
 from squeezefilm.report.friction import figures as friction
 from squeezefilm.report.kit.page_style import FigureOf
+from squeezefilm.report.measured import calibration_figures
+from squeezefilm.report.measured.calibration_page import write_calibration
 from squeezefilm.report.plate import plate, ring, sensitivity_figures
 from squeezefilm.report.played import figures as played
 from squeezefilm.report.played.page import write_play
@@ -89,6 +92,7 @@ SUBJECTS: Mapping[type, _Subject] = {
     RenderAnalysis: _Subject(_by_key(textures.FIGURES), write_render),
     PlayedSession: _Subject(_PLAYED),
     PlayResult: _Subject({key: _of_session(draw) for key, draw in _PLAYED.items()}, write_play),
+    FolderCalibration: _Subject(_by_key(calibration_figures.FIGURES), write_calibration),
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
     SimulatedStudy: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
     PlannedPower: _Subject({"power": lambda one: time_figures.power(one.curve)}),

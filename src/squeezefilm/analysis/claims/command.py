@@ -12,7 +12,6 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.claims import metal
 from squeezefilm.analysis.claims.contact import DIRECTION_VALUES
 from squeezefilm.analysis.claims.procedure import Design
-from squeezefilm.analysis.claims.prototype import PrototypeStudy, prototype_study
 from squeezefilm.analysis.claims.record import (
     VERDICT_OF_GROUNDS,
     Claim,
@@ -22,6 +21,7 @@ from squeezefilm.analysis.claims.record import (
 )
 from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue, paper_design
 from squeezefilm.errors import ConfigError
+from squeezefilm.progress import SayProgress
 from squeezefilm.results import stamp, to_json
 
 # Registers what it computes; named so that the import is no accident.
@@ -44,12 +44,12 @@ class ClaimResult:
 @dataclass(frozen=True)
 class Reproduction:
     """All claims recomputed, the errata, where the paper's design procedure leads, and the study of
-    its prototype (None where it was not asked for)."""
+    its prototype (`measure.prototype.explanations.PrototypeStudy`; None where none was made)."""
 
     results: tuple[ClaimResult, ...]
     errata: tuple[Erratum, ...]
     design: Design
-    prototype: PrototypeStudy | None = None
+    prototype: Any = None
 
     @property
     def changed(self) -> tuple[ClaimResult, ...]:
@@ -90,11 +90,11 @@ class Reproduction:
 def reproduce(
     claims: tuple[Claim, ...] | None = None,
     *,
-    prototype: bool = False,
-    progress: Callable[[str], None] | None = None,
+    prototype: Callable[[SayProgress | None], Any] | None = None,
+    progress: SayProgress | None = None,
 ) -> Reproduction:
-    """Recompute every claim (those on record, or those given); with `prototype` also what could
-    explain the paper's prototype, which takes a minute or two.
+    """Recompute every claim (those on record, or those given); with `prototype`, what studies the
+    paper's prototype (`measure.prototype.explanations.prototype_study`), also that.
 
     Raises `ConfigError` for a claim that nothing computes.
     """
@@ -105,7 +105,7 @@ def reproduce(
         tell(f"claim {claim.name}")
         results.append(judge(claim, _found(claim)))
     tell("the paper's design procedure")
-    study = prototype_study(progress) if prototype else None
+    study = None if prototype is None else prototype(progress)
     return Reproduction(tuple(results), file.errata, paper_design(), study)
 
 

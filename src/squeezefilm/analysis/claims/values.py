@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.claims.paper_plate import MODAL_FREQUENCY, paper_plate, paper_points
 from squeezefilm.analysis.claims.procedure import (
     PAPER_HALF_WAVELENGTHS,
     Design,
@@ -18,7 +19,6 @@ from squeezefilm.analysis.claims.procedure import (
     friction_criterion,
     timoshenko_half_wavelength,
 )
-from squeezefilm.analysis.claims.prototype import MODAL_FREQUENCY, paper_plate, paper_points
 from squeezefilm.analysis.plate.sensitivity import (
     WorkingPoint,
     with_glue,

@@ -18,6 +18,7 @@ from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.lab.designing.calibrated import calibration_of
 from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.lab.worker import tell
 from squeezefilm.plate.electronics import load_of_mode
@@ -43,6 +44,7 @@ def opened(text: str) -> dict[str, Any]:
         "title": display.title,
         "form": form(text),
         "outline": outline(text),
+        "calibration": calibration_of(display),
     }
 
 

@@ -24,6 +24,7 @@ from squeezefilm.measure.calibration.calibration import (
     Joint,
     NextMeasurement,
 )
+from squeezefilm.measure.calibration.compared import compared
 from squeezefilm.measure.calibration.friction_likelihood import FrictionLikelihood, Touching
 from squeezefilm.measure.calibration.friction_posterior import (
     DRAWS,
@@ -133,6 +134,7 @@ class _Finger(NamedTuple):
     posterior: FrictionPosterior | None
     points: si.DimensionlessArray
     draws: FrictionDraws | None
+    first_draws: int = 0
 
 
 def _fitted_finger(
@@ -147,7 +149,9 @@ def _fitted_finger(
         mixture, likelihood, seed=seed, draws=effort.finger_draws, progress=tell
     )
     draws = posterior.resampled(effort.joint_draws, seed)
-    return _Finger(prediction, mixture, likelihood, posterior, draws.points, draws)
+    return _Finger(
+        prediction, mixture, likelihood, posterior, draws.points, draws, effort.finger_draws
+    )
 
 
 class _Made(NamedTuple):
@@ -245,6 +249,7 @@ def _calibration(
         seed=seed,
         doubts=_doubts(plate, finger, refused),
         joint=joint,
+        compared=compared(observations, plate, finger.draws, finger.first_draws, seed),
     )
 
 

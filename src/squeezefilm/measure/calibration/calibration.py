@@ -10,6 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.intervals import LEVEL
+from squeezefilm.calibration_record import ComparedAnswer
 from squeezefilm.display import Display
 from squeezefilm.measure.calibration.discrepancy import Misfit
 from squeezefilm.measure.calibration.identified import Identification
@@ -104,6 +105,7 @@ class Calibration:
     `before` and `after` are friction's interval without and with what was measured;
     `next_measurements` the candidates, most telling first. `emulator_errors` are the emulator's own
     (relative, by answer), of `solves` plates. `doubts` are sentences that a reader must see.
+    `compared` has every observation beside the model alone.
     """
 
     described: Display
@@ -121,6 +123,7 @@ class Calibration:
     seed: int
     doubts: tuple[str, ...]
     joint: Joint
+    compared: tuple[ComparedAnswer, ...] = ()
 
     @property
     def fits(self) -> bool:
@@ -173,6 +176,7 @@ class Calibration:
             ],
             "combinations": to_json(self.identification.combinations),
             "laws": to_json(self.laws),
+            "compared": to_json(self.compared),
             "fits": self.fits,
             "misfits": to_json(self.misfits),
             "relative_friction_before": to_json(self.before),

@@ -1,74 +1,134 @@
-"""From a folder of recordings to a calibrated display."""
+"""From a folder of recordings to a calibrated display, and to the scores of a prediction."""
 
 from __future__ import annotations
 
+import dataclasses
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
+from squeezefilm.calibration_record import UsedRecording
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.from_text import reads_text
+from squeezefilm.measure.calibration.blind import Score, load_prediction, score
 from squeezefilm.measure.calibration.calibrate import calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.friction_likelihood import touching
-from squeezefilm.measure.calibration.solved_answers import FRICTION, asked_by
-from squeezefilm.measure.calibration.written_display import write_calibrated
+from squeezefilm.measure.calibration.solved_answers import (
+    FRICTION,
+    MODE_FREQUENCY,
+    PLATE_ANSWERS,
+    asked_by,
+)
+from squeezefilm.measure.calibration.written_display import calibrated_display, write_calibrated
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.progress import SayProgress
+from squeezefilm.results import Result, to_json
 
 
 @dataclass(frozen=True, eq=False)
-class FolderCalibration:
-    """A calibration on a folder's recordings, the file it was written to, and what of the folder
-    was `left_out` with its reason."""
+class FolderObservations:
+    """What the recordings of a folder observed, which of them did, and what of the folder was
+    `left_out`, each with its reason."""
+
+    observations: tuple[Observation, ...]
+    recordings: tuple[UsedRecording, ...]
+    left_out: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FolderCalibration(Result):
+    """A calibration on a folder's recordings: the calibration, the recordings that it used, what of
+    the folder was `left_out` with its reason, and the file of the calibrated display (None where
+    none was written)."""
 
     calibration: Calibration
-    file: Path
+    recordings: tuple[UsedRecording, ...]
     left_out: tuple[str, ...]
+    file: Path | None = None
+    _shown: ClassVar[str] = "calibration.fits calibration.after.interval file"
+
+    @property
+    def display(self) -> Display:
+        """The calibrated display, with its spreads and the record of its calibration."""
+        return calibrated_display(self.calibration, self.recordings)
 
     def summary(self) -> dict[str, Any]:
         """The numbers for ``--json``."""
         return {
             **self.calibration.summary(),
-            "file": str(self.file),
+            "file": None if self.file is None else str(self.file),
+            "recordings": to_json(self.recordings),
             "left_out": list(self.left_out),
         }
 
 
 @reads_text
-def calibrate_folder(
+def calibrate_display(
     display: NamedDisplay,
     folder: str | Path,
-    out: str | Path,
+    out: str | Path | None = None,
     *,
     parameters: Mapping[str, Distribution | None] | None = None,
     seed: int = 1,
     progress: SayProgress | None = None,
 ) -> FolderCalibration:
-    """`calibrate` on all recordings of a folder; writes the calibrated display to `out`.
+    """A display's uncertain values learned from all recordings of a folder.
 
     Each recording is fitted by its kind. What an inadequate fit observed, and answers that no
-    calibration uses, are left out and named. Raises `InputError` where nothing is left, and what
-    `calibrate` raises.
+    calibration uses, are left out and named. With `out` the calibrated display is written to that
+    TOML file; `write_report` writes it with a page. `parameters`, `seed`, validity and time
+    are those of `measure.calibration.calibrate.calibrate`: some minutes for eight values.
+
+    Raises `InputError` where nothing is left of the folder, what `load_display` raises for the name
+    of a display, and what `calibrate` raises.
     """
     tell = progress or (lambda _: None)
-    observations, left_out = folder_observations(display, folder, tell)
-    if not observations:
+    seen = folder_observations(display, folder, tell)
+    if not seen.observations:
         raise InputError(
-            f"{folder} holds nothing that a calibration can use: {'; '.join(left_out)}"
+            f"{folder} holds nothing that a calibration can use: {'; '.join(seen.left_out)}"
         )
-    found = calibrate(display, observations, parameters=parameters, seed=seed, progress=progress)
-    return FolderCalibration(found, write_calibrated(found, out), left_out)
+    found = calibrate(
+        display,
+        seen.observations,
+        parameters=parameters,
+        seed=seed,
+        progress=progress,
+    )
+    file = None if out is None else write_calibrated(found, out, seen.recordings)
+    return FolderCalibration(found, seen.recordings, seen.left_out, file)
+
+
+@reads_text
+def score_prediction(
+    prediction: str | Path,
+    folder: str | Path,
+    display: NamedDisplay,
+    *,
+    progress: SayProgress | None = None,
+) -> tuple[tuple[Score, ...], tuple[str, ...]]:
+    """A prediction's file compared with a folder of recordings made since: error, inside its
+    interval or not, log score of every number; and what of the folder was left out.
+
+    `display` is the one that was predicted: grid scans are fitted by its shapes. A prediction that
+    was changed is refused before the data are opened. Raises `InputError` as `load_prediction` and
+    `score`, and for a folder without recordings.
+    """
+    load_prediction(prediction)
+    seen = folder_observations(display, folder, progress or (lambda _: None))
+    return score(prediction, seen.observations), seen.left_out
 
 
 def folder_observations(
     display: Display, folder: str | Path, tell: SayProgress
-) -> tuple[tuple[Observation, ...], tuple[str, ...]]:
-    """What the recordings of a folder observed, and what was left out with its reason.
+) -> FolderObservations:
+    """What the recordings of a folder observed.
 
     Raises `InputError` for what is no folder, or one without recordings.
     """
@@ -76,32 +136,47 @@ def folder_observations(
     check = import_module("squeezefilm.measure.recordings.read").check_folder(folder)
     fit_recording = import_module("squeezefilm.measure.fits.by_kind").fit_recording
     observations: list[Observation] = []
+    recordings: list[UsedRecording] = []
     left_out = [f"{one.file.name}: {one.why}" for one in check.refused]
     for one in check.checks:
-        tell(f"fit of {one.file.name}")
+        name = one.file.name
+        tell(f"fit of {name}")
         try:
             fit = fit_recording(one.recording, display)
         except SqueezefilmError as error:
-            left_out.append(f"{one.file.name}: {error}")
+            left_out.append(f"{name}: {error}")
             continue
         if not fit.adequacy.adequate:
-            left_out.append(f"{one.file.name}: {fit.adequacy.sentence}")
+            left_out.append(f"{name}: {fit.adequacy.sentence}")
             continue
-        for seen in fit.observations:
-            why = usable(seen)
-            if why:
-                left_out.append(f"{one.file.name}: {why}")
-            else:
-                observations.append(seen)
-    return tuple(observations), tuple(left_out)
+        used = [dataclasses.replace(seen, recording=name) for seen in fit.observations]
+        left_out += [
+            f"{name}, its {seen.answer.replace('_', ' ')}: {why}"
+            for seen in used
+            if (why := usable(seen))
+        ]
+        used = [seen for seen in used if not usable(seen)]
+        observations += used
+        if used:
+            recordings.append(_used(one.file, one.kind, one.recording.told))
+    return FolderObservations(tuple(observations), tuple(recordings), tuple(left_out))
+
+
+def _used(file: Path, kind: str, told: Any) -> UsedRecording:
+    with file.open("rb") as content:
+        digest = hashlib.file_digest(content, "sha256").hexdigest()
+    taken = (told.who, told.when, told.instrument, told.source)
+    return UsedRecording(file.name, kind, *taken, digest)
 
 
 def usable(observation: Observation) -> str:
     """Why a calibration cannot use an observation; empty where it can."""
+    if observation.answer not in (*PLATE_ANSWERS, MODE_FREQUENCY, FRICTION):
+        return "a calibration has no use for it"
     try:
         _ = touching(observation) if observation.answer == FRICTION else asked_by(observation)
     except InputError as error:
         return str(error)
     if not (observation.value > 0 and observation.standard_error > 0):
-        return f"{observation.answer} is not above 0, or has no error"
+        return "it is not above 0, or has no error"
     return ""

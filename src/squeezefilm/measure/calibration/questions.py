@@ -1,11 +1,18 @@
-"""What is asked of a blind prediction, read from text."""
+"""What is asked of a blind prediction, read from text, and the prediction itself."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
+
 from squeezefilm import quantities as si
+from squeezefilm.display import NamedDisplay
 from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
+from squeezefilm.measure.calibration.blind import BlindPrediction, predict_blind
 from squeezefilm.measure.calibration.solved_answers import LINES
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.progress import SayProgress
 
 CONDITIONS: dict[str, si.Unit] = {
     "vibration_amplitude": si.Unit("m"),
@@ -37,3 +44,27 @@ def question(text: str) -> Observation:
             )
         conditions[name] = si.parse_quantity(value, CONDITIONS[name])
     return Observation(answer.strip(), 0.0, 0.0, conditions)
+
+
+@reads_text
+def predict_measurement(
+    display: NamedDisplay,
+    ask: str | Sequence[str],
+    out: str | Path,
+    *,
+    seed: int = 1,
+    progress: SayProgress | None = None,
+) -> BlindPrediction:
+    """Write what will be measured of a display, with its interval and a SHA-256, before it is.
+
+    `ask` names answers and their conditions as `question` reads them, such as
+    "resonance_frequency" or "relative_friction: vibration_amplitude=1.7 um". `out` is a JSON file
+    in SI units that is never overwritten; `score_prediction` compares it with recordings later.
+    Plates are drawn from the display's own spreads (a calibrated display: the posterior's) and
+    solved: a minute or so. See `measure.calibration.blind.predict_blind`.
+
+    Raises `InputError` for a question that cannot be read or answered, where nothing is asked, and
+    for a file that is there already.
+    """
+    asked = [question(one) for one in ([ask] if isinstance(ask, str) else ask)]
+    return predict_blind(display, asked, out, seed=seed, progress=progress)

@@ -1,22 +1,26 @@
-"""A calibration as a display's file: values with their spreads, and how they go together.
+"""A calibration as a display's file: values with their spreads, how they go together, a record.
 
 Every value that the data told something of is written as measured, with the posterior's spread.
 The rest stays as it was described. What the spreads of single values do not say is in the file's
-`joint` (`joint_spread.JointSpread`), which draws of friction's interval use.
+`joint` (`joint_spread.JointSpread`), which draws of friction's interval use; what was measured
+stands in its `calibration` (`calibration_record.CalibrationRecord`).
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 
+from squeezefilm import __version__
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Input
 from squeezefilm.analysis.joint_draws import AMPLITUDE_SHARE, FRICTION_OFFSET
 from squeezefilm.analysis.parameters import SKIN_COMPLIANCE, Parameter, with_values
+from squeezefilm.calibration_record import CalibrationRecord, UsedRecording
 from squeezefilm.chain.prediction import predict
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.config.write import text_of
@@ -35,8 +39,11 @@ _ROWS = 256
 _TOLD_WELL = 0.5
 
 
-def calibrated_display(calibration: Calibration) -> Display:
-    """The display with the posterior's values, their sources and spreads, and its `joint`.
+def calibrated_display(
+    calibration: Calibration, recordings: Sequence[UsedRecording] = ()
+) -> Display:
+    """The display with the posterior's values, their sources and spreads, its `joint`, and the
+    record of its `calibration` on `recordings`.
 
     What the data said nothing of keeps its value and source; a plate's value that moved with others
     is marked as assumed.
@@ -67,37 +74,47 @@ def calibrated_display(calibration: Calibration) -> Display:
             stated[path] = origin
     found = with_values(found, moved)
     stated |= _ceramic_sources(calibration, source)
-    found = dataclasses.replace(found, provenance=stated, joint=None)
-    return dataclasses.replace(found, joint=_joint(calibration, found))
+    found = dataclasses.replace(found, provenance=stated, joint=None, calibration=None)
+    return dataclasses.replace(
+        found,
+        joint=_joint(calibration, found),
+        calibration=CalibrationRecord(
+            _day(),
+            __version__,
+            calibration.fits,
+            calibration.sentences,
+            tuple(recordings),
+            calibration.compared,
+        ),
+    )
 
 
-def calibrated_text(calibration: Calibration) -> str:
-    """The TOML text of `calibrated_display`, with what was observed and what came out as comments.
-
-    Raises `InputError` as `text_of` does.
-    """
-    display = calibrated_display(calibration)
-    lines = [f"# {display.name}, calibrated: values marked as measured are of its posterior."]
-    for one in calibration.observations:
-        under = "".join(f", {name} {value:.6g}" for name, value in one.conditions.items())
-        lines.append(
-            f"# observed: {one.answer} {one.value:.6g} ± {one.standard_error:.2g} (SI){under}"
-        )
-    lines += [f"# {one}" for one in calibration.sentences]
-    return "\n".join(lines) + "\n\n" + text_of(display, display.provenance)
+def calibrated_text(calibration: Calibration, recordings: Sequence[UsedRecording] = ()) -> str:
+    """The TOML text of `calibrated_display`. Raises `InputError` as `text_of` does."""
+    display = calibrated_display(calibration, recordings)
+    head = (
+        f"# {display.name}, calibrated: values marked as measured are of its posterior; what was "
+        "measured\n# stands below, under calibration.\n\n"
+    )
+    return head + text_of(display, display.provenance)
 
 
-def write_calibrated(calibration: Calibration, path: str | Path) -> Path:
+def write_calibrated(
+    calibration: Calibration, path: str | Path, recordings: Sequence[UsedRecording] = ()
+) -> Path:
     """Write `calibrated_text` to a file, whole or not at all. Raises `InputError` where it cannot
     be written."""
     target = Path(path)
-    write_whole(target, calibrated_text(calibration))
+    write_whole(target, calibrated_text(calibration, recordings))
     return target
 
 
+def _day() -> str:
+    return datetime.now(UTC).date().isoformat()
+
+
 def _source(calibration: Calibration) -> str:
-    day = datetime.now(UTC).date().isoformat()
-    words = f"calibrated {day} from the {len(calibration.observations)} observations above"
+    words = f"calibrated {_day()} from the {len(calibration.observations)} observations below"
     return words if calibration.fits else f"{words}; the model does not fit them"
 
 

@@ -38,9 +38,11 @@ class Adequacy:
 class Observation:
     """One number that a calibration may use: an `answer` of the display by its name in the
     library (`resonance_frequency`, …) in SI units, its standard error, and under which
-    `conditions` (SI, by name: voltage, normal_force, vibration_amplitude, finger_speed, x, y)."""
+    `conditions` (SI, by name: voltage, normal_force, vibration_amplitude, finger_speed, x, y).
+    `recording` is the name of the file that it was read from, where there is one."""
 
     answer: str
     value: float
     standard_error: float
     conditions: Mapping[str, float] = field(default_factory=dict)
+    recording: str = ""

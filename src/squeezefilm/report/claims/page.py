@@ -8,8 +8,8 @@ from pathlib import Path
 
 from squeezefilm.analysis.claims.command import ClaimResult, Reproduction
 from squeezefilm.analysis.claims.procedure import Design
-from squeezefilm.analysis.claims.prototype import PrototypeStudy
 from squeezefilm.errors import InputError
+from squeezefilm.measure.prototype.explanations import PrototypeStudy
 from squeezefilm.report.claims.directions import (
     direction_table,
     directions,

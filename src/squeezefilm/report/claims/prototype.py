@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.analysis.claims.prototype import (
-    AMPLITUDE_ACCURACY,
+from squeezefilm.analysis.claims.paper_plate import (
     DRIVE_VOLTAGE,
     HARMONIC_AMPLITUDE,
     HARMONIC_FREQUENCY,
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,
-    MEASUREMENTS,
     MODAL_FREQUENCY,
+)
+from squeezefilm.measure.prototype.explanations import (
+    AMPLITUDE_ACCURACY,
+    MEASUREMENTS,
     OPEN_ACCURACY,
     RATIO_ACCURACY,
 )
@@ -26,7 +28,7 @@ from squeezefilm.report.kit.numbers import changed
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.claims.prototype import Explanation, PrototypeStudy
+    from squeezefilm.measure.prototype.explanations import Explanation, PrototypeStudy
 
 _TOLD_APART = 2.0
 Table = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]

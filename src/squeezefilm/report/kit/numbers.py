@@ -116,10 +116,11 @@ class Leaf(NamedTuple):
 
 
 def leaves(node: Any, path: tuple[str | int, ...] = ()) -> Iterator[Leaf]:
-    """Every value below a dataclass that a file may hold, in order; none for one left out."""
+    """Every value below a dataclass that a file may describe it by, in order; none for one left
+    out."""
     hints = typing.get_type_hints(type(node), include_extras=True)
     for field in dataclasses.fields(node):
-        if field.metadata.get("loader"):
+        if field.metadata.get("loader") or field.metadata.get("found"):
             continue
         value, here = getattr(node, field.name), (*path, field.name)
         if dataclasses.is_dataclass(value):

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from squeezefilm.measure.calibration.blind import BlindPrediction
 from squeezefilm.measure.calibration.folder import FolderCalibration
-from squeezefilm.report.kit.numbers import shown
 from squeezefilm.report.kit.terminal import bullets, heading, plain_console, table
+from squeezefilm.report.measured.calibration_page import VALUES_HEAD, value_rows
 
 
 def show_calibration(found: FolderCalibration) -> None:
@@ -15,17 +15,7 @@ def show_calibration(found: FolderCalibration) -> None:
     out."""
     console, calibration = plain_console(), found.calibration
     heading(console, f"{calibration.display.name}, calibrated")
-    rows = [
-        (
-            one.path,
-            " to ".join(shown(end, one.unit) for end in one.prior),
-            shown(one.median, one.unit),
-            " to ".join(shown(end, one.unit) for end in one.interval),
-            f"{100 * one.left:.0f} %",
-        )
-        for one in calibration.values
-    ]
-    table(console, ("value", "before", "after", "90 % interval", "spread left"), rows, fixed=(0,))
+    table(console, VALUES_HEAD, value_rows(found), fixed=(0,))
     look = "green" if calibration.fits else "bold red"
     bullets(console, [("", text, look) for text in calibration.sentences[:1]])
     bullets(console, [("", text, "") for text in calibration.sentences[1:]])

@@ -26,7 +26,7 @@ def test_an_opened_display_is_its_text_and_all_that_its_form_shows() -> None:
     display = display_of(STATOR)
     assert opened(STATOR) == {
         "text": STATOR, "name": "biet2008-stator", "title": display.title,
-        "form": form(STATOR), "outline": outline(STATOR),
+        "form": form(STATOR), "outline": outline(STATOR), "calibration": None,
     }  # fmt: skip
     new = edited(STATOR, "drive.voltage", "99 V")
     assert numbers.changed(STATOR, "drive.voltage", "99 V") == opened(new)

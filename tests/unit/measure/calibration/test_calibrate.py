@@ -73,7 +73,10 @@ def test_friction_is_narrowed_and_the_file_has_the_same_interval(
     measured = {path for path, one in read.provenance.items() if one.evidence == "measured"}
     assert measured
     assert all(path.startswith(("finger", "surfaces", "gas")) for path in measured)
-    assert "# observed: relative_friction 0.85" in file.read_text(encoding="utf-8")
+    assert read.calibration is not None
+    assert [one.measured for one in read.calibration.compared] == ["0.85", "0.7", "0.55"]
+    for one in read.calibration.compared:
+        assert one.before[0] < one.after[0] <= one.after[2] < one.before[2]
     assert set(json.loads(json.dumps(calibration.summary()))["laws"]) >= {"height_law"}
 
 
@@ -146,6 +149,9 @@ def test_what_cannot_be_used_is_refused_before_any_work() -> None:
         asked_by(Observation(MODE_FREQUENCY, 3e4, 10.0))
     assert "not above 0" in usable(Observation("mass", 0.0, 0.1))
     assert usable(Observation("mass", 0.1, 0.001)) == ""
+    assert (
+        usable(Observation("friction_coefficient", 0.5, 0.1)) == "a calibration has no use for it"
+    )
 
 
 def test_what_is_solved_of_a_display() -> None:

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-from squeezefilm.analysis.claims.prototype import (
+from squeezefilm.analysis.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
+from squeezefilm.measure.prototype.explanations import (
     MEASUREMENTS,
     Explanation,
     PrototypeStudy,
     Separation,
 )
-from squeezefilm.analysis.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
 from squeezefilm.report.claims.page import prototype_sections
 from squeezefilm.report.claims.prototype import (
     comparison,

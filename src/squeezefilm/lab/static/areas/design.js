@@ -1,6 +1,7 @@
 // Design: the display as a form, and what follows from it while a slider moves.
 
 import { AreaMap } from "../area_map.js";
+import { CalibratedView, drawMeasured } from "../calibrated_view.js";
 import { Chart } from "../chart.js";
 import { displayForm } from "../display_form.js";
 import { element, number, plain, quantity } from "../numbers.js";
@@ -69,6 +70,7 @@ class DesignView {
     const friction = chart("Friction against vibration amplitude", "relative_friction");
     const response = chart("Amplitude per volt against frequency", "amplitude_per_volt");
     this.warnings = element("section", { class: "card warnings" });
+    this.calibrated = new CalibratedView();
     const tools = element("div", { class: "row" },
       element("label", {}, "Display", this.choice), this.undo, this.redo);
     const files = element("div", { class: "row" },
@@ -84,7 +86,7 @@ class DesignView {
         this.areaCard = element("section", { class: "card", hidden: true },
           element("h2", { text: "Relative friction by the place of the finger", "data-tip": "active_area", tabindex: "0" }),
           this.areaCanvas = element("canvas", { class: "area-map", role: "img" }), this.areaSaid = element("p", { class: "muted" })),
-        element("div", { class: "pair" }, friction.box, response.box), this.warnings)));
+        element("div", { class: "pair" }, friction.box, response.box), this.calibrated.box, this.warnings)));
     this.plan = new PlanView(this.canvas);
     this.areaMap = new AreaMap(this.areaCanvas);
     this.lab.frames((now) => this.plan.draw(now));
@@ -97,15 +99,25 @@ class DesignView {
         { label: "paper's model", colour: "orange", dash: [6, 3] },
       ],
       bands: [[0, 1]],
-      marks: (plot, colour) => this.drawPoint(plot, colour),
+      marks: (plot, colour) => {
+        this.drawPoint(plot, colour);
+        drawMeasured(plot, colour, this.measured("frictions", (one) => ({ x: [one.vibration_amplitude_m * 1e6], y: one.relative_friction })));
+      },
     });
     this.responseChart = new Chart(response.inside, {
       x: "frequency (kHz)", y: "nm per volt",
       series: [{ label: "largest interior lobe", colour: "blue", width: 2.5 }],
+      marks: (plot, colour) => drawMeasured(plot, colour, this.measured("responses",
+        (one) => ({ x: scaled(one.frequency_Hz, 1e-3), y: scaled(one.amplitude_per_volt_m_per_V, 1e9) }))),
     });
     document.addEventListener("keydown", (event) => this.pressed(event), { signal: this.lab.signal });
     this.lab.keep(() => clearTimeout(this.settled));
     for (const one of [this.frictionChart, this.responseChart]) this.lab.keep(() => one.close());
+  }
+
+  /** Points of a calibrated display's record. */
+  measured(which, point) {
+    return (this.store.current?.calibration?.[which] ?? []).map(point);
   }
 
   async listDisplays() {
@@ -135,6 +147,7 @@ class DesignView {
       slide: (path, value) => this.compute({ path, value }),
       limits: (path) => this.limits(path),
     });
+    this.calibrated.set(current.calibration);
     this.compute({});
   }
 
@@ -363,6 +376,8 @@ async function refusal(work) {
     return error.message;
   }
 }
+
+const scaled = (values, by) => values.map((one) => (one === null ? null : one * by));
 
 function interpolate(x, y, at) {
   const k = x.findIndex((one) => one >= at);

@@ -6,7 +6,6 @@ then predict for other measurements says which of these would tell them apart, a
 
 from __future__ import annotations
 
-import functools
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,6 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.claims.paper_plate import (
+    DRIVE_VOLTAGE,
+    MEASURED_AMPLITUDE,
+    MEASURED_FREQUENCY,
+    paper_plate,
+    paper_points,
+)
 from squeezefilm.analysis.parameters import with_values
 from squeezefilm.analysis.plate.sensitivity import (
     SensitivityTable,
@@ -24,17 +30,9 @@ from squeezefilm.analysis.plate.sensitivity import (
     with_other_data_set,
     working_point,
 )
-from squeezefilm.display import load_display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.progress import SayProgress
-
-MODAL_FREQUENCY: si.Hertz = 35.6e3  # section 3.1.3, Fig 13
-HARMONIC_FREQUENCY: si.Hertz = 34.77e3  # section 3.1.3, Fig 14
-HARMONIC_AMPLITUDE: si.Metre = 3.2e-6
-MEASURED_FREQUENCY: si.Hertz = 30.5e3  # section 3.2.1
-MEASURED_AMPLITUDE: si.Metre = 1.15e-6
-DRIVE_VOLTAGE: si.Volt = 15.0
 
 NEIGHBOURS = ((6, 0), (7, 0), (9, 0))
 
@@ -100,21 +98,6 @@ MEASUREMENTS = (
     "open-circuit shift",
     "amplitude at known Q",
 )
-
-
-@functools.cache
-def paper_plate() -> RectangularPlate:
-    """The plate of the preset biet2008-plate."""
-    plate = load_display("biet2008-plate").actuator
-    assert isinstance(plate, RectangularPlate)
-    return plate
-
-
-@functools.cache
-def paper_points() -> tuple[WorkingPoint, WorkingPoint]:
-    """Mode (8,0) of the paper's plate with d31 and with the printed e31."""
-    plate = paper_plate()
-    return working_point(plate), working_point(with_other_data_set(plate))
 
 
 def _softer_and_thinner(plate: RectangularPlate, value: float) -> RectangularPlate:
@@ -184,7 +167,7 @@ def _explained(
         raise SqueezefilmError(
             f"{free} between {between[0]:.3g} and {between[1]:.3g} ({unit}) does not bring "
             f"'{name}' to {MEASURED_FREQUENCY:.0f} Hz; widen the range in "
-            "analysis/claims/prototype.py"
+            "measure/prototype/explanations.py"
         )
     root = float(np.exp(brentq(above, *logarithms, xtol=2e-4, rtol=1e-4)))
     solved = make(plate, root)

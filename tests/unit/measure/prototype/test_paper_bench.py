@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from squeezefilm.analysis.claims.prototype import MEASURED_FREQUENCY
-from squeezefilm.measure.calibration.paper_bench import (
+from squeezefilm.analysis.claims.paper_plate import MEASURED_FREQUENCY
+from squeezefilm.measure.calibration.priors import calibration_parameters
+from squeezefilm.measure.calibration.solved_answers import Asked
+from squeezefilm.measure.prototype.paper_bench import (
     GLUE_PRIORS,
     glued_paper_display,
     paper_calibration,
     paper_observations,
 )
-from squeezefilm.measure.calibration.priors import calibration_parameters
-from squeezefilm.measure.calibration.solved_answers import Asked
 
 
 def test_what_the_paper_measured() -> None:

@@ -1,15 +1,14 @@
 """The worked case: the two numbers that the paper measured of its plate, and what they say.
 
 The paper computed 35.6 kHz and 3.2 µm at 15 V, and its vibrometer showed 30.5 kHz and 1.15 µm.
-Several single explanations are compared in `analysis.claims.prototype`; here all of them are free
-at once.
+Several single explanations are compared in `explanations` beside this; here all are free at once.
 """
 
 from __future__ import annotations
 
 import dataclasses
 
-from squeezefilm.analysis.claims.prototype import (
+from squeezefilm.analysis.claims.paper_plate import (
     DRIVE_VOLTAGE,
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,

@@ -1,0 +1,35 @@
+"""The paper's plate: what the paper computed and measured of it, and this program's solution.
+
+Why the two differ is the worked case of `measure.prototype`.
+"""
+
+from __future__ import annotations
+
+import functools
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.plate.sensitivity import WorkingPoint, with_other_data_set, working_point
+from squeezefilm.display import load_display
+from squeezefilm.plate.layout import RectangularPlate
+
+MODAL_FREQUENCY: si.Hertz = 35.6e3  # section 3.1.3, Fig 13
+HARMONIC_FREQUENCY: si.Hertz = 34.77e3  # section 3.1.3, Fig 14
+HARMONIC_AMPLITUDE: si.Metre = 3.2e-6
+MEASURED_FREQUENCY: si.Hertz = 30.5e3  # section 3.2.1
+MEASURED_AMPLITUDE: si.Metre = 1.15e-6
+DRIVE_VOLTAGE: si.Volt = 15.0
+
+
+@functools.cache
+def paper_plate() -> RectangularPlate:
+    """The plate of the preset biet2008-plate."""
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    return plate
+
+
+@functools.cache
+def paper_points() -> tuple[WorkingPoint, WorkingPoint]:
+    """Mode (8,0) of the paper's plate with d31 and with the printed e31."""
+    plate = paper_plate()
+    return working_point(plate), working_point(with_other_data_set(plate))
