@@ -12,7 +12,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import DENSITY, LAYER, SIDE
 from squeezefilm.materials import VACUUM_PERMITTIVITY
-from squeezefilm.measure.fits.complex_fit import ComplexFit, adequacy_of, fit_complex
+from squeezefilm.measure.fits.complex_fit import ComplexFit, fit_complex, sweep_adequacy
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.sweep_reading import require_passive, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
@@ -93,7 +93,7 @@ def bar_constants(sweep: ImpedanceSweep, bar: CeramicBar) -> BarConstants:
         charge_loss=fit.estimate(lambda p: float(p[4]), "1"),
         dielectric_loss=fit.estimate(lambda p: float(p[5]), "1"),
         admittance=curve,
-        adequacy=adequacy_of(fit, sweep.frequency, "The formula of a bar"),
+        adequacy=sweep_adequacy(fit, sweep.frequency, "The formula of a bar"),
         fit=fit,
     )
 

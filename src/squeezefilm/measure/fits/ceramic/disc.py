@@ -12,7 +12,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.ceramic_prior import PARAMETERS, ceramic_prior, compliances
-from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, adequacy_of, fit_complex
+from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, fit_complex, sweep_adequacy
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.sweep_reading import require_passive, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
@@ -115,7 +115,7 @@ def disc_constants(
         combinations=combinations(fit, prior),
         mean_misfit=float(miss),
         admittance=fitted,
-        adequacy=adequacy_of(fit, sweep.frequency, "The solved disc"),
+        adequacy=sweep_adequacy(fit, sweep.frequency, "The solved disc"),
         fit=fit,
     )
 

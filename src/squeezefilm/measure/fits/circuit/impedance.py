@@ -18,7 +18,7 @@ from squeezefilm.measure.fits.circuit.branches import (
     relative_motion,
     start_at,
 )
-from squeezefilm.measure.fits.complex_fit import ComplexFit, adequacy_of, fit_complex
+from squeezefilm.measure.fits.complex_fit import ComplexFit, fit_complex, sweep_adequacy
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
@@ -288,7 +288,7 @@ def _told(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> ImpedanceFi
         ),
         softening=_softening(fit, layout) if layout.softening else None,
         drift=complex(p[-2], p[-1]) if layout.drift else None,
-        adequacy=adequacy_of(fit, sweep.frequency, what),
+        adequacy=sweep_adequacy(fit, sweep.frequency, what),
         layout=layout,
         fit=fit,
         frequency=sweep.frequency,

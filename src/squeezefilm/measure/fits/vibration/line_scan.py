@@ -13,6 +13,7 @@ from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.line_points import LinePoints
 from squeezefilm.measure.recordings.kinds import LineScan
 
@@ -38,9 +39,10 @@ class LineScanFit:
     `phase` (rad) of the antinode against the drive. The last three are None where no phase was
     recorded, ratio and loss also where no even wave fits. `phase_reversed` says that waves grow
     along their way, which no plate makes: the phase was recorded with the other sign, and the fit
-    is of the complex conjugate. `by_points` says that half wavelength, nodal lines and amplitude
-    are those of the points around each, as no even wave fits. `model` and `residual` (m) are at
-    `position` (m).
+    is of the complex conjugate. `by_points` says that half wavelength and nodal lines are those of
+    the points around each, as no even wave fits, and amplitude too, unless the scan was compared
+    with a solved shape: then `offset` (m) is where its zero lies from the plate's edge, and
+    amplitude and phase are those of the shape. `model` and `residual` (m) are at `position` (m).
     """
 
     recording: LineScan
@@ -56,6 +58,7 @@ class LineScanFit:
     phase: Estimate | None
     phase_reversed: bool
     by_points: bool
+    offset: Estimate | None
     adequacy: Adequacy
 
     @property
@@ -100,6 +103,7 @@ class LineScanFit:
 @guarded_fit
 def fit_line_scan(
     recording: LineScan,
+    shape: DrivenShape | None = None,
     *,
     free_ends: bool = True,
     drift: bool = False,
@@ -114,7 +118,8 @@ def fit_line_scan(
     change in proportion to the place along the scan, as when the plate warms while it is scanned.
     The model is that of an even thin plate: a plate with ceramics on it bends its wave, and the
     fit then says by how much, and half wavelength, nodal lines and amplitude are taken from the
-    recorded points around each (`LinePoints`).
+    recorded points around each (`LinePoints`). With the solved `shape` of the plate amplitude and
+    phase are then those of the shape, which the scan is judged by.
 
     Raises `InputError` for fewer than 12 points or three to a half wavelength. Source: Cremer,
     Heckl, Petersson, Structure-Borne Sound, 3rd ed., section 3.6 (decay of bending waves).
@@ -134,13 +139,39 @@ def fit_line_scan(
         fit.residual * size,
         lambda i: f"{1e3 * x[i]:.3g} mm along the line",
         remedy="A plate with ceramics on it, or one that also bends across the line, has no one "
-        "wave: compare its shape with the solved plate's (a grid scan).",
+        "wave: compare it with the solved plate's shape (name the display).",
         said="The phase was recorded with the other sign (waves would grow along their way); the "
         "fit is of the complex conjugate. "
         if grows
         else "",
     )
-    return _FittedLine(recording, line, x, w, fit, size, grows, adequacy, level).read()
+    found = _FittedLine(recording, line, x, w, fit, size, grows, adequacy, level).read()
+    if shape is None or not found.by_points:
+        return found
+    return _by_shape(found, shape, w.conj() if grows else w, drift)
+
+
+def _by_shape(found: LineScanFit, shape: DrivenShape, w: si.Array, drift: bool) -> LineScanFit:
+    """What a solved shape says of a line that no even wave fits, from its displacement as it was
+    recorded."""
+    level = found.half_wavelength.level
+    reach = found.half_wavelength.value / 4
+    by = line_by_shape(shape, found.position, w, reach=reach, drift=drift, level=level)
+    said = (
+        " Amplitude and phase are those of the shape; half wavelength (the mean distance of nodal "
+        "lines) and nodal lines are those of the points around each."
+    )
+    return replace(
+        found,
+        model=by.model,
+        residual=(w.conj() if by.phase_reversed else w) - by.model,
+        antinode=shape.antinode - by.offset.value,
+        antinode_amplitude=by.amplitude,
+        phase=by.phase,
+        phase_reversed=by.phase_reversed,
+        offset=by.offset,
+        adequacy=replace(by.adequacy, sentence=by.adequacy.sentence + said),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -304,6 +335,7 @@ class _FittedLine:
             phase=self._phase(lobe) if self.line.complex else None,
             phase_reversed=self.phase_reversed,
             by_points=False,
+            offset=None,
             adequacy=self.adequacy,
         )
         return found if self.adequacy.adequate else self._by_points(found)
