@@ -18,6 +18,7 @@ from squeezefilm.measure.calibration.friction_likelihood import touching
 from squeezefilm.measure.calibration.solved_answers import FRICTION, asked_by
 from squeezefilm.measure.calibration.written_display import write_calibrated
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.progress import SayProgress
 
 
@@ -74,17 +75,19 @@ def folder_observations(
     """
     # Readers and fits are imported when there is something to read: some take a second.
     check = import_module("squeezefilm.measure.recordings.read").check_folder(folder)
-    fit_recording = import_module("squeezefilm.measure.fits.by_kind").fit_recording
+    by_kind = import_module("squeezefilm.measure.fits.by_kind")
     observations: list[Observation] = []
     left_out = [f"{one.file.name}: {one.why}" for one in check.refused]
     for one in check.checks:
         tell(f"fit of {one.file.name}")
         try:
-            fit = fit_recording(one.recording, display)
+            fit = by_kind.fit_recording(one.recording, display)
+            fit = by_kind.response_fit(fit) or fit
         except SqueezefilmError as error:
             left_out.append(f"{one.file.name}: {error}")
             continue
-        if not fit.adequacy.adequate:
+        # A friction curve is compared, not fitted: that it differs is what a calibration is for.
+        if not fit.adequacy.adequate and not isinstance(one.recording, FrictionCurve):
             left_out.append(f"{one.file.name}: {fit.adequacy.sentence}")
             continue
         for seen in fit.observations:

@@ -46,7 +46,8 @@ class ComplexFit:
     `weighted` data (points,).
 
     `spread` is the standard deviation of a component of the residual; `correlation` is by how much
-    its smoothness multiplies variances (1 where it is as rough as noise); `floor` is the size of
+    its smoothness multiplies variances (1 where it is as rough as noise); `left` is the residual
+    as it was recorded, in the geometric mean, by which fits are compared; `floor` is the size of
     data below which noise falls no further, 0 where it was not told. `information` (p, p) is what
     the data say alone, without the prior.
     """
@@ -58,6 +59,7 @@ class ComplexFit:
     weighted: si.ComplexArray
     spread: si.Dimensionless
     correlation: si.Dimensionless
+    left: float
     floor: float
     degrees_of_freedom: int
 
@@ -126,7 +128,8 @@ def fit_complex(
             weight = 1 / np.hypot(size, floor)
     curve, slopes = model(parameters)
     fit = _fitted(parameters, (data - curve) * weight, slopes * weight, prior)
-    return replace(fit, weighted=data * weight, floor=floor)
+    left = fit.spread * float(np.exp(-np.mean(np.log(weight))))
+    return replace(fit, weighted=data * weight, left=left, floor=floor)
 
 
 def _stacked(values: si.ComplexArray) -> si.FloatArray:
@@ -204,6 +207,7 @@ def _fitted(
         weighted=np.empty(0, dtype=complex),
         spread=spread,
         correlation=correlation,
+        left=spread,
         floor=0.0,
         degrees_of_freedom=max(int(freedom / correlation), 3),
     )

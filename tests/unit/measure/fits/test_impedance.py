@@ -48,7 +48,9 @@ def test_a_circuit_is_found_and_its_numbers_belong_together() -> None:
     assert fp / fs == pytest.approx(np.sqrt(1 + C / fit.static_capacitance.value))
     assert branch.coupling_coefficient.value == pytest.approx(np.sqrt(1 - (fs / fp) ** 2))
     names = {one.answer for one in fit.observations}
-    assert {"resonance_frequency", "parallel_resonance_frequency", "coupling_coefficient"} <= names
+    assert {"resonance_frequency", "parallel_resonance_frequency", "quality_factor"} <= names
+    # It follows from the two resonances.
+    assert "coupling_coefficient" not in names
     assert fit.circuit.frequency == fs
     assert fit.admittance(FREQUENCY) == pytest.approx(PLAIN.admittance, rel=0.02)
 
