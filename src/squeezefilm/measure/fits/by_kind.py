@@ -13,8 +13,10 @@ from squeezefilm.from_text import ReadBy, reads_text
 from squeezefilm.measure.fits.estimate import Adequacy, Observation
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.read import read_recording
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.working import solid_mode
 
@@ -30,6 +32,12 @@ FITS: dict[type, tuple[str, str]] = {
     kinds.FrictionBench: ("friction.friction_bench", "fit_friction_bench"),
     kinds.FrictionCurve: ("friction.friction_curve", "compare_friction_curve"),
 }
+
+CERAMICS: dict[type, tuple[str, str]] = {
+    CeramicBar: ("ceramic.bar", "bar_constants"),
+    CeramicDisc: ("ceramic.disc", "disc_constants"),
+}
+"""The same for a sweep of a bare ceramic, by its body."""
 
 _NEAR: si.Dimensionless = 0.1
 """How far from a scan's frequency (of it) modes may take part in what is seen."""
@@ -57,13 +65,15 @@ class Fit(Protocol):
 
 @reads_text
 def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None) -> Fit:
-    """What goes with the kind of a recording: a circuit with an impedance, modes with a frequency
-    response, models of friction with a friction curve; a frozen dataclass whose numbers are
-    `Estimate`s, with its `adequacy` and the `observations` for a calibration.
+    """What goes with the kind of a recording: a circuit with an impedance (constants of the
+    material with that of a bare ceramic bar or disc, whose shape its description names), modes with
+    a frequency response, models of friction with a friction curve; a frozen dataclass whose numbers
+    are `Estimate`s, with its `adequacy` and the `observations` for a calibration.
 
-    A grid scan is compared with the solved shapes of a `display`, and needs one; a line scan that is
-    no even wave may be, a friction curve without a display of its own is taken for that display's;
-    no other kind is given it. Raises what `read_recording` raises, and `InputError` for a recording that its fit refuses.
+    A grid scan is compared with the solved shapes of a `display`, and needs one; a line scan that
+    is no even wave may be, a friction curve without a display of its own is taken for that
+    display's; no other kind is given it. Raises what `read_recording` raises, and `InputError` for
+    a recording that its fit refuses.
     """
     known = FITS.get(type(recording))
     if known is None:
@@ -71,8 +81,11 @@ def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None
             f"{type(recording).__name__} is no kind of recording; give the path of a file, or what "
             "read_recording returned"
         )
-    module, name = known
+    body = recording.body if isinstance(recording, kinds.ImpedanceSweep) else None
+    module, name = known if body is None else CERAMICS[type(body)]
     fits = import_module(f"squeezefilm.measure.fits.{module}")
+    if body is not None:
+        return cast(Fit, getattr(fits, name)(recording, body))
     return cast(Fit, getattr(fits, name)(recording, **_of_display(recording, display, fits)))
 
 

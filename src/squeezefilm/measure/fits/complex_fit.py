@@ -101,10 +101,11 @@ def fit_complex(
     Relative: every point's noise is the same share of |Y|, down to a floor where the residual tells
     of one (`noise_floor`). |Y| is taken from the model and not from the noisy data, since these
     would pull the fit down (the estimate solves its weighted equations, as in generalised linear
-    models). Absolute: the same noise everywhere. The noise is estimated from the residual. Where neighbouring residuals are alike the model misses something:
-    variances are then multiplied by the residual's correlation time. Real and imaginary part are
-    taken as equally noisy and independent. Raises `InputError` for too few points,
-    `ConvergenceError` where no minimum is found.
+    models). Absolute: the same noise everywhere. The noise is estimated from the residual. Where
+    neighbouring residuals are alike the model misses something: variances are then multiplied by
+    the residual's correlation time. Real and imaginary part are taken as equally noisy and
+    independent. Raises `InputError` for too few points, `ConvergenceError` where no minimum is
+    found.
     """
     count, points = start.size, data.size
     if 2 * points < count + 8:
@@ -231,9 +232,7 @@ def noise_floor(residual: si.ComplexArray, size: si.FloatArray) -> float:
     def deviance(floor: float) -> float:
         square = size**2 + floor**2
         square = (square[2:] + 4 * square[1:-1] + square[:-2]) / 6
-        return float(
-            2 / 3 * (np.sum(np.log(square)) + rows.size * np.log(np.mean(rows / square)))
-        )
+        return float(2 / 3 * (np.sum(np.log(square)) + rows.size * np.log(np.mean(rows / square))))
 
     floors = typical * _FLOORS
     tried = [deviance(float(one)) for one in floors]

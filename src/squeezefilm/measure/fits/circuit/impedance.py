@@ -138,12 +138,12 @@ def fit_impedance(
     information criterion falls by more than 10, at most 8; a loss of the coupling itself is asked
     for in the same way, and after it a branch that softens and loses more the farther it moves, by
     the square of its motion (for a sweep at one voltage). `drift` fits a complex gain that changes
-    in proportion to the point's number too; a resonance that drifts during the sweep cannot be
-    told from another Q. Noise is relative, down to a floor where the data tell of one, and
-    estimated from them; missing points do no harm. Intervals are of 95 %, to first order in the noise; where the circuit
-    misses something they are widened by how alike neighbouring residuals are, which is no bound.
-    Raises `InputError` for a sweep that no passive capacitive body has (a phase that is off by 180°
-    or has the wrong sign), that holds no resonance, or is too short.
+    in proportion to the point's number too; a resonance that drifts during the sweep cannot be told
+    from another Q. Noise is relative, down to a floor where the data tell of one, and estimated
+    from them; missing points do no harm. Intervals are of 95 %, to first order in the noise; where
+    the circuit misses something they are widened by how alike neighbouring residuals are, which is
+    no bound. Raises `InputError` for a sweep that no passive capacitive body has (a phase that is
+    off by 180° or has the wrong sign), that holds no resonance, or is too short.
     """
     require_passive(sweep)
     if branches is not None:

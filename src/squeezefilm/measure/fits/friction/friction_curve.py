@@ -77,7 +77,8 @@ class CurveComparison:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """Each measured point, for a calibration; none where its spread is not known."""
+        """Each measured point, for a calibration, but one without vibration (µ′/µ is 1 by its
+        meaning); none where its spread is not known."""
         c = self.curve
         return tuple(
             Observation(
@@ -93,7 +94,7 @@ class CurveComparison:
             for amplitude, friction, spread in zip(
                 c.vibration_amplitude, c.relative_friction, c.spread, strict=True
             )
-            if spread > 0
+            if spread > 0 and amplitude > 0
         )
 
     def summary(self) -> dict[str, Any]:

@@ -27,7 +27,8 @@ class DrivenShape:
     At its resonance a mode answers a quarter of a period late; all others that the drive moves,
     among them those far away in frequency, answer at once. They are what a scan has beside the
     mode, of some per cent, and no neighbour alone describes them. `lobe` (m) is the antinode's
-    place, `lengthwise` says that nodal lines lie across the length.
+    place, `lengthwise` says that nodal lines lie across the length; `half_wavelength` (m) is the
+    mode's, of its profile over the whole face, which differs from that along one line.
     """
 
     x: si.MetreArray
@@ -36,6 +37,7 @@ class DrivenShape:
     rest: si.DimensionlessArray
     lobe: tuple[si.Metre, si.Metre]
     lengthwise: bool
+    half_wavelength: si.Metre
 
     @classmethod
     def of(cls, mode: SolidMode) -> DrivenShape:
@@ -45,11 +47,14 @@ class DrivenShape:
         there = response.motion(at, *(np.array([place]) for place in mode.lobe))[0, 0]
         turned = response.motion(at, x, y) / there
         lines = mode.modes.labels[mode.index] or (1, 0)
-        return cls(x, y, turned.real, turned.imag, mode.lobe, lines[0] >= lines[1])
+        lengthwise = lines[0] >= lines[1]
+        half = mode.half_wavelength
+        return cls(x, y, turned.real, turned.imag, mode.lobe, lengthwise, half)
 
     @cached_property
     def _splines(self) -> tuple[RectBivariateSpline, RectBivariateSpline]:
-        return tuple(RectBivariateSpline(self.x, self.y, one) for one in (self.swing, self.rest))
+        swing, rest = (RectBivariateSpline(self.x, self.y, one) for one in (self.swing, self.rest))
+        return swing, rest
 
     def at(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         """Swing and rest (2, points) at places (m); beside the face those of its edge."""
@@ -123,9 +128,7 @@ def line_by_shape(
     own = fit.weights[0]
     phase = None
     if recorded:
-        turned = fit.estimate(
-            lambda _, c: float(np.angle(c[0] * np.conj(own))), "rad", level=level
-        )
+        turned = fit.estimate(lambda _, c: float(np.angle(c[0] * np.conj(own))), "rad", level=level)
         angle = float(np.angle(own))
         low, high = turned.interval
         phase = Estimate(angle, turned.standard_error, (angle + low, angle + high), "rad", level)
@@ -140,7 +143,9 @@ def line_by_shape(
         "the solved plate.",
     )
     return LineByShape(
-        amplitude=fit.estimate(lambda _, c: size * float(abs(c[0])), "m", positive=True, level=level),
+        amplitude=fit.estimate(
+            lambda _, c: size * float(abs(c[0])), "m", positive=True, level=level
+        ),
         phase=phase,
         offset=fit.estimate(lambda one, _: float(one[0]), "m", level=level),
         model=fit.model * size,

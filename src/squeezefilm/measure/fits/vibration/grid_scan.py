@@ -77,11 +77,11 @@ def fit_grid_scan(
 
     `shapes` by their labels, each (points,), relative motion at the scan's places with 1 where the
     amplitude is asked for (the best antinode): `shapes_at` takes them from solved modes, as many
-    neighbours as may take part, and what else the drive moves (of two that the places cannot tell apart the one more alike the
-    scan). MAC = |φᴴw|²/(φᴴφ wᴴw) (Allemang 2003, Sound and Vibration 37(8)
-    14); amplitudes are least squares of all shapes together. With `drift` the strongest part may
-    change in proportion to the order of the points. Raises `InputError` for fewer than 12 points or
-    a shape of another length.
+    neighbours as may take part, and what else the drive moves (of two that the places cannot tell
+    apart the one more alike the scan). MAC = |φᴴw|²/(φᴴφ wᴴw) (Allemang 2003, Sound and Vibration
+    37(8) 14); amplitudes are least squares of all shapes together. With `drift` the strongest part
+    may change in proportion to the order of the points. Raises `InputError` for fewer than 12
+    points or a shape of another length.
     """
     good = np.isfinite(recording.x) & np.isfinite(recording.y) & np.isfinite(recording.displacement)
     w = np.asarray(recording.displacement)[good]

@@ -15,6 +15,7 @@ from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.line_points import LinePoints
+from squeezefilm.measure.fits.vibration.line_waves import LineWaves
 from squeezefilm.measure.recordings.kinds import LineScan
 
 _FEWEST_POINTS = 12
@@ -42,7 +43,9 @@ class LineScanFit:
     is of the complex conjugate. `by_points` says that half wavelength and nodal lines are those of
     the points around each, as no even wave fits, and amplitude too, unless the scan was compared
     with a solved shape: then `offset` (m) is where its zero lies from the plate's edge, and
-    amplitude and phase are those of the shape. `model` and `residual` (m) are at `position` (m).
+    amplitude and phase are those of the shape, and `face_over_line` is its half wavelength over the
+    whole face, which is the library's, over that along the line (else 1). `model` and `residual`
+    (m) are at `position` (m).
     """
 
     recording: LineScan
@@ -59,6 +62,7 @@ class LineScanFit:
     phase_reversed: bool
     by_points: bool
     offset: Estimate | None
+    face_over_line: si.Dimensionless
     adequacy: Adequacy
 
     @property
@@ -69,8 +73,10 @@ class LineScanFit:
         if not self.adequacy.adequate and not self.by_points:
             return ()
         at = {"frequency": self.recording.frequency}
-        half, largest = self.half_wavelength, self.antinode_amplitude
-        found = [Observation("half_wavelength", half.value, half.standard_error, at)]
+        half, largest, ratio = self.half_wavelength, self.antinode_amplitude, self.face_over_line
+        found = [
+            Observation("half_wavelength", half.value * ratio, half.standard_error * ratio, at)
+        ]
         volts = self.recording.voltage
         if volts:
             found.append(
@@ -125,7 +131,7 @@ def fit_line_scan(
     Heckl, Petersson, Structure-Borne Sound, 3rd ed., section 3.6 (decay of bending waves).
     """
     x, w = _recorded(recording)
-    line = _Line(float(x[0]), float(x[-1]), np.iscomplexobj(w), free_ends, drift)
+    line = LineWaves(float(x[0]), float(x[-1]), np.iscomplexobj(w), free_ends, drift)
     size = float(np.max(np.abs(w)))
     start = np.zeros(line.count)
     start[0] = _wave_number(line, x, w / size)
@@ -157,6 +163,8 @@ def _by_shape(found: LineScanFit, shape: DrivenShape, w: si.Array, drift: bool) 
     level = found.half_wavelength.level
     reach = found.half_wavelength.value / 4
     by = line_by_shape(shape, found.position, w, reach=reach, drift=drift, level=level)
+    swing = shape.along(found.position + by.offset.value)[0]
+    along = LinePoints(found.position, swing, found.half_wavelength.value).spacing
     said = (
         " Amplitude and phase are those of the shape; half wavelength (the mean distance of nodal "
         "lines) and nodal lines are those of the points around each."
@@ -170,62 +178,9 @@ def _by_shape(found: LineScanFit, shape: DrivenShape, w: si.Array, drift: bool) 
         phase=by.phase,
         phase_reversed=by.phase_reversed,
         offset=by.offset,
+        face_over_line=1.0 if along is None else shape.half_wavelength / along.value,
         adequacy=replace(by.adequacy, sentence=by.adequacy.sentence + said),
     )
-
-
-@dataclass(frozen=True, eq=False)
-class _Line:
-    """The columns of waves along a line from `first` to `last` (m).
-
-    The shape is k, then for complex data the decay over k, then the drift's two numbers (one).
-    """
-
-    first: si.Metre
-    last: si.Metre
-    complex: bool
-    free_ends: bool
-    drift: bool
-
-    @property
-    def length(self) -> si.Metre:
-        return self.last - self.first
-
-    @property
-    def count(self) -> int:
-        own = 2 if self.complex else 1
-        return own + (own if self.drift else 0)
-
-    def reach(self, wave_number: float) -> si.FloatArray:
-        """How far the shape may go from its start."""
-        rows = [wave_number / 3] + ([0.25] if self.complex else [])
-        return np.array(rows + [2.0] * (self.count - len(rows)))
-
-    def waves(self, x: si.MetreArray, shape: si.FloatArray) -> si.Array:
-        """The columns (points, waves): forward, backward, and the near fields of the ends."""
-        k, middle = shape[0], (self.first + self.last) / 2
-        if self.complex:
-            turn = (1j * k + k * shape[1]) * (x - middle)
-            rows = [np.exp(-turn), np.exp(turn)]
-        else:
-            rows = [np.cos(k * (x - middle)), np.sin(k * (x - middle))]
-        if self.free_ends:
-            rows += [np.exp(-k * (x - self.first)), np.exp(-k * (self.last - x))]
-        found = np.stack(rows, axis=1)
-        if not self.drift:
-            return found
-        rate = shape[-2] + 1j * shape[-1] if self.complex else shape[-1]
-        return np.asarray(found * (1 + rate * (x - middle) / self.length)[:, None])
-
-    def columns(self, x: si.MetreArray, shape: si.FloatArray) -> tuple[si.Array, si.Array]:
-        """The columns and their derivatives by central differences of them."""
-        bent = []
-        for i in range(shape.size):
-            step = np.zeros(shape.size)
-            step[i] = 1e-6 * (shape[0] if i == 0 else 1.0)
-            above, below = self.waves(x, shape + step), self.waves(x, shape - step)
-            bent.append((above - below) / (2 * step[i]))
-        return self.waves(x, shape), np.stack(bent)
 
 
 def _recorded(recording: LineScan) -> tuple[si.MetreArray, si.Array]:
@@ -264,7 +219,7 @@ def _signed(size: si.FloatArray) -> si.FloatArray:
     return np.asarray(size * np.array(signs))
 
 
-def _wave_number(line: _Line, x: si.MetreArray, w: si.Array) -> float:
+def _wave_number(line: LineWaves, x: si.MetreArray, w: si.Array) -> float:
     """The wave number that leaves least, of an even row of them."""
     spacing = float(np.median(np.diff(x)))
     most = line.length / max(spacing, line.length / 2000) / _LEAST_PER_HALF
@@ -286,7 +241,7 @@ class _FittedLine:
     """A fit in its own numbers, to be read off."""
 
     recording: LineScan
-    line: _Line
+    line: LineWaves
     x: si.MetreArray
     w: si.Array
     fit: SeparableFit
@@ -336,6 +291,7 @@ class _FittedLine:
             phase_reversed=self.phase_reversed,
             by_points=False,
             offset=None,
+            face_over_line=1.0,
             adequacy=self.adequacy,
         )
         return found if self.adequacy.adequate else self._by_points(found)
