@@ -161,9 +161,10 @@ def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> tuple[C
         for layout in _layouts(count, drift):
             if best is not None and (best[0].correlation == 1.0 or since == _PATIENCE):
                 return best
-            more = _fitted(sweep, layout) or _one_more(sweep, layout, best)
-            if more is not None and (best is None or _better(more, best)):
-                best, since = more, 0
+            tried = [_fitted(sweep, layout), _one_more(sweep, layout, best)]
+            told = [one for one in tried if one is not None and (not best or _better(one, best))]
+            if told:
+                best, since = min(told, key=lambda one: one[0].left), 0
             else:
                 since += 1
     if best is None:
