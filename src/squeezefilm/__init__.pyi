@@ -337,8 +337,7 @@ if TYPE_CHECKING:
     def fit_recording(
         recording: NamedRecording | str | Path, display: NamedDisplay | str | Path | None = ...
     ) -> Fit:
-        """What goes with the kind of a recording: a circuit with an impedance, modes with a frequency"""
-
+        """What goes with the kind of a recording: a circuit with an impedance (constants of the"""
     def plan_study(
         design: NamedDesign | str | Path, participants: int = ..., seed: int = ...
     ) -> StudyPlan:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
 from squeezefilm.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.constants import (
     CeramicConstants,
@@ -71,6 +72,12 @@ def _start(sweep: ImpedanceSweep, bar: CeramicBar) -> si.FloatArray:
     square = ratio / (1 + ratio)
     low = slice(0, max(3, sweep.frequency.size // 20))
     capacitance = float(np.median(sweep.admittance.imag[low] / (2 * np.pi * sweep.frequency[low])))
+    if capacitance <= 0:
+        raise InputError(
+            "the sweep begins within the resonance, where the bar is no capacitor; begin it below "
+            f"{0.95 * series / 1e3:.4g} kHz",
+            quantity="admittance",
+        )
     unit = VACUUM_PERMITTIVITY * bar.length * bar.width / bar.thickness
     x = math.pi / 2 * float(sweep.frequency[low].mean()) / series
     permittivity = capacitance / unit / abs(1 - square + square * math.tan(x) / x)
