@@ -261,13 +261,13 @@ def correlation_time(residual: si.ComplexArray) -> float:
 
 def sweep_adequacy(fit: ComplexFit, frequency: si.HertzArray, model: str) -> Adequacy:
     """Whether a `model` ("The circuit of one branch") describes a sweep: see `adequacy_of`."""
-    floor = f"Noise falls no further below {fit.floor:.2g} S. " if fit.floor else ""
+    said = f"Below {fit.floor:.2g} S noise falls no further. " if fit.floor else ""
     return adequacy_of(
         fit.weighted,
         fit.residual,
         lambda i: f"at {si.format_quantity(frequency[i], si.Unit('Hz'), 4)}",
         model=model,
-        said=floor,
+        said=said,
         remedy="Find out why: another mode, a drift of the analyser, a fixture that was not "
         "compensated, or a drive so strong that the ceramic is no longer linear.",
     )

@@ -224,7 +224,7 @@ def test_an_instrument_without_ranges_is_fitted_by_its_own_noise() -> None:
         low, high = fit.strongest.series_resonance.interval
         held += low < np.exp(TRUTH[2]) < high
     assert held >= 34
-    assert "Noise falls no further" in fit.adequacy.sentence
+    assert "noise falls no further" in fit.adequacy.sentence
 
 
 def test_a_neighbour_under_such_noise_is_found_or_missed_aloud() -> None:
