@@ -27,6 +27,7 @@ from squeezefilm.measure.calibration.solved_answers import (
 )
 from squeezefilm.measure.calibration.written_display import calibrated_display, write_calibrated
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import Result, to_json
 
@@ -134,7 +135,7 @@ def folder_observations(
     """
     # Readers and fits are imported when there is something to read: some take a second.
     check = import_module("squeezefilm.measure.recordings.read").check_folder(folder)
-    fit_recording = import_module("squeezefilm.measure.fits.by_kind").fit_recording
+    by_kind = import_module("squeezefilm.measure.fits.by_kind")
     observations: list[Observation] = []
     recordings: list[UsedRecording] = []
     left_out = [f"{one.file.name}: {one.why}" for one in check.refused]
@@ -142,11 +143,13 @@ def folder_observations(
         name = one.file.name
         tell(f"fit of {name}")
         try:
-            fit = fit_recording(one.recording, display)
+            fit = by_kind.fit_recording(one.recording, display)
+            fit = by_kind.response_fit(fit) or fit
         except SqueezefilmError as error:
             left_out.append(f"{name}: {error}")
             continue
-        if not fit.adequacy.adequate:
+        # A friction curve is compared, not fitted: that it differs is what a calibration is for.
+        if not fit.adequacy.adequate and not isinstance(one.recording, FrictionCurve):
             left_out.append(f"{name}: {fit.adequacy.sentence}")
             continue
         used = [dataclasses.replace(seen, recording=name) for seen in fit.observations]

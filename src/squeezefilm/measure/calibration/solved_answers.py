@@ -6,6 +6,7 @@ depends on, so that a calibration that was stopped goes on, and a second one cos
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 from collections.abc import Mapping
@@ -144,16 +145,20 @@ def _of_plate(plate: RectangularPlate) -> Mapping[str, tuple[float, float]]:
     mode = solid_mode(plate)
     modes, at = mode.modes, mode.index
     error = mode.frequency_error / mode.frequency
-    try:
-        static = mode.response.equivalent_circuit().static_capacitance
-    except InputError:
-        static = math.nan
+    static, lossy = math.nan, 0.0
+    with contextlib.suppress(InputError):
+        circuit = mode.response.equivalent_circuit()
+        static = circuit.static_capacitance
+        # A bench reads the response's Q; the mode's is that of its energies, some 1 % beside it.
+        lossy = abs(circuit.quality_factor / mode.quality_factor - 1)
+    coupling = float(modes.couplings[at])
     return {
         "resonance_frequency": (mode.frequency, error),
         "parallel_resonance_frequency": (float(modes.open_frequencies[at]), error),
-        "coupling_coefficient": (float(modes.couplings[at]), 0.0),
+        # k² = 1 − (fs/fp)².
+        "coupling_coefficient": (coupling, error * (1 / coupling**2 - 1) if coupling else 0.0),
         "static_capacitance": (static, 0.0),
-        "quality_factor": (mode.quality_factor, 0.0),
+        "quality_factor": (mode.quality_factor, lossy),
         "amplitude_per_volt": (
             mode.amplitude_per_volt,
             mode.amplitude_error / mode.amplitude_per_volt,

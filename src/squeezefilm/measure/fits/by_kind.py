@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Annotated, Protocol, cast
+from types import ModuleType
+from typing import Annotated, Any, Protocol, cast
 
 from squeezefilm import quantities as si
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy, reads_text
 from squeezefilm.measure.fits.estimate import Adequacy, Observation
+from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.read import read_recording
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.modes import PlateModes
+from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.working import solid_mode
 
@@ -30,8 +33,17 @@ FITS: dict[type, tuple[str, str]] = {
     kinds.FrictionCurve: ("friction.friction_curve", "compare_friction_curve"),
 }
 
+CERAMICS: dict[type, tuple[str, str]] = {
+    CeramicBar: ("ceramic.bar", "bar_constants"),
+    CeramicDisc: ("ceramic.disc", "disc_constants"),
+}
+"""The same for a sweep of a bare ceramic, by its body."""
+
 _NEAR: si.Dimensionless = 0.1
 """How far from a scan's frequency (of it) modes may take part in what is seen."""
+_SAME: si.Dimensionless = 0.25
+"""How far from the solved resonance (of it) a line scan may still be of that mode: a solved plate
+is off by as much as its elastic constants and its glue."""
 # Shapes are much nearer than frequencies on one mesh.
 _TOLERANCE = 1e-2
 
@@ -53,12 +65,15 @@ class Fit(Protocol):
 
 @reads_text
 def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None) -> Fit:
-    """What goes with the kind of a recording: a circuit with an impedance, modes with a frequency
-    response, models of friction with a friction curve; a frozen dataclass whose numbers are
-    `Estimate`s, with its `adequacy` and the `observations` for a calibration.
+    """What goes with the kind of a recording: a circuit with an impedance (constants of the
+    material with that of a bare ceramic bar or disc, whose shape its description names), modes with
+    a frequency response, models of friction with a friction curve; a frozen dataclass whose numbers
+    are `Estimate`s, with its `adequacy` and the `observations` for a calibration.
 
-    A grid scan is compared with the solved shapes of a `display`, which no other kind needs. Raises
-    what `read_recording` raises, and `InputError` for a recording that its fit refuses.
+    A grid scan is compared with the solved shapes of a `display`, and needs one; a line scan that
+    is no even wave may be, a friction curve without a display of its own is taken for that
+    display's; no other kind is given it. Raises what `read_recording` raises, and `InputError` for
+    a recording that its fit refuses.
     """
     known = FITS.get(type(recording))
     if known is None:
@@ -66,11 +81,12 @@ def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None
             f"{type(recording).__name__} is no kind of recording; give the path of a file, or what "
             "read_recording returned"
         )
-    solved = _solved_near(recording, display) if isinstance(recording, kinds.GridScan) else None
-    module, name = known
+    body = recording.body if isinstance(recording, kinds.ImpedanceSweep) else None
+    module, name = known if body is None else CERAMICS[type(body)]
     fits = import_module(f"squeezefilm.measure.fits.{module}")
-    fit = getattr(fits, name)
-    return cast(Fit, fit(recording) if solved is None else fit(recording, fits.shapes_at(*solved)))
+    if body is not None:
+        return cast(Fit, getattr(fits, name)(recording, body))
+    return cast(Fit, getattr(fits, name)(recording, **_of_display(recording, display, fits)))
 
 
 def response_fit(fit: Fit) -> Fit | None:
@@ -80,17 +96,28 @@ def response_fit(fit: Fit) -> Fit | None:
     return fit_recording(response) if isinstance(response, kinds.FrequencyResponse) else None
 
 
-def _solved_near(
-    scan: kinds.GridScan, display: Display | None
-) -> tuple[PlateModes, si.MetreArray, si.MetreArray, tuple[si.Metre, si.Metre]]:
-    """A display's modes within a tenth of a scan's frequency, the scan's places, and the working
-    mode's largest lobe. Raises `InputError` without a display, or for one that is no plate."""
-    if display is None or not isinstance(display.actuator, RectangularPlate):
+def _of_display(
+    recording: kinds.Recording, display: Display | None, fits: ModuleType
+) -> dict[str, Any]:
+    """What a fit is given of the display, by name. Raises `InputError` for a grid scan without a
+    plate."""
+    if isinstance(recording, kinds.FrictionCurve):
+        return {"display": None if recording.display else display}
+    if not isinstance(recording, kinds.GridScan | kinds.LineScan):
+        return {}
+    plate = None if display is None else display.actuator
+    if isinstance(recording, kinds.LineScan) and not isinstance(plate, RectangularPlate):
+        return {}
+    if not isinstance(plate, RectangularPlate):
         raise InputError(
             "a grid scan is compared with a plate's solved shapes; name its display, a rectangular "
             "plate: --display biet2008-plate, or a TOML file",
             quantity="display",
         )
-    band = (scan.frequency * (1 - _NEAR), scan.frequency * (1 + _NEAR))
-    modes = solve_modes(display.actuator, band=band, tolerance=_TOLERANCE)
-    return modes, scan.x, scan.y, solid_mode(display.actuator).lobe
+    mode = solid_mode(plate)
+    if isinstance(recording, kinds.LineScan):
+        other = abs(recording.frequency / mode.frequency - 1) > _SAME
+        return {} if other else {"shape": DrivenShape.of(mode)}
+    band = (recording.frequency * (1 - _NEAR), recording.frequency * (1 + _NEAR))
+    modes = solve_modes(plate, band=band, tolerance=_TOLERANCE)
+    return {"shapes": fits.shapes_at(modes, recording.x, recording.y, DrivenShape.of(mode))}

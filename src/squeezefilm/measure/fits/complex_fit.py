@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -17,6 +17,7 @@ from scipy import optimize, stats
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
+from squeezefilm.measure.fits.misfit import adequacy_of
 
 Model = Callable[[si.FloatArray], tuple[si.ComplexArray, si.ComplexArray]]
 """Of parameters (p,): the curve (points,) and its derivatives (p, points)."""
@@ -24,15 +25,10 @@ Model = Callable[[si.FloatArray], tuple[si.ComplexArray, si.ComplexArray]]
 Weighing = Literal["relative", "absolute"]
 
 LEVEL = 0.95
-SMALL_MISFIT = 0.01
-"""Misfit beyond noise, of |data| on average, up to which a model is called adequate: what bench
-analysers and fixtures leave uncertain in the best of cases (assumed)."""
-
-ROUGH_MISFIT = 0.03
-"""Misfit up to which a model that is not adequate still gives its numbers roughly (assumed)."""
-
-_LARGE_MISFIT_SOMEWHERE = 0.06
 _PASSES = 3
+# A floor under relative noise must be told by this much (twice the logarithm of the likelihood).
+_EVIDENCE = 10.0
+_FLOORS = np.geomspace(3e-3, 3.0, 25)
 
 
 @dataclass(frozen=True)
@@ -46,21 +42,25 @@ class Prior:
 
 @dataclass(frozen=True, eq=False)
 class ComplexFit:
-    """A fitted curve: `parameters` (p,), `covariance` (p, p), the weighted `residual` (points,).
+    """A fitted curve: `parameters` (p,), `covariance` (p, p), the weighted `residual` and the
+    `weighted` data (points,).
 
-    `noise` is the standard deviation of a component of the residual that is left between
-    neighbouring points, `spread` that of the whole residual; `correlation` is by how much the
-    residual's smoothness multiplies variances (1 where it is as rough as noise).
-    `information` (p, p) is what the data say alone, without the prior.
+    `spread` is the standard deviation of a component of the residual; `correlation` is by how much
+    its smoothness multiplies variances (1 where it is as rough as noise); `left` is the residual
+    as it was recorded, in the geometric mean, by which fits are compared; `floor` is the size of
+    data below which noise falls no further, 0 where it was not told. `information` (p, p) is what
+    the data say alone, without the prior.
     """
 
     parameters: si.FloatArray
     covariance: si.FloatArray
     information: si.FloatArray
     residual: si.ComplexArray
-    noise: si.Dimensionless
+    weighted: si.ComplexArray
     spread: si.Dimensionless
     correlation: si.Dimensionless
+    left: float
+    floor: float
     degrees_of_freedom: int
 
     def estimate(
@@ -73,11 +73,6 @@ class ComplexFit:
         error = math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
         reach = error * float(stats.t.ppf((1 + LEVEL) / 2, self.degrees_of_freedom))
         return Estimate(best, error, (max(best - reach, least), best + reach), unit, LEVEL)
-
-    @property
-    def misfit(self) -> si.Dimensionless:
-        """The mean |residual| that noise does not explain."""
-        return float(np.sqrt(np.pi / 2 * max(self.spread**2 - self.noise**2, 0.0)))
 
 
 def gradient(
@@ -103,13 +98,14 @@ def fit_complex(
 ) -> ComplexFit:
     """Fit `model` to `data` (points,) from `start`.
 
-    Relative: every point's noise is the same share of |Y|, which is taken from the model and not
-    from the noisy data, since these would pull the fit down (the estimate solves its weighted
-    equations, as in generalised linear models). Absolute: the same noise everywhere. The noise is
-    estimated from the residual. Where neighbouring residuals are alike the model misses something:
-    variances are then multiplied by the residual's correlation time. Real and imaginary part are
-    taken as equally noisy and independent. Raises `InputError` for too few points,
-    `ConvergenceError` where no minimum is found.
+    Relative: every point's noise is the same share of |Y|, down to a floor where the residual tells
+    of one (`noise_floor`). |Y| is taken from the model and not from the noisy data, since these
+    would pull the fit down (the estimate solves its weighted equations, as in generalised linear
+    models). Absolute: the same noise everywhere. The noise is estimated from the residual. Where
+    neighbouring residuals are alike the model misses something: variances are then multiplied by
+    the residual's correlation time. Real and imaginary part are taken as equally noisy and
+    independent. Raises `InputError` for too few points, `ConvergenceError` where no minimum is
+    found.
     """
     count, points = start.size, data.size
     if 2 * points < count + 8:
@@ -121,13 +117,20 @@ def fit_complex(
     weight = np.full(points, 1 / np.mean(np.abs(data)))
     if weighing == "relative":
         weight = 1 / np.abs(data)
-    for _ in range(_PASSES if weighing == "relative" else 1):
+    floor = 0.0
+    for number in range(_PASSES if weighing == "relative" else 1):
         scale = _prior_scale(model, parameters, data, weight) if prior is not None else 1.0
         parameters = _minimum(model, parameters, data, weight, prior, scale)
         if weighing == "relative":
-            weight = 1 / np.abs(model(parameters)[0])
+            size = np.abs(model(parameters)[0])
+            # Once, so that the weights settle; not at last, so that they are fitted with.
+            if number == 0:
+                floor = noise_floor(data - model(parameters)[0], size)
+            weight = 1 / np.hypot(size, floor)
     curve, slopes = model(parameters)
-    return _fitted(parameters, (data - curve) * weight, slopes * weight, prior)
+    fit = _fitted(parameters, (data - curve) * weight, slopes * weight, prior)
+    left = fit.spread * float(np.exp(-np.mean(np.log(weight))))
+    return replace(fit, weighted=data * weight, left=left, floor=floor)
 
 
 def _stacked(values: si.ComplexArray) -> si.FloatArray:
@@ -202,22 +205,39 @@ def _fitted(
         covariance=covariance / np.outer(size, size),
         information=information,
         residual=residual,
-        noise=min(roughness(residual), spread),
+        weighted=np.empty(0, dtype=complex),
         spread=spread,
         correlation=correlation,
+        left=spread,
+        floor=0.0,
         degrees_of_freedom=max(int(freedom / correlation), 3),
     )
 
 
-def roughness(residual: si.ComplexArray) -> si.Dimensionless:
-    """The standard deviation of a component that second differences of neighbours leave: what is
-    smooth in a residual drops out. Median of squares, so that few outliers do not count."""
-    if residual.size < 3:
-        return 0.0
+def noise_floor(residual: si.ComplexArray, size: si.FloatArray) -> float:
+    """The size (as that of `size`, (points,)) below which noise falls no further: 0 for noise that
+    is the same share of every point's size, as far as the residual tells.
+
+    Noise of standard deviation s √(size² + floor²), by the likelihood of second differences of the
+    residual, in which what is smooth drops out. An instrument without ranges has a floor; one that
+    chooses its range at every point has none.
+    """
     second = residual[2:] - 2 * residual[1:-1] + residual[:-2]
-    # White noise of standard deviation s has second differences of √6 s; |complex|² over s² has
-    # a median of 2 ln 2.
-    return float(np.sqrt(np.median(np.abs(second) ** 2) / 6 / (2 * np.log(2))))
+    # Neighbouring differences share points: a third of them is independent.
+    rows = np.abs(second) ** 2
+    if rows.size < 8 or not np.all(size > 0) or not rows.any():
+        return 0.0
+    typical = float(np.mean(size))
+
+    def deviance(floor: float) -> float:
+        square = size**2 + floor**2
+        square = (square[2:] + 4 * square[1:-1] + square[:-2]) / 6
+        return float(2 / 3 * (np.sum(np.log(square)) + rows.size * np.log(np.mean(rows / square))))
+
+    floors = typical * _FLOORS
+    tried = [deviance(float(one)) for one in floors]
+    best = int(np.argmin(tried))
+    return float(floors[best]) if deviance(0.0) - tried[best] > _EVIDENCE else 0.0
 
 
 def correlation_time(residual: si.ComplexArray) -> float:
@@ -239,41 +259,15 @@ def correlation_time(residual: si.ComplexArray) -> float:
     return total
 
 
-def adequacy_of(fit: ComplexFit, frequency: si.HertzArray, what: str) -> Adequacy:
-    """Whether `what` (a circuit, a bar) describes the sweep: mean |ΔY|/|Y| beside what noise alone
-    would leave, and the frequency where it is worst."""
-    size = np.abs(fit.residual)
-    residual = float(np.mean(size))
-    noise = float(fit.noise * np.sqrt(np.pi / 2))
-    # The worst place of a smoothed residual: one outlier is no misfit.
-    window = min(5, size.size)
-    smooth = np.abs(np.convolve(fit.residual, np.ones(window) / window, mode="same"))
-    worst = int(np.argmax(smooth))
-    # Smoothing leaves noise too: what is above four of its standard deviations is no noise.
-    beyond = float(smooth[worst]) - 4 * fit.noise / np.sqrt(window)
-    adequate = fit.misfit <= SMALL_MISFIT and beyond <= _LARGE_MISFIT_SOMEWHERE
-    where = f"at {frequency[worst] / 1e3:.5g} kHz, by {100 * float(smooth[worst]):.2g} %"
-    left = (
-        f"{what} lies {100 * residual:.2g} % from the data on average; noise alone would leave "
-        f"{100 * noise:.2g} %."
+def sweep_adequacy(fit: ComplexFit, frequency: si.HertzArray, model: str) -> Adequacy:
+    """Whether a `model` ("The circuit of one branch") describes a sweep: see `adequacy_of`."""
+    said = f"Below {fit.floor:.2g} S noise falls no further. " if fit.floor else ""
+    return adequacy_of(
+        fit.weighted,
+        fit.residual,
+        lambda i: f"at {si.format_quantity(frequency[i], si.Unit('Hz'), 4)}",
+        model=model,
+        said=said,
+        remedy="Find out why: another mode, a drift of the analyser, a fixture that was not "
+        "compensated, or a drive so strong that the ceramic is no longer linear.",
     )
-    if adequate and fit.correlation == 1.0:
-        return Adequacy(True, residual, noise, where, f"{left} It describes the sweep.")
-    if adequate:
-        sentence = (
-            f"{left} What is left is not noise, but small (most {where}): the intervals are "
-            "widened for it."
-        )
-        return Adequacy(True, residual, noise, where, sentence)
-    if fit.misfit <= ROUGH_MISFIT and beyond <= 2 * _LARGE_MISFIT_SOMEWHERE:
-        sentence = (
-            f"{left} It describes the sweep only roughly (it misses most {where}): its resonances "
-            "can be used, the intervals are no bound."
-        )
-        return Adequacy(False, residual, noise, where, sentence)
-    sentence = (
-        f"{left} It does not describe the sweep: it misses most {where}. Do not use its numbers "
-        "before you know why: another mode, a drift of the analyser, a fixture that was not "
-        "compensated, or a drive so strong that the ceramic is no longer linear."
-    )
-    return Adequacy(False, residual, noise, where, sentence)

@@ -21,6 +21,13 @@ STRUCTURED = 4.0
 TOLERATED: si.Dimensionless = 0.01
 """A misfit of this share of what was recorded still counts as a description of it."""
 
+TOLERATED_SOMEWHERE: si.Dimensionless = 0.06
+"""... and so much of the largest, at five neighbouring points (assumed, as the next)."""
+
+ROUGH: si.Dimensionless = 0.03
+"""Up to this misfit a model that is not adequate still gives its numbers roughly."""
+
+_NEAR = 5
 _HOPELESS = 0.5
 _MOST_ALIKE = 0.98
 
@@ -65,12 +72,15 @@ def adequacy_of(
     *,
     remedy: str,
     said: str = "",
+    model: str = "The model",
 ) -> Adequacy:
-    """Whether a model describes `data` (points,), by what it leaves of them, in order.
+    """Whether a `model` describes `data` (points,), by what it leaves of them, in order.
 
-    `place` puts a point's number into words ("at 30.5 kHz"), `remedy` says what to do about a
-    misfit, `said` goes before all else. The misfit is what the residual has beyond noise; noise
-    is what differs between neighbours.
+    Both in the units of the fit: where every point counts by its own size, as in a sweep of
+    impedance, both are over that size. `place` puts a point's number into words ("at 30.5 kHz"),
+    `remedy` says what to do about a misfit, `said` goes before all else. The misfit is what the
+    residual has beyond noise; noise is what differs between neighbours. A misfit of five
+    neighbours is judged by itself, since a whole row hides it.
     """
     size = float(np.mean(np.abs(data))) or 1.0
     left = float(np.mean(np.abs(residual))) / size
@@ -79,31 +89,55 @@ def adequacy_of(
     noise = left * float(np.sqrt(max(1 - found.correlation, 0.0))) if structured else left
     misfit = float(np.sqrt(max(left**2 - noise**2, 0.0)))
     where = place(_worst(residual))
+    local = _beyond_noise(residual, noise * size) / (float(np.max(np.abs(data))) or 1.0)
+
+    def judged(adequate: bool, sentence: str) -> Adequacy:
+        return Adequacy(adequate, left, noise, where, said + sentence)
+
     if left > _HOPELESS:
-        sentence = (
-            f"The model leaves {si.percent(left)} of what was recorded undescribed, most of it "
-            f"{where}: its numbers mean nothing. {remedy}"
+        return judged(
+            False,
+            f"{model} leaves {si.percent(left)} of what was recorded undescribed, most of it "
+            f"{where}: its numbers mean nothing. {remedy}",
         )
-        return Adequacy(False, left, noise, where, said + sentence)
-    if structured and misfit > TOLERATED:
-        sentence = (
-            f"The model does not describe what was recorded: it is off by "
-            f"{si.percent(misfit, 1)} beyond noise, most {where}. Intervals are widened for it, "
-            f"which cannot make a wrong model right. {remedy}"
+    off = f"it is off by {si.percent(misfit, 1)} beyond noise, most {where}"
+    if local > TOLERATED_SOMEWHERE and misfit <= TOLERATED:
+        off = f"it is off by {si.percent(local, 1)} beyond noise {where}"
+    if (structured and misfit > TOLERATED) or local > TOLERATED_SOMEWHERE:
+        if misfit <= ROUGH and local <= 2 * TOLERATED_SOMEWHERE:
+            return judged(
+                False,
+                f"{model} describes what was recorded only roughly: {off}. Its numbers are good "
+                f"for a first look; the intervals are widened and are no bound. {remedy}",
+            )
+        return judged(
+            False,
+            f"{model} does not describe what was recorded: {off}. Intervals are widened for it, "
+            f"which cannot make a wrong model right. {remedy}",
         )
-        return Adequacy(False, left, noise, where, said + sentence)
-    sentence = f"The model leaves {si.percent(left, 2)} of what was recorded, as noise would"
+    sentence = f"{model} leaves {si.percent(left, 2)} of what was recorded, as noise would"
     if structured:
         sentence = (
-            f"The model describes what was recorded but for {si.percent(misfit, 2)} beyond noise, "
+            f"{model} describes what was recorded but for {si.percent(misfit, 2)} beyond noise, "
             f"most {where}; intervals are widened for it"
         )
-    return Adequacy(True, left, noise, where, said + sentence + ".")
+    return judged(True, sentence + ".")
+
+
+def _beyond_noise(residual: si.Array, noise: float) -> float:
+    """By how much the largest mean of five neighbours is beyond what noise of this mean size
+    makes of one: four of its standard deviations."""
+    if residual.size < _NEAR:
+        return 0.0
+    means = np.abs(np.convolve(residual, np.ones(_NEAR) / _NEAR, mode="valid"))
+    # A mean size tells the standard deviation of one component.
+    share = np.sqrt(2 / np.pi) if np.iscomplexobj(residual) else np.sqrt(np.pi / 2)
+    return float(means.max() - STRUCTURED * share * noise / np.sqrt(_NEAR))
 
 
 def _worst(residual: si.Array) -> int:
     """Where five residuals in a row are largest on average: a misfit, and not one odd point."""
     row = np.abs(residual)
-    if row.size < 5:
+    if row.size < _NEAR:
         return int(np.argmax(row))
-    return int(np.argmax(np.convolve(row, np.ones(5) / 5, mode="same")))
+    return int(np.argmax(np.convolve(row, np.ones(_NEAR) / _NEAR, mode="same")))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.description import (
     Column,
     Description,
@@ -18,6 +20,7 @@ from squeezefilm.measure.recordings.motions import moment_by_moment, motion_of, 
 from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.measure.recordings.rows import both_rows, require_rising, rising_order
+from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 
 _HZ, _S = si.Unit("Hz"), si.Unit("s")
 _PAIRS = (
@@ -77,7 +80,22 @@ def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
         value = 1 / value
     value = _corrected(reading, value)
     frequency, value = _rising(reading, "frequency", frequency, value)
-    return kinds.ImpedanceSweep(frequency, value, _told(reading))
+    return kinds.ImpedanceSweep(frequency, value, _told(reading), _ceramic(reading))
+
+
+def _ceramic(reading: Reading) -> CeramicBar | CeramicDisc | None:
+    """The bare ceramic that was swept, with a fact that says so; None for what is none."""
+    said: Any = reading.description.said
+    if said.bar is not None and said.disc is not None:
+        raise reading.description.error("a body is a bar or a disc; give one of them", ["disc"])
+    body: CeramicBar | CeramicDisc | None = said.bar or said.disc
+    if body is not None:
+        *sides, density = dataclasses.astuple(body)
+        shown = " × ".join(quantity(one, si.Unit("m")) for one in sides)
+        weight = quantity(density, si.Unit("kg/m3"))
+        name = "bar" if said.bar else "disc"
+        reading.facts.append(("body", f"a bare ceramic {name}, {shown}, {weight}"))
+    return body
 
 
 def _corrected(reading: Reading, value: si.ComplexArray) -> si.ComplexArray:

@@ -16,7 +16,9 @@ from squeezefilm.config.lines import locate
 from squeezefilm.config.scan import require_quick_toml
 from squeezefilm.errors import ConfigError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES, FINGER_SPEED, FORCE, FREQUENCY, PLACE
+from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.kinds import Told
+from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 from squeezefilm.regular_file import read_regular_text
 
 MOST_VOLTAGE: si.Volt = 1e4
@@ -99,10 +101,12 @@ class ImpedanceColumns:
 @si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedImpedance(Described):
-    """An impedance or admittance against frequency."""
+    """An impedance or admittance against frequency; of a bare ceramic where its shape is told."""
 
     kind: Literal["impedance"]
     columns: ImpedanceColumns | None = None
+    bar: CeramicBar | None = None
+    disc: CeramicDisc | None = None
     correct: Literal["phase 180 deg", "phase sign"] | None = None
 
 

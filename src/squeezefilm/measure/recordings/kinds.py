@@ -6,6 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from squeezefilm import quantities as si
+from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
+from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 
 
 @dataclass(frozen=True)
@@ -27,11 +29,13 @@ class Told:
 
 @dataclass(frozen=True, eq=False)
 class ImpedanceSweep:
-    """Admittance (S, complex, time factor e^{iωt}) at rising `frequency` (Hz), both (points,)."""
+    """Admittance (S, complex, time factor e^{iωt}) at rising `frequency` (Hz), both (points,);
+    `body` is the bare ceramic that was swept, where it is told to be one."""
 
     frequency: si.HertzArray
     admittance: si.ComplexArray
     told: Told = field(default_factory=Told)
+    body: CeramicBar | CeramicDisc | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,9 +71,9 @@ def modelled(check: RecordingCheck, fit: Fit) -> Modelled | None:
     """
     recording, told = check.recording, cast(Any, fit)
     if isinstance(recording, kinds.ImpedanceSweep) and hasattr(told, "admittance"):
-        f, y = recording.frequency, recording.admittance
-        labels = ("frequency (kHz)", "|Y| (mS)")
-        return Modelled(f / 1e3, 1e3 * y, 1e3 * told.admittance(f), *labels, relative=True)
+        return _admittances(recording, told.admittance(recording.frequency))
+    if isinstance(recording, kinds.ImpedanceSweep) and recording.body is not None:
+        return _admittances(recording, told.model)
     model, residual = getattr(told, "model", None), getattr(told, "residual", None)
     if not isinstance(model, np.ndarray) or not isinstance(residual, np.ndarray):
         return None
@@ -86,6 +86,13 @@ def modelled(check: RecordingCheck, fit: Fit) -> Modelled | None:
             data = scale * (model + residual)
             return Modelled(x_scale * x, data, scale * model, x_label, y_label)
     return None
+
+
+def _admittances(sweep: kinds.ImpedanceSweep, model: si.ComplexArray) -> Modelled:
+    labels = ("frequency (kHz)", "|Y| (mS)")
+    return Modelled(
+        sweep.frequency / 1e3, 1e3 * sweep.admittance, 1e3 * model, *labels, relative=True
+    )
 
 
 @style.drawn

@@ -9,7 +9,9 @@ import pytest
 
 from squeezefilm.errors import InputError
 from squeezefilm.materials import VACUUM_PERMITTIVITY
-from squeezefilm.measure.fits.ceramic.bar import BarConstants, CeramicBar, bar_constants
+from squeezefilm.measure.fits.ceramic.bar import BarConstants, bar_constants
+from squeezefilm.measure.fits.ceramic.constants import CeramicConstants, resonance_peaks
+from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 
 BAR = CeramicBar(12e-3, 3e-3, 1e-3, 7850.0)
@@ -61,7 +63,32 @@ def test_intervals_hold_them_under_noise() -> None:
 
 def test_the_curve_is_the_one_that_was_fitted() -> None:
     sweep = bar_sweep()
-    assert bar_constants(sweep, BAR).admittance == pytest.approx(sweep.admittance, rel=1e-7)
+    assert bar_constants(sweep, BAR).model == pytest.approx(sweep.admittance, rel=1e-7)
+
+
+def test_losses_push_the_extremes_of_the_admittance_apart_and_not_the_fitted_coupling() -> None:
+    """What the formula of a body without losses makes of the extremes, as sheets have it."""
+
+    def by_extremes(found: BarConstants) -> float:
+        size = np.abs(found.model)
+        low, high = FREQUENCY[np.argmax(size)], FREQUENCY[np.argmin(size)]
+        ratio = math.pi / 2 * high / low * math.tan(math.pi / 2 * (high / low - 1))
+        return math.sqrt(ratio / (1 + ratio))
+
+    found = bar_constants(bar_sweep(), BAR)
+    assert 1.005 < by_extremes(found) / found.coupling_31.value < 1.02
+
+
+def test_bar_and_disc_share_their_constants_and_the_residual_is_the_datas() -> None:
+    sweep = bar_sweep(0.01)
+    found = bar_constants(sweep, BAR)
+    assert isinstance(found, CeramicConstants)
+    assert found.model + found.residual == pytest.approx(sweep.admittance)
+    assert resonance_peaks(sweep).conductance_frequency == pytest.approx(128e3, rel=0.01)
+    # Swept from above the resonance on, it begins as a coil.
+    above = ImpedanceSweep(FREQUENCY[200:], sweep.admittance[200:])
+    with pytest.raises(InputError, match="begins within the resonance"):
+        bar_constants(above, BAR)
 
 
 def test_what_is_no_bar_and_what_is_no_resonance_are_refused() -> None:

@@ -5,18 +5,22 @@ from __future__ import annotations
 
 import sys
 import typing
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from tests.unit.measure.recordings.bench_files import impedance_text, written
+from tests.unit.measure.recordings.bench_files import IMPEDANCE, impedance_text, written
 
 import squeezefilm as sf
-from squeezefilm.errors import InputError
+from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.measure.fits.by_kind import FITS, fit_recording, response_fit
 from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
+from squeezefilm.measure.recordings.read import check_recording
+from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 
 
 def stand_in(monkeypatch: pytest.MonkeyPatch, module: str, **functions: Any) -> None:
@@ -62,7 +66,7 @@ def test_a_grid_scan_meets_the_solved_modes_near_its_frequency(
     stand_in(
         monkeypatch,
         "vibration.grid_scan",
-        shapes_at=lambda modes, x, y, lobe: (modes, x, y, lobe),
+        shapes_at=lambda modes, x, y, driven: (modes, x, y, driven.lobe),
         fit_grid_scan=lambda scan, shapes: shapes,
     )
     found: Any = fit_recording(SCAN, "biet2008-plate")
@@ -71,6 +75,49 @@ def test_a_grid_scan_meets_the_solved_modes_near_its_frequency(
     assert (8, 0) in modes.labels
     assert np.all(np.abs(modes.frequencies / SCAN.frequency - 1) <= 0.1)
     assert 0 < lobe[0] < 0.083
+
+
+def test_a_bare_ceramic_is_fitted_by_its_shape(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    stand_in(monkeypatch, "circuit.impedance", fit_impedance=lambda sweep: "a circuit")
+    stand_in(monkeypatch, "ceramic.bar", bar_constants=lambda sweep, bar: bar)
+    stand_in(monkeypatch, "ceramic.disc", disc_constants=lambda sweep, disc: disc)
+    bar = '[bar]\nlength = "12 mm"\nwidth = "3 mm"\nthickness = "1 mm"\ndensity = "7850 kg/m3"\n'
+    disc = '[disc]\ndiameter = "35 mm"\nthickness = "2 mm"\ndensity = "7743 kg/m3"\n'
+    text = impedance_text()
+    assert fit_recording(written(tmp_path, text)) == "a circuit"
+    for name, table, body in (
+        ("bar", bar, CeramicBar(12e-3, 3e-3, 1e-3, 7850.0)),
+        ("disc", disc, CeramicDisc(35e-3, 2e-3, 7743.0)),
+    ):
+        path = written(tmp_path, text, IMPEDANCE + table, f"{name}.csv")
+        found: Any = fit_recording(path)
+        assert found == body
+        facts = dict(check_recording(path).facts)
+        assert facts["body"].startswith(f"a bare ceramic {name}, {1e3 * body.thickness:g}"[:20])
+    both = written(tmp_path, text, IMPEDANCE + bar + disc, "both.csv")
+    with pytest.raises(ConfigError, match="a bar or a disc; give one"):
+        fit_recording(both)
+
+
+def test_a_line_scan_is_given_the_shape_of_a_plate_and_a_curve_its_display(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    stand_in(monkeypatch, "vibration.line_scan", fit_line_scan=lambda scan, shape=None: shape)
+    stand_in(
+        monkeypatch,
+        "friction.friction_curve",
+        compare_friction_curve=lambda curve, display=None: display,
+    )
+    scan = kinds.LineScan(np.linspace(0, 0.08, 30), np.ones(30) + 0j, 33.6e3)
+    assert fit_recording(scan) is None
+    assert fit_recording(scan, "biet2008-stator") is None
+    one = np.ones(1)
+    curve = kinds.FrictionCurve(one, one, one, 33.6e3, 0.5, 0.06)
+    found: Any = fit_recording(curve, "biet2008-stator")
+    assert found.name == "biet2008-stator"
+    assert fit_recording(replace(curve, display="biet2008-plate"), "biet2008-stator") is None
 
 
 def test_signals_are_fitted_by_the_response_that_they_give(

@@ -74,8 +74,8 @@ def test_a_curve_of_the_default_is_described(compared: CurveComparison) -> None:
     assert found.nearest.model == found.default.model
     assert found.adequacy.adequate
     assert "within its spread" in found.adequacy.sentence
-    assert len(found.observations) == 9
-    first = found.observations[3]
+    assert len(found.observations) == 8
+    first = found.observations[2]
     assert (first.answer, first.standard_error) == ("relative_friction", 0.02)
     assert first.conditions["vibration_amplitude"] == AMPLITUDE[3]
 

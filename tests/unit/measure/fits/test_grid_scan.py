@@ -5,6 +5,7 @@ import pytest
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan, shapes_at
 from squeezefilm.measure.recordings.kinds import GridScan
 from squeezefilm.plate.solid.solve import solve_modes
@@ -31,7 +32,7 @@ def test_the_papers_mode_is_told_from_its_neighbours() -> None:
     w = 15 * response.motion(at, x, y).ravel()
     places = [one.ravel() for one in np.meshgrid(x, y, indexing="ij")]
     recording = GridScan(*places, noisy(w), mode.resonance_frequency, 15.0)
-    fit = fit_grid_scan(recording, shapes_at(modes, *places, mode.lobe))
+    fit = fit_grid_scan(recording, shapes_at(modes, *places, DrivenShape.of(mode.solid)))
     assert fit.label.startswith("(8,0)")
     assert fit.likeness[fit.label] > 0.95
     assert max(value for name, value in fit.likeness.items() if name != fit.label) < 0.3
@@ -40,7 +41,7 @@ def test_the_papers_mode_is_told_from_its_neighbours() -> None:
     assert fit.observations[0].answer == "amplitude_per_volt"
     # A neighbour, scanned, is called by its own name.
     other = next(i for i, label in enumerate(modes.labels) if label == (8, 1))
-    shapes = shapes_at(modes, *places, mode.lobe)
+    shapes = shapes_at(modes, *places, DrivenShape.of(mode.solid))
     scan = GridScan(*places, noisy(1e-6 * list(shapes.values())[other] + 0j), 34.7e3)
     found = fit_grid_scan(scan, shapes)
     assert found.label.startswith("(8,1)")

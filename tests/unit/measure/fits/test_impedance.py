@@ -48,7 +48,9 @@ def test_a_circuit_is_found_and_its_numbers_belong_together() -> None:
     assert fp / fs == pytest.approx(np.sqrt(1 + C / fit.static_capacitance.value))
     assert branch.coupling_coefficient.value == pytest.approx(np.sqrt(1 - (fs / fp) ** 2))
     names = {one.answer for one in fit.observations}
-    assert {"resonance_frequency", "parallel_resonance_frequency", "coupling_coefficient"} <= names
+    assert {"resonance_frequency", "parallel_resonance_frequency", "quality_factor"} <= names
+    # It follows from the two resonances.
+    assert "coupling_coefficient" not in names
     assert fit.circuit.frequency == fs
     assert fit.admittance(FREQUENCY) == pytest.approx(PLAIN.admittance, rel=0.02)
 
@@ -207,3 +209,37 @@ def test_the_parallel_resonance_lies_between_two_branches() -> None:
     for at in (first, second):
         y = circuit_curve(Layout(2), lossless, np.array([at, 1.001 * at]))[0]
         assert abs(y[0]) < 1e-6 * abs(y[1])
+
+
+def test_an_instrument_without_ranges_is_fitted_by_its_own_noise() -> None:
+    """The same noise everywhere, 1 % of the top: at the parallel resonance 100 % of the curve."""
+    held = 0
+    for seed in range(40):
+        random = np.random.default_rng(seed).standard_normal((2, FREQUENCY.size))
+        curve = circuit_curve(Layout(1), TRUTH, FREQUENCY)[0]
+        noise = 0.01 * np.abs(curve).max() / np.sqrt(2) * (random[0] + 1j * random[1])
+        fit = fit_impedance(ImpedanceSweep(FREQUENCY, curve + noise))
+        assert len(fit.branches) == 1
+        assert fit.adequacy.adequate
+        low, high = fit.strongest.series_resonance.interval
+        held += low < np.exp(TRUTH[2]) < high
+    assert held >= 34
+    assert "noise falls no further" in fit.adequacy.sentence
+
+
+def test_a_neighbour_under_such_noise_is_found_or_missed_aloud() -> None:
+    """One that adds 6 % of the top, in the noise of 1 %."""
+    curve = circuit_curve(Layout(1), TRUTH, FREQUENCY)[0]
+    log_frequency, log_quality, log_capacitance = TRUTH[2:5]
+    other = [TRUTH[0], 0.0, log_frequency - 0.04, log_quality, log_capacitance + np.log(0.06)]
+    held = circuit_curve(Layout(1), np.array([TRUTH[0] - 30, *other[1:]]), FREQUENCY)[0]
+    random = np.random.default_rng(3).standard_normal((2, FREQUENCY.size))
+    noise = 0.01 * np.abs(curve).max() / np.sqrt(2) * (random[0] + 1j * random[1])
+    fit = fit_impedance(ImpedanceSweep(FREQUENCY, curve + held + noise))
+    assert len(fit.branches) == 2
+    assert fit.adequacy.adequate
+    assert fit.branches[0].series_resonance.value == pytest.approx(
+        np.exp(log_frequency - 0.04), rel=2e-3
+    )
+    one = fit_impedance(ImpedanceSweep(FREQUENCY, curve + held + noise), branches=1)
+    assert not one.adequacy.adequate

@@ -57,3 +57,37 @@ def test_a_slight_misfit_is_tolerated_and_said() -> None:
     said = adequacy_of(np.ones(200), residual, place, remedy="")
     assert said.adequate
     assert "intervals are widened" in said.sentence
+
+
+def test_what_a_few_neighbours_show_is_not_lost_in_a_long_row() -> None:
+    """A second mode of 20 points in 2000: 0.2 % of the row on average, 20 % where it is."""
+    random = np.random.default_rng(8)
+    noise = 0.02 * (random.standard_normal(2000) + 1j * random.standard_normal(2000))
+    row = np.arange(2000)
+    second = 0.2 * np.exp(-(((row - 700) / 8) ** 2))
+    fine = adequacy_of(np.ones(2000), noise, lambda i: f"at {i}", remedy="")
+    missed = adequacy_of(np.ones(2000), noise + second, lambda i: f"at {i}", remedy="Look.")
+    assert fine.adequate
+    assert not missed.adequate
+    assert abs(int(missed.where.split()[1]) - 700) < 10
+    assert "Look." in missed.sentence
+
+
+def test_noise_alone_is_hardly_ever_called_a_misfit_and_one_odd_point_is_none() -> None:
+    random = np.random.default_rng(9)
+    bad = 0
+    for _ in range(400):
+        noise = 0.15 * random.standard_normal(160)
+        bad += not adequacy_of(np.ones(160), noise, lambda i: "", remedy="").adequate
+    assert bad <= 2
+    odd = 0.01 * random.standard_normal(160)
+    odd[40] = 0.2
+    assert adequacy_of(np.ones(160), odd, lambda i: "", remedy="").adequate
+
+
+def test_a_model_that_is_off_by_little_is_good_for_a_first_look_only() -> None:
+    random = np.random.default_rng(10)
+    residual = 0.03 * np.sin(X) + 0.002 * random.standard_normal(200)
+    said = adequacy_of(np.ones(200), residual, place, remedy="", model="The circuit")
+    assert not said.adequate
+    assert said.sentence.startswith("The circuit describes what was recorded only roughly")

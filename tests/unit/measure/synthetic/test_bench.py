@@ -7,6 +7,7 @@ import pytest
 
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
+from squeezefilm.measure.calibration.folder import folder_observations
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
@@ -15,6 +16,7 @@ from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.synthetic.bench import SyntheticBench, synthetic_bench
 from squeezefilm.measure.synthetic.files import write_synthetic_bench, write_truth
 from squeezefilm.measure.synthetic.truth import SyntheticOptions, SyntheticTruth, drawn_truth
+from squeezefilm.plate.working_mode import working_mode
 
 
 @pytest.fixture(scope="module")
@@ -113,3 +115,27 @@ def test_a_solved_plate_has_every_kind_and_a_fixture_that_no_model_has() -> None
     fit = fit_frequency_response(response)
     assert fit.phase_reversed
     assert len(fit.modes) >= 2
+
+
+@pytest.mark.slow
+def test_every_vibration_of_a_default_bench_is_adequate_and_near_the_truth(tmp_path) -> None:
+    """What a calibration takes of it: by the described display, which is not the drawn one."""
+    display = load_display("biet2008-plate")
+    bench = synthetic_bench(display, 1)
+    names = [name for name in bench.recordings if not name.startswith("friction")]
+    kept = {name: bench.recordings[name] for name in names}
+    write_synthetic_bench(tmp_path, SyntheticBench(kept, bench.truth))
+    observed, left_out = folder_observations(display, tmp_path, lambda _: None)
+    assert left_out == ()
+    true = working_mode(bench.truth.display.actuator)
+    assert true.solid is not None
+    allowed = {
+        "resonance_frequency": (true.resonance_frequency, 5e-4),
+        "amplitude_per_volt": (true.amplitude_per_volt, 0.02),
+        "half_wavelength": (true.half_wavelength, 2e-3),
+        "quality_factor": (true.quality_factor, 0.03),
+    }
+    for answer, (value, share) in allowed.items():
+        found = [one.value for one in observed if one.answer == answer]
+        assert found, answer
+        assert found == pytest.approx([value] * len(found), rel=share), answer

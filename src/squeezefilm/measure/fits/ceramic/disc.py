@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -12,9 +12,14 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.ceramic_prior import PARAMETERS, ceramic_prior, compliances
-from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, adequacy_of, fit_complex
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.sweep_reading import require_passive, sweep_peaks
+from squeezefilm.measure.fits.ceramic.constants import (
+    CeramicConstants,
+    constants_of,
+    resonance_peaks,
+)
+from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, fit_complex
+from squeezefilm.measure.fits.estimate import Estimate
+from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
 
@@ -34,36 +39,21 @@ class Combination:
 
 
 @dataclass(frozen=True, eq=False)
-class DiscConstants:
-    """What the sweep of a disc's first radial mode says of its ceramic.
+class DiscConstants(CeramicConstants):
+    """What the sweep of a disc's first radial mode says of its ceramic: `CeramicConstants`, s12 at
+    constant field (m²/N), Poisson's ratio −s12/s11, and the planar coupling.
 
-    s11 and s12 at constant field (m²/N), Poisson's ratio −s12/s11, d31 (m/V, by convention
-    negative), relative ε33 at constant stress, the Q of s11, loss tangents of d31 and ε33.
     `from_data` is, for every one of `PARAMETERS`, by how much the sweep narrowed its standard
     deviation (1: only the prior speaks). `mean_misfit` is mean |ΔY| / mean |Y|.
     """
 
     disc: CeramicDisc
-    compliance_11: Estimate
     compliance_12: Estimate
     poisson_ratio: Estimate
-    charge_coefficient_31: Estimate
-    free_permittivity_33: Estimate
     planar_coupling: Estimate
-    quality_factor: Estimate
-    charge_loss: Estimate
-    dielectric_loss: Estimate
     from_data: dict[str, float]
     combinations: tuple[Combination, ...]
     mean_misfit: si.Dimensionless
-    admittance: si.ComplexArray
-    adequacy: Adequacy
-    fit: ComplexFit
-
-    @property
-    def observations(self) -> tuple[Observation, ...]:
-        """None: constants of a material are no answers of a display."""
-        return ()
 
 
 def disc_constants(
@@ -98,25 +88,15 @@ def disc_constants(
         square = math.exp(2 * p[2] - p[0] - p[3]) / VACUUM_PERMITTIVITY
         return math.sqrt(2 * square / (1 - p[1]))
 
-    charge = fit.estimate(lambda p: math.exp(p[2]), "m/V")
-    low, high = charge.interval
     return DiscConstants(
+        **constants_of(fit, sweep, fitted, (0, 2, 3, 4, 5, 6), "The solved disc"),
         disc=disc,
-        compliance_11=fit.estimate(lambda p: math.exp(p[0]), "m2/N"),
         compliance_12=fit.estimate(lambda p: -float(p[1]) * math.exp(p[0]), "m2/N"),
         poisson_ratio=fit.estimate(lambda p: float(p[1]), "1"),
-        charge_coefficient_31=replace(charge, value=-charge.value, interval=(-high, -low)),
-        free_permittivity_33=fit.estimate(lambda p: math.exp(p[3]), "1"),
         planar_coupling=fit.estimate(coupling, "1"),
-        quality_factor=fit.estimate(lambda p: 1 / float(p[4]), "1"),
-        charge_loss=fit.estimate(lambda p: float(p[5]), "1"),
-        dielectric_loss=fit.estimate(lambda p: float(p[6]), "1"),
         from_data=dict(zip(PARAMETERS, (spread / prior.spread).tolist(), strict=True)),
         combinations=combinations(fit, prior),
         mean_misfit=float(miss),
-        admittance=fitted,
-        adequacy=adequacy_of(fit, sweep.frequency, "The solved disc"),
-        fit=fit,
     )
 
 
@@ -161,15 +141,8 @@ def _start(sweep: ImpedanceSweep, disc: CeramicDisc, prior: Prior) -> si.FloatAr
     standard 176-1987, figure of the planar coupling, a fit to it), enough to start from.
     """
     p = prior.mean.copy()
-    peaks = sweep_peaks(sweep)
+    peaks = resonance_peaks(sweep)
     series, parallel = peaks.conductance_frequency, peaks.resistance_frequency
-    if not series < parallel:
-        raise InputError(
-            f"the largest resistance ({parallel / 1e3:.5g} kHz) is not above the largest "
-            f"conductance ({series / 1e3:.5g} kHz); give a sweep that holds the first radial mode "
-            "and the parallel resonance above it",
-            quantity="admittance",
-        )
     velocity = math.pi * series * disc.diameter / 2.06
     s11 = 1 / (disc.density * velocity**2 * (1 - p[1] ** 2))
     apart = parallel / series - 1

@@ -18,7 +18,7 @@ from squeezefilm.measure.fits.circuit.branches import (
     relative_motion,
     start_at,
 )
-from squeezefilm.measure.fits.complex_fit import ComplexFit, adequacy_of, fit_complex
+from squeezefilm.measure.fits.complex_fit import ComplexFit, fit_complex, sweep_adequacy
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
@@ -115,14 +115,14 @@ class ImpedanceFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use of the strongest branch."""
+        """What a calibration may use of the strongest branch; the coupling follows from the two
+        resonances and would count them twice."""
         branch = self.strongest
         return tuple(
             Observation(answer, estimate.value, estimate.standard_error)
             for answer, estimate in (
                 ("resonance_frequency", branch.series_resonance),
                 ("parallel_resonance_frequency", branch.parallel_resonance),
-                ("coupling_coefficient", branch.coupling_coefficient),
                 ("quality_factor", branch.quality_factor),
                 ("static_capacitance", self.static_capacitance),
             )
@@ -138,12 +138,12 @@ def fit_impedance(
     information criterion falls by more than 10, at most 8; a loss of the coupling itself is asked
     for in the same way, and after it a branch that softens and loses more the farther it moves, by
     the square of its motion (for a sweep at one voltage). `drift` fits a complex gain that changes
-    in proportion to the point's number too; a resonance that drifts during the sweep cannot be
-    told from another Q. All points have the same relative noise, which is estimated from the data;
-    missing points do no harm. Intervals are of 95 %, to first order in the noise; where the circuit
-    misses something they are widened by how alike neighbouring residuals are, which is no bound.
-    Raises `InputError` for a sweep that no passive capacitive body has (a phase that is off by 180°
-    or has the wrong sign), that holds no resonance, or is too short.
+    in proportion to the point's number too; a resonance that drifts during the sweep cannot be told
+    from another Q. Noise is relative, down to a floor where the data tell of one, and estimated
+    from them; missing points do no harm. Intervals are of 95 %, to first order in the noise; where
+    the circuit misses something they are widened by how alike neighbouring residuals are, which is
+    no bound. Raises `InputError` for a sweep that no passive capacitive body has (a phase that is
+    off by 180° or has the wrong sign), that holds no resonance, or is too short.
     """
     require_passive(sweep)
     if branches is not None:
@@ -161,9 +161,10 @@ def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> tuple[C
         for layout in _layouts(count, drift):
             if best is not None and (best[0].correlation == 1.0 or since == _PATIENCE):
                 return best
-            more = _fitted(sweep, layout)
-            if more is not None and (best is None or _better(more, best)):
-                best, since = more, 0
+            tried = [_fitted(sweep, layout), _one_more(sweep, layout, best)]
+            told = [one for one in tried if one is not None and (not best or _better(one, best))]
+            if told:
+                best, since = min(told, key=lambda one: one[0].left), 0
             else:
                 since += 1
     if best is None:
@@ -186,9 +187,13 @@ def _better(more: tuple[ComplexFit, Layout], best: tuple[ComplexFit, Layout]) ->
         if np.any(np.sqrt(np.diag(fit.covariance)[layout.branch(k)]) > _TOLD_APART):
             return False
     rows = 2 * more[0].residual.size
-    fall = rows * math.log(best[0].spread ** 2 / more[0].spread ** 2)
+    fall = rows * math.log(best[0].left ** 2 / more[0].left ** 2)
     fall -= (more[1].size - best[1].size) * math.log(rows)
-    return fall > _EVIDENCE and more[0].spread < _LESS_LEFT * best[0].spread
+    explains = more[0].left < _LESS_LEFT * best[0].left
+    # Under much noise a neighbour takes less, and leaves nothing but noise.
+    if layout.branches > best[1].branches:
+        explains |= more[0].correlation == 1.0
+    return fall > _EVIDENCE and explains
 
 
 def _no_resonance(sweep: ImpedanceSweep, branches: int) -> InputError:
@@ -202,13 +207,37 @@ def _no_resonance(sweep: ImpedanceSweep, branches: int) -> InputError:
     )
 
 
-def _fitted(sweep: ImpedanceSweep, layout: Layout) -> tuple[ComplexFit, Layout] | None:
-    """The fit of a layout, branches rising in frequency; None where there are not so many."""
+def _one_more(
+    sweep: ImpedanceSweep, layout: Layout, best: tuple[ComplexFit, Layout] | None
+) -> tuple[ComplexFit, Layout] | None:
+    """A branch more than the best fit has, where that leaves most: poles of all the sweep do not
+    find a small one under noise."""
+    if best is None or layout.branches != best[1].branches + 1:
+        return None
+    rows = [best[0].parameters[best[1].branch(k)] for k in range(best[1].branches)]
+    own, quality = np.exp(np.array(rows)[:, :2]).T
+    width = max(sweep.frequency.size // 16, 3)
+    left = np.convolve(best[0].residual.real, np.ones(width) / width, mode="same")
+    there = float(sweep.frequency[int(np.argmax(left))])
+    more = np.append(own, there), np.append(quality, float(np.median(quality)))
+    order = np.argsort(more[0])
+    return _fitted(sweep, layout, more[0][order], more[1][order])
+
+
+def _fitted(
+    sweep: ImpedanceSweep,
+    layout: Layout,
+    own: si.HertzArray | None = None,
+    quality: si.DimensionlessArray | None = None,
+) -> tuple[ComplexFit, Layout] | None:
+    """The fit of a layout, branches rising in frequency, from frequencies (Hz) and Q of branches or
+    from the poles of the sweep; None where there are not so many."""
     f, y, count = sweep.frequency, sweep.admittance, layout.branches
     if 2 * y.size < layout.size + 8:
         return None
-    own, quality = _starts(f, y, count)
     if own is None:
+        own, quality = _starts(f, y, count)
+    if own is None or quality is None:
         return None
     start = start_at(layout, f, y, own, quality)
     motion = _motion(sweep, start)
@@ -288,7 +317,7 @@ def _told(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> ImpedanceFi
         ),
         softening=_softening(fit, layout) if layout.softening else None,
         drift=complex(p[-2], p[-1]) if layout.drift else None,
-        adequacy=adequacy_of(fit, sweep.frequency, what),
+        adequacy=sweep_adequacy(fit, sweep.frequency, what),
         layout=layout,
         fit=fit,
         frequency=sweep.frequency,

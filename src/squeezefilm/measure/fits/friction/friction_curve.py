@@ -14,7 +14,7 @@ from squeezefilm.analysis.uncertainty import FrictionBand, friction_band
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
 from squeezefilm.chain.prediction import predict
-from squeezefilm.display import load_display
+from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.measure.fits.estimate import Adequacy, Observation
 from squeezefilm.measure.recordings.kinds import FrictionCurve
@@ -77,7 +77,8 @@ class CurveComparison:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """Each measured point, for a calibration; none where its spread is not known."""
+        """Each measured point, for a calibration, but one without vibration (µ′/µ is 1 by its
+        meaning); none where its spread is not known."""
         c = self.curve
         return tuple(
             Observation(
@@ -93,7 +94,7 @@ class CurveComparison:
             for amplitude, friction, spread in zip(
                 c.vibration_amplitude, c.relative_friction, c.spread, strict=True
             )
-            if spread > 0
+            if spread > 0 and amplitude > 0
         )
 
     def summary(self) -> dict[str, Any]:
@@ -131,23 +132,23 @@ class CurveComparison:
 
 
 def compare_friction_curve(
-    curve: FrictionCurve, progress: SayProgress | None = None
+    curve: FrictionCurve, progress: SayProgress | None = None, display: Display | None = None
 ) -> CurveComparison:
     """A measured curve beside every model of friction at its frequency, force and speed, on the
-    display that it names; nothing is fitted.
+    `display` that was given, or the one that it names; nothing is fitted.
 
     The interval is that of `friction_band`: 90 % of draws over parameters, laws and mechanisms.
     Raises `InputError` for a curve without a display, and what `predict` raises for its display at
     its largest amplitude.
     """
-    if not curve.display:
+    if display is None and not curve.display:
         raise InputError(
             f"the friction curve '{curve.told.name}' names no display; write display = \"…\" into "
             "its description: a preset, or a TOML file that describes plate, surface and finger",
             quantity="display",
         )
     tell = progress or (lambda _: None)
-    display = load_display(curve.display)
+    display = load_display(curve.display) if display is None else display
     tell(f"{curve.told.name}: the working mode of {display.name}")
     amplitude = curve.vibration_amplitude
     prediction = predict(

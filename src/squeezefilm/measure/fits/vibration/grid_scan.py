@@ -14,6 +14,7 @@ from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+from squeezefilm.measure.fits.vibration.driven_shape import REST, DrivenShape
 from squeezefilm.measure.recordings.kinds import GridScan
 from squeezefilm.plate.solid.modes import PlateModes
 
@@ -76,11 +77,11 @@ def fit_grid_scan(
 
     `shapes` by their labels, each (points,), relative motion at the scan's places with 1 where the
     amplitude is asked for (the best antinode): `shapes_at` takes them from solved modes, as many
-    neighbours as may take part (of two that the places cannot tell apart the one more alike the
-    scan). MAC = |φᴴw|²/(φᴴφ wᴴw) (Allemang 2003, Sound and Vibration 37(8)
-    14); amplitudes are least squares of all shapes together. With `drift` the strongest part may
-    change in proportion to the order of the points. Raises `InputError` for fewer than 12 points or
-    a shape of another length.
+    neighbours as may take part, and what else the drive moves (of two that the places cannot tell
+    apart the one more alike the scan). MAC = |φᴴw|²/(φᴴφ wᴴw) (Allemang 2003, Sound and Vibration
+    37(8) 14); amplitudes are least squares of all shapes together. With `drift` the strongest part
+    may change in proportion to the order of the points. Raises `InputError` for fewer than 12
+    points or a shape of another length.
     """
     good = np.isfinite(recording.x) & np.isfinite(recording.y) & np.isfinite(recording.displacement)
     w = np.asarray(recording.displacement)[good]
@@ -128,9 +129,10 @@ def fit_grid_scan(
 
 
 def shapes_at(
-    modes: PlateModes, x: si.MetreArray, y: si.MetreArray, lobe: tuple[si.Metre, si.Metre]
+    modes: PlateModes, x: si.MetreArray, y: si.MetreArray, driven: DrivenShape
 ) -> dict[str, si.FloatArray]:
-    """Solved modes' relative motion at places (m, (points,)) of the upper face, 1 at `lobe`.
+    """Solved modes' relative motion at places (m, (points,)) of the upper face, 1 at the best
+    antinode of the `driven` plate, whose other motion (`REST`) comes last.
 
     By label and frequency, such as "(8,0) at 33.58 kHz"; by cubic splines between the modes'
     own points. Modes that move in the plane, or not at the lobe, are 1 at their own largest.
@@ -138,7 +140,7 @@ def shapes_at(
     """
     for name, places, end in (("x", x, modes.plate.length), ("y", y, modes.plate.width)):
         si.require(name, places, si.Unit("m"), at_least=-1e-6, at_most=end + 1e-6)
-    found = {}
+    found, lobe = {}, driven.lobe
     for i in range(modes.count):
         spline = RectBivariateSpline(modes.x, modes.y, modes.shapes[i])
         w, largest = spline.ev(x, y), float(np.max(np.abs(modes.shapes[i])))
@@ -146,7 +148,8 @@ def shapes_at(
         label = "in plane" if (own := modes.labels[i]) is None else "({},{})".format(*own)
         name = f"{label} at {si.format_quantity(modes.frequencies[i], si.Unit('Hz'))}"
         found[name] = w / (there if abs(there) > 0.05 * largest else largest)
-    return found
+    _, rest = driven.at(x, y)
+    return found | {REST: rest / (float(np.max(np.abs(driven.rest))) or 1.0)}
 
 
 def _rows(
@@ -171,7 +174,8 @@ def _told_apart(
     before; these with that one."""
     names: list[str] = []
     alike: dict[str, str] = {}
-    for name in sorted(rows, key=lambda one: -likeness[one]):
+    # A mode gives the scan its name; the rest has none.
+    for name in sorted(rows, key=lambda one: (one == REST, -likeness[one])):
         same = [one for one in names if _likeness(rows[one], rows[name]) > _ALIKE]
         if same:
             alike[name] = same[0]

@@ -13,7 +13,9 @@ from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.line_points import LinePoints
+from squeezefilm.measure.fits.vibration.line_waves import LineWaves
 from squeezefilm.measure.recordings.kinds import LineScan
 
 _FEWEST_POINTS = 12
@@ -38,9 +40,12 @@ class LineScanFit:
     `phase` (rad) of the antinode against the drive. The last three are None where no phase was
     recorded, ratio and loss also where no even wave fits. `phase_reversed` says that waves grow
     along their way, which no plate makes: the phase was recorded with the other sign, and the fit
-    is of the complex conjugate. `by_points` says that half wavelength, nodal lines and amplitude
-    are those of the points around each, as no even wave fits. `model` and `residual` (m) are at
-    `position` (m).
+    is of the complex conjugate. `by_points` says that half wavelength and nodal lines are those of
+    the points around each, as no even wave fits, and amplitude too, unless the scan was compared
+    with a solved shape: then `offset` (m) is where its zero lies from the plate's edge, and
+    amplitude and phase are those of the shape, and `face_over_line` is its half wavelength over the
+    whole face, which is the library's, over that along the line (else 1). `model` and `residual`
+    (m) are at `position` (m).
     """
 
     recording: LineScan
@@ -56,6 +61,8 @@ class LineScanFit:
     phase: Estimate | None
     phase_reversed: bool
     by_points: bool
+    offset: Estimate | None
+    face_over_line: si.Dimensionless
     adequacy: Adequacy
 
     @property
@@ -66,8 +73,10 @@ class LineScanFit:
         if not self.adequacy.adequate and not self.by_points:
             return ()
         at = {"frequency": self.recording.frequency}
-        half, largest = self.half_wavelength, self.antinode_amplitude
-        found = [Observation("half_wavelength", half.value, half.standard_error, at)]
+        half, largest, ratio = self.half_wavelength, self.antinode_amplitude, self.face_over_line
+        found = [
+            Observation("half_wavelength", half.value * ratio, half.standard_error * ratio, at)
+        ]
         volts = self.recording.voltage
         if volts:
             found.append(
@@ -100,6 +109,7 @@ class LineScanFit:
 @guarded_fit
 def fit_line_scan(
     recording: LineScan,
+    shape: DrivenShape | None = None,
     *,
     free_ends: bool = True,
     drift: bool = False,
@@ -114,13 +124,14 @@ def fit_line_scan(
     change in proportion to the place along the scan, as when the plate warms while it is scanned.
     The model is that of an even thin plate: a plate with ceramics on it bends its wave, and the
     fit then says by how much, and half wavelength, nodal lines and amplitude are taken from the
-    recorded points around each (`LinePoints`).
+    recorded points around each (`LinePoints`). With the solved `shape` of the plate amplitude and
+    phase are then those of the shape, which the scan is judged by.
 
     Raises `InputError` for fewer than 12 points or three to a half wavelength. Source: Cremer,
     Heckl, Petersson, Structure-Borne Sound, 3rd ed., section 3.6 (decay of bending waves).
     """
     x, w = _recorded(recording)
-    line = _Line(float(x[0]), float(x[-1]), np.iscomplexobj(w), free_ends, drift)
+    line = LineWaves(float(x[0]), float(x[-1]), np.iscomplexobj(w), free_ends, drift)
     size = float(np.max(np.abs(w)))
     start = np.zeros(line.count)
     start[0] = _wave_number(line, x, w / size)
@@ -134,67 +145,42 @@ def fit_line_scan(
         fit.residual * size,
         lambda i: f"{1e3 * x[i]:.3g} mm along the line",
         remedy="A plate with ceramics on it, or one that also bends across the line, has no one "
-        "wave: compare its shape with the solved plate's (a grid scan).",
+        "wave: compare it with the solved plate's shape (name the display).",
         said="The phase was recorded with the other sign (waves would grow along their way); the "
         "fit is of the complex conjugate. "
         if grows
         else "",
     )
-    return _FittedLine(recording, line, x, w, fit, size, grows, adequacy, level).read()
+    found = _FittedLine(recording, line, x, w, fit, size, grows, adequacy, level).read()
+    if shape is None or not found.by_points:
+        return found
+    return _by_shape(found, shape, w.conj() if grows else w, drift)
 
 
-@dataclass(frozen=True, eq=False)
-class _Line:
-    """The columns of waves along a line from `first` to `last` (m).
-
-    The shape is k, then for complex data the decay over k, then the drift's two numbers (one).
-    """
-
-    first: si.Metre
-    last: si.Metre
-    complex: bool
-    free_ends: bool
-    drift: bool
-
-    @property
-    def length(self) -> si.Metre:
-        return self.last - self.first
-
-    @property
-    def count(self) -> int:
-        own = 2 if self.complex else 1
-        return own + (own if self.drift else 0)
-
-    def reach(self, wave_number: float) -> si.FloatArray:
-        """How far the shape may go from its start."""
-        rows = [wave_number / 3] + ([0.25] if self.complex else [])
-        return np.array(rows + [2.0] * (self.count - len(rows)))
-
-    def waves(self, x: si.MetreArray, shape: si.FloatArray) -> si.Array:
-        """The columns (points, waves): forward, backward, and the near fields of the ends."""
-        k, middle = shape[0], (self.first + self.last) / 2
-        if self.complex:
-            turn = (1j * k + k * shape[1]) * (x - middle)
-            rows = [np.exp(-turn), np.exp(turn)]
-        else:
-            rows = [np.cos(k * (x - middle)), np.sin(k * (x - middle))]
-        if self.free_ends:
-            rows += [np.exp(-k * (x - self.first)), np.exp(-k * (self.last - x))]
-        found = np.stack(rows, axis=1)
-        if not self.drift:
-            return found
-        rate = shape[-2] + 1j * shape[-1] if self.complex else shape[-1]
-        return np.asarray(found * (1 + rate * (x - middle) / self.length)[:, None])
-
-    def columns(self, x: si.MetreArray, shape: si.FloatArray) -> tuple[si.Array, si.Array]:
-        """The columns and their derivatives by central differences of them."""
-        bent = []
-        for i in range(shape.size):
-            step = np.zeros(shape.size)
-            step[i] = 1e-6 * (shape[0] if i == 0 else 1.0)
-            above, below = self.waves(x, shape + step), self.waves(x, shape - step)
-            bent.append((above - below) / (2 * step[i]))
-        return self.waves(x, shape), np.stack(bent)
+def _by_shape(found: LineScanFit, shape: DrivenShape, w: si.Array, drift: bool) -> LineScanFit:
+    """What a solved shape says of a line that no even wave fits, from its displacement as it was
+    recorded."""
+    level = found.half_wavelength.level
+    reach = found.half_wavelength.value / 4
+    by = line_by_shape(shape, found.position, w, reach=reach, drift=drift, level=level)
+    swing = shape.along(found.position + by.offset.value)[0]
+    along = LinePoints(found.position, swing, found.half_wavelength.value).spacing
+    said = (
+        " Amplitude and phase are those of the shape; half wavelength (the mean distance of nodal "
+        "lines) and nodal lines are those of the points around each."
+    )
+    return replace(
+        found,
+        model=by.model,
+        residual=(w.conj() if by.phase_reversed else w) - by.model,
+        antinode=shape.antinode - by.offset.value,
+        antinode_amplitude=by.amplitude,
+        phase=by.phase,
+        phase_reversed=by.phase_reversed,
+        offset=by.offset,
+        face_over_line=1.0 if along is None else shape.half_wavelength / along.value,
+        adequacy=replace(by.adequacy, sentence=by.adequacy.sentence + said),
+    )
 
 
 def _recorded(recording: LineScan) -> tuple[si.MetreArray, si.Array]:
@@ -233,7 +219,7 @@ def _signed(size: si.FloatArray) -> si.FloatArray:
     return np.asarray(size * np.array(signs))
 
 
-def _wave_number(line: _Line, x: si.MetreArray, w: si.Array) -> float:
+def _wave_number(line: LineWaves, x: si.MetreArray, w: si.Array) -> float:
     """The wave number that leaves least, of an even row of them."""
     spacing = float(np.median(np.diff(x)))
     most = line.length / max(spacing, line.length / 2000) / _LEAST_PER_HALF
@@ -255,7 +241,7 @@ class _FittedLine:
     """A fit in its own numbers, to be read off."""
 
     recording: LineScan
-    line: _Line
+    line: LineWaves
     x: si.MetreArray
     w: si.Array
     fit: SeparableFit
@@ -304,6 +290,8 @@ class _FittedLine:
             phase=self._phase(lobe) if self.line.complex else None,
             phase_reversed=self.phase_reversed,
             by_points=False,
+            offset=None,
+            face_over_line=1.0,
             adequacy=self.adequacy,
         )
         return found if self.adequacy.adequate else self._by_points(found)

@@ -25,6 +25,8 @@ _TAPER = 0.02
 # Frequencies within a half-power band, so that a Hann window takes less than 1 % of its peak:
 # (1/3)(1.5 Δf Q/f)² (Bendat and Piersol, Random Data, section 8.5).
 _RESOLVED = 9.0
+# ... and so many where the recording is long enough: 0.2 %, which no model fit sees.
+_WELL_RESOLVED = 20.0
 # What overlapping Hann windows by half costs of averages (Welch 1967).
 _OVERLAP_COST = 1.056
 
@@ -64,7 +66,7 @@ def fit_raw_signals(
 ) -> RawSignalsFit:
     """H1 = S_vx/S_vv (m/V) and its coherence by Welch's averages; an instrument's scale and delay.
 
-    Hann windows of `segment` (s; by default a sixteenth of the recording, up to a quarter where a
+    Hann windows of `segment` (s; by default a sixteenth of the recording, up to a half where a
     sharp resonance needs it) overlapping by half, over the `band` (Hz) or where the drive has
     1 % of its greatest density. Noise at the output is averaged away, noise on the recorded
     voltage makes H1 too small. With `instrument` the motion is taken to follow the voltage, as that
@@ -82,7 +84,7 @@ def fit_raw_signals(
             quantity="segment",
         )
     found = _averaged(recording, (v, x, rate), length, band)
-    while segment is None and 8 * length <= t.size and _resolution(found) < _RESOLVED:
+    while segment is None and 4 * length <= t.size and _resolution(found) < _WELL_RESOLVED:
         length *= 2
         found = _averaged(recording, (v, x, rate), length, band)
     if not instrument:
