@@ -20,7 +20,7 @@ from .synthetic_benches import (
     BLIND,
     Fingers,
     Plates,
-    drawn_scale,
+    drawn_scales,
     paper_display,
     plate_bench,
 )
@@ -50,7 +50,7 @@ def test_ranks_of_a_plates_parameters_and_blind_answers_are_flat(plates: Plates)
     found = []
     for number in range(BENCHES):
         scores = random.normal(size=len(plates.problem.scores.parameters))
-        answers = plates.truth(scores, drawn_scale(random), random)
+        answers = plates.truth(scores, drawn_scales(random), random)
         found.append(plate_bench(plates, scores, answers, seed=number))
     ranks = np.array([[*one.ranks, *one.blind_ranks] for one in found])
     odds = [flat(column) for column in ranks.T]
