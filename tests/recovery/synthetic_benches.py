@@ -8,7 +8,7 @@ import numpy as np
 
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display, load_display
-from squeezefilm.measure.calibration.discrepancy import KINDS, scale_of
+from squeezefilm.measure.calibration.discrepancy import KINDS, scales_of
 from squeezefilm.measure.calibration.friction_likelihood import GRID, FrictionLikelihood, Touching
 from squeezefilm.measure.calibration.friction_posterior import (
     finger_mixture,
@@ -129,7 +129,7 @@ def plate_bench(
 
 def drawn_scales(random: np.random.Generator) -> np.ndarray:
     """The discrepancy's scales (kinds,) from their prior."""
-    return scale_of(random.normal(size=len(KINDS)))
+    return scales_of(random.normal(size=(1, len(KINDS))))[0]
 
 
 @dataclass

@@ -1,8 +1,9 @@
 """What observations of a plate say of its parameters: least squares, then draws of the posterior.
 
 Everything happens in normal scores (`priors.NormalScores`) and in logarithms of the answers. The
-last scores are those of the discrepancy's scales, one for each of `KINDS`. The draws are by the affine-invariant ensemble
-sampler of Goodman and Weare (2010), 10.2140/camcos.2010.5.65, as emcee has it (10.1086/670067).
+last scores are those of the discrepancy's scales, one for each of `KINDS`. The draws are by the
+affine-invariant ensemble sampler of Goodman and Weare (2010), 10.2140/camcos.2010.5.65, as emcee
+has it (10.1086/670067).
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from squeezefilm.measure.calibration.discrepancy import (
     KINDS,
     Misfit,
     misfit_of,
-    scale_of,
+    scales_of,
     solver_covariance,
     unit_covariances,
 )
@@ -113,7 +114,7 @@ class PlateProblem:
     def log_posterior(self, points: si.DimensionlessArray) -> si.FloatArray:
         """The logarithm of the posterior density, but for a constant, at `points` (points,
         parameters + kinds): scores, and last those of the discrepancy's scales."""
-        scores, scales = points[:, : -len(KINDS)], scale_of(points[:, -len(KINDS) :])
+        scores, scales = points[:, : -len(KINDS)], scales_of(points[:, -len(KINDS) :])
         prior = -np.sum(points**2, axis=1) / 2
         off = self.residuals(scores)[:, :, None]
         units = self.discrepancies[:, self.columns][:, :, self.columns]
@@ -209,7 +210,7 @@ def sampled_posterior(
     squares = best @ best + np.sum(problem.whitened(best[None, :]) ** 2)
     return PlatePosterior(
         kept[:, : best.size],
-        scale_of(kept[:, best.size :]),
+        scales_of(kept[:, best.size :]),
         best,
         misfit_of(float(squares), problem.names, off),
         len(flat) / max(time, 1.0),
