@@ -186,6 +186,7 @@ def solved_bench(
     values = plates.problem.scores.values(scores[None, :])[0].tolist()
     paths = [one.path for one in parameters]
     actuator = with_calibrated(plates.display, dict(zip(paths, values, strict=True))).actuator
+    assert isinstance(actuator, RectangularPlate)
     if mechanism is not None:
         actuator = mechanism(actuator, random)
     answers = solved_answers(actuator, plates.problem.asked).values
