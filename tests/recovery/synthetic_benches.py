@@ -8,7 +8,7 @@ import numpy as np
 
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display, load_display
-from squeezefilm.measure.calibration.discrepancy import scale_of
+from squeezefilm.measure.calibration.discrepancy import KINDS, scales_of
 from squeezefilm.measure.calibration.friction_likelihood import GRID, FrictionLikelihood, Touching
 from squeezefilm.measure.calibration.friction_posterior import (
     finger_mixture,
@@ -71,11 +71,16 @@ class Plates:
             known.scores, known.emulator, known.asked, known.solver_errors, observations
         )
 
-    def truth(self, scores: np.ndarray, scale: float, random: np.random.Generator) -> np.ndarray:
-        """Answers of a bench at scores (parameters,), the model's error drawn."""
-        error = np.hypot(scale * self.problem.believed, self.problem.model_errors)
+    def truth(
+        self, scores: np.ndarray, scales: np.ndarray | float, random: np.random.Generator
+    ) -> np.ndarray:
+        """Answers of a bench at scores (parameters,), the model's error drawn at `scales` (kinds,)
+        of the discrepancy."""
+        squares = np.broadcast_to(np.square(scales), len(KINDS))
+        covariance = np.tensordot(squares, self.problem.discrepancies, 1)
+        covariance = covariance + self.problem.model_covariance
         logs = self.problem.answers(scores[None, :])[0]
-        return np.exp(logs + error * random.normal(size=logs.size))
+        return np.exp(random.multivariate_normal(logs, covariance))
 
     def observed(self, answers: np.ndarray, random: np.random.Generator) -> tuple[Observation, ...]:
         """What the bench's instruments say of its answers."""
@@ -122,9 +127,9 @@ def plate_bench(
     )
 
 
-def drawn_scale(random: np.random.Generator) -> float:
-    """A discrepancy's scale from its prior."""
-    return float(scale_of(np.array([random.normal()]))[0])
+def drawn_scales(random: np.random.Generator) -> np.ndarray:
+    """The discrepancy's scales (kinds,) from their prior."""
+    return scales_of(random.normal(size=(1, len(KINDS))))[0]
 
 
 @dataclass

@@ -24,7 +24,7 @@ from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.measure.calibration.calibration import Calibration
-from squeezefilm.measure.calibration.discrepancy import BELIEVED, scale_of
+from squeezefilm.measure.calibration.discrepancy import BELIEVED, KINDS, scales_of
 from squeezefilm.measure.calibration.friction_likelihood import GRID, touching
 from squeezefilm.measure.calibration.friction_posterior import finger_mixture, friction_of_points
 from squeezefilm.measure.calibration.plate_fit import prior_scores
@@ -192,7 +192,8 @@ def _of_plate(
     random = np.random.default_rng(seed)
     # Many errors of the model for each solved plate: these are cheap.
     many = np.repeat(np.array(drawn), 32, axis=0)
-    off = scale_of(random.normal(size=len(many)))
+    # One kind at a time is asked: which of the scales does not matter.
+    off = scales_of(random.normal(size=(len(many), len(KINDS))))[:, 0]
     found = {}
     for one in wanted:
         column = many[:, asked.index(asked_by(one))]

@@ -1,8 +1,9 @@
 """What observations of a plate say of its parameters: least squares, then draws of the posterior.
 
 Everything happens in normal scores (`priors.NormalScores`) and in logarithms of the answers. The
-last score is that of the discrepancy's scale. The draws are by the affine-invariant ensemble
-sampler of Goodman and Weare (2010), 10.2140/camcos.2010.5.65, as emcee has it (10.1086/670067).
+last scores are those of the discrepancy's scales, one for each of `KINDS`. The draws are by the
+affine-invariant ensemble sampler of Goodman and Weare (2010), 10.2140/camcos.2010.5.65, as emcee
+has it (10.1086/670067).
 """
 
 from __future__ import annotations
@@ -15,7 +16,14 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.measure.calibration.discrepancy import BELIEVED, Misfit, misfit_of, scale_of
+from squeezefilm.measure.calibration.discrepancy import (
+    KINDS,
+    Misfit,
+    misfit_of,
+    scales_of,
+    solver_covariance,
+    unit_covariances,
+)
 from squeezefilm.measure.calibration.emulator import Emulator
 from squeezefilm.measure.calibration.priors import NormalScores
 from squeezefilm.measure.calibration.solved_answers import Asked, asked_by
@@ -62,20 +70,28 @@ class PlateProblem:
         return np.log([one.value for one in self.observations])
 
     @cached_property
-    def variances(self) -> si.DimensionlessArray:
-        """Of the logarithms (observations,): of the measurement, the emulator and the solver."""
-        noise = np.array([one.standard_error / one.value for one in self.observations])
-        return noise**2 + self.model_errors[self.columns] ** 2
+    def noise(self) -> si.DimensionlessArray:
+        """Relative standard errors of the observations, shape (observations,)."""
+        return np.array([one.standard_error / one.value for one in self.observations])
 
     @cached_property
-    def model_errors(self) -> si.DimensionlessArray:
-        """Of the emulator and the solver together, relative, shape (asked,)."""
-        return np.hypot(self.emulator.errors, self.solver_errors)
+    def model_covariance(self) -> si.DimensionlessArray:
+        """Of the emulator's and the solver's relative errors, shape (asked, asked)."""
+        names = [one.name for one in self.asked]
+        found = solver_covariance(names, self.solver_errors)
+        return np.asarray(found + np.diag(self.emulator.errors**2))
 
     @cached_property
-    def believed(self) -> si.DimensionlessArray:
-        """`BELIEVED` of each of the emulator's answers, shape (asked,)."""
-        return np.array([BELIEVED[one.name] for one in self.asked])
+    def covariance(self) -> si.DimensionlessArray:
+        """Of the observed logarithms if the model is right, shape (observations, observations): of
+        the measurement, the emulator and the solver."""
+        rows = np.ix_(self.columns, self.columns)
+        return np.asarray(self.model_covariance[rows] + np.diag(self.noise**2))
+
+    @cached_property
+    def discrepancies(self) -> si.DimensionlessArray:
+        """`unit_covariances` of the emulator's answers, shape (kinds, asked, asked)."""
+        return unit_covariances([one.name for one in self.asked])
 
     @property
     def names(self) -> list[str]:
@@ -90,20 +106,27 @@ class PlateProblem:
         """Observed less predicted logarithms, shape (points, observations)."""
         return self.observed - self.answers(scores)[:, self.columns]
 
+    def whitened(self, scores: si.DimensionlessArray) -> si.FloatArray:
+        """Residuals at scores, independent and of variance 1 where the model is right."""
+        root = np.linalg.cholesky(self.covariance)
+        return np.asarray(np.linalg.solve(root, self.residuals(scores).T).T)
+
     def log_posterior(self, points: si.DimensionlessArray) -> si.FloatArray:
         """The logarithm of the posterior density, but for a constant, at `points` (points,
-        parameters + 1): scores, and last the score of the discrepancy's scale."""
-        scores, scale = points[:, :-1], scale_of(points[:, -1])
+        parameters + kinds): scores, and last those of the discrepancy's scales."""
+        scores, scales = points[:, : -len(KINDS)], scales_of(points[:, -len(KINDS) :])
         prior = -np.sum(points**2, axis=1) / 2
-        off = self.residuals(scores)
-        loose = np.outer(scale, self.believed[self.columns]) ** 2
-        variance = self.variances + loose
-        return np.asarray(prior - np.sum(off**2 / variance + np.log(variance), axis=1) / 2)
+        off = self.residuals(scores)[:, :, None]
+        units = self.discrepancies[:, self.columns][:, :, self.columns]
+        covariance = self.covariance + np.einsum("pk,kij->pij", scales**2, units)
+        squares = (off * np.linalg.solve(covariance, off)).sum(axis=(1, 2))
+        return np.asarray(prior - (squares + np.linalg.slogdet(covariance)[1]) / 2)
 
 
 @dataclass(frozen=True, eq=False)
 class PlatePosterior:
-    """Draws of a plate's posterior: `scores` (draws, parameters) and discrepancy `scales` (draws,).
+    """Draws of a plate's posterior: `scores` (draws, parameters) and the discrepancy's `scales`
+    (draws, kinds).
 
     `best` are the scores of the best fit without discrepancy. `effective` is how many independent
     draws they are worth, by the integrated autocorrelation time; below some hundred their ends are
@@ -123,15 +146,14 @@ def best_fit(problem: PlateProblem, starts: int = 4, seed: int = 1) -> si.Dimens
     from scipy.optimize import least_squares
 
     count = len(problem.scores.parameters)
-    errors = np.sqrt(problem.variances)
 
     def off(scores: si.FloatArray) -> si.FloatArray:
-        return np.asarray(np.r_[scores, problem.residuals(scores[None, :])[0] / errors])
+        return np.asarray(np.r_[scores, problem.whitened(scores[None, :])[0]])
 
     def slopes(scores: si.FloatArray) -> si.FloatArray:
         step = 1e-4
         moved = scores + step * np.vstack([np.eye(count), -np.eye(count)])
-        there = problem.residuals(moved) / errors
+        there = problem.whitened(moved)
         return np.vstack([np.eye(count), (there[:count] - there[count:]).T / (2 * step)])
 
     random = np.random.default_rng(seed)
@@ -147,7 +169,7 @@ def sampled_posterior(
     steps: Annotated[int, si.AtLeast(100)] = STEPS,
     progress: SayProgress | None = None,
 ) -> PlatePosterior:
-    """The posterior of a plate's parameters and of the discrepancy's scale.
+    """The posterior of a plate's parameters and of the discrepancy's scales.
 
     Raises `InputError` where nothing was observed of the plate; interrupted, it leaves nothing.
     """
@@ -158,12 +180,12 @@ def sampled_posterior(
     tell = progress or (lambda _: None)
     tell("least squares")
     best = best_fit(problem, seed=seed)
-    count, random = best.size + 1, np.random.default_rng(seed)
+    count, random = best.size + len(KINDS), np.random.default_rng(seed)
     walkers = 2 * max(2 * count, 16)
     start = np.column_stack(
         [
             best + random.multivariate_normal(np.zeros(best.size), _around(problem, best), walkers),
-            random.normal(0, 0.7, walkers),
+            random.normal(0, 0.7, (walkers, len(KINDS))),
         ]
     )
     # Differential evolution finds the way along ridges, where the stretch move alone is slow.
@@ -184,12 +206,13 @@ def sampled_posterior(
     time = float(np.max(emcee.autocorr.integrated_time(chain, quiet=True, tol=0)))
     flat = chain.reshape(-1, count)
     kept = flat[random.choice(len(flat), min(_DRAWS, len(flat)), replace=False)]
-    off = problem.residuals(best[None, :])[0] / np.sqrt(problem.variances)
+    off = problem.residuals(best[None, :])[0] / np.sqrt(np.diag(problem.covariance))
+    squares = best @ best + np.sum(problem.whitened(best[None, :]) ** 2)
     return PlatePosterior(
-        kept[:, :-1],
-        scale_of(kept[:, -1]),
+        kept[:, : best.size],
+        scales_of(kept[:, best.size :]),
         best,
-        misfit_of(float(best @ best + off @ off), problem.names, off),
+        misfit_of(float(squares), problem.names, off),
         len(flat) / max(time, 1.0),
     )
 
@@ -198,7 +221,7 @@ def _around(problem: PlateProblem, best: si.DimensionlessArray) -> si.FloatArray
     """The covariance of the scores about the best fit if all were linear."""
     step = 1e-3
     moved = best + step * np.vstack([np.eye(best.size), -np.eye(best.size)])
-    there = problem.residuals(moved) / np.sqrt(problem.variances)
+    there = problem.whitened(moved)
     slopes = (there[: best.size] - there[best.size :]) / (2 * step)
     return np.asarray(np.linalg.inv(np.eye(best.size) + slopes @ slopes.T))
 
@@ -223,19 +246,22 @@ class Predictive:
 def predictive(problem: PlateProblem, posterior: PlatePosterior, *, seed: int) -> Predictive:
     """What the posterior predicts of every answer of the emulator.
 
-    The discrepancy of an answer that was observed is what the observation left of it; that of
-    another one is as wide as its draw's scale says.
+    The discrepancy of an answer that was observed is what the observation left of it; of another
+    one it is what its kind's scale allows, less what observed answers of its kind say of it.
     """
     random = np.random.default_rng(seed)
     answers = problem.answers(posterior.scores)
-    wide = np.outer(posterior.scales, problem.believed) ** 2 + problem.model_errors**2
-    middle = np.zeros_like(answers)
-    noise = np.array([one.standard_error / one.value for one in problem.observations])
-    for number, column in enumerate(problem.columns):
-        # Of several observations of one answer each in turn narrows what the last one left.
-        left = problem.observed[number] - answers[:, column] - middle[:, column]
-        share = wide[:, column] / (wide[:, column] + noise[number] ** 2)
-        middle[:, column] += share * left
-        wide[:, column] *= 1 - share
-    values = answers + middle + np.sqrt(wide) * random.normal(size=answers.shape)
-    return Predictive(problem.asked, np.exp(values))
+    columns = problem.columns
+    wide = np.einsum("dk,kij->dij", posterior.scales**2, problem.discrepancies)
+    wide += problem.model_covariance
+    # The error of all answers, given those that were observed: Gaussian for every draw.
+    seen = wide[:, columns][:, :, columns] + np.diag(problem.noise**2)
+    gain = np.linalg.solve(seen, wide[:, columns]).transpose(0, 2, 1)
+    left = problem.observed - answers[:, columns]
+    middle = np.einsum("dao,do->da", gain, left)
+    wide = wide - gain @ wide[:, columns]
+    # A hair keeps the factor where an observation left nothing.
+    hair = 1e-9 * np.max(np.diagonal(wide, axis1=1, axis2=2), axis=1)
+    root = np.linalg.cholesky(wide + hair[:, None, None] * np.eye(len(problem.asked)))
+    error = middle + np.einsum("dab,db->da", root, random.normal(size=answers.shape))
+    return Predictive(problem.asked, np.exp(answers + error))
