@@ -15,6 +15,7 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+import pickle
 import queue
 import signal
 import threading
@@ -123,8 +124,11 @@ class SecondProcess:
     def _send_ahead(self) -> None:
         while not self._is_lost and self._waiting and len(self._sent) < _AHEAD:
             piece = self._waiting.popleft()
-            self._sent.append(piece)
-            self._send((piece.function, [self._as_sent(one) for one in piece.arguments]))
+            # What cannot be sent is done here.
+            with contextlib.suppress(pickle.PicklingError, AttributeError, TypeError):
+                self._send((piece.function, [self._as_sent(one) for one in piece.arguments]))
+                if not self._is_lost:
+                    self._sent.append(piece)
 
     def _as_sent(self, value: Any) -> Any:
         """What stands for an argument: of a record that was sent before its number."""
@@ -133,8 +137,8 @@ class SecondProcess:
         for name, known in enumerate(self._kept):
             if known is value:
                 return Kept(name)
-        self._kept.append(value)
         self._send(value)
+        self._kept.append(value)
         return Kept(len(self._kept) - 1)
 
     def _send(self, message: Any) -> None:

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.report.display.figures import DECISION, FIGURES, MODELS, TEXTURES, drawing, drawing_of
+from squeezefilm.report.display.figures import (
+    DECISION,
+    FIGURES,
+    MODELS,
+    TEXTURES,
+    drawing,
+    drawing_of,
+)
 from squeezefilm.report.display.rows import decision_rows, more_rows, unsaid_warnings
 from squeezefilm.report.kit.decisions import interval_rows, sensitivity_rows
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
