@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 CACHE_VARIABLE = "SQUEEZEFILM_CACHE"
 MOST_FILES, MOST_RESULTS = 20_000, 32
-"""Above it the older half is deleted: of arrays, of some 4 kB each, and of results, of some 5 MB."""
+"""Of more the older half is deleted: arrays of some 4 kB each, and results of some 5 MB."""
 
 _DIGEST = 16
 _DTYPE = np.dtype("<f8")

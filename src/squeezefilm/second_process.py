@@ -28,6 +28,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from squeezefilm import quantities as si
+from squeezefilm.blas_threads import one_blas_thread
 
 _PATIENCE: si.Second = 60.0
 _LEAVE: si.Second = 2.0
@@ -191,7 +192,9 @@ def second_process(prepare: Callable[[], object]) -> Iterator[SecondProcess | No
     process = SecondProcess(prepare)
     before = _PRESENT.set(process)
     try:
-        yield process
+        # Threads of either would wait for the other's.
+        with one_blas_thread():
+            yield process
     finally:
         _PRESENT.reset(before)
         process.end()
@@ -249,6 +252,12 @@ def _work(line: Connection, prepare: Callable[[], object]) -> None:
     # What fails here is done, and fails, where somebody sees it.
     with contextlib.suppress(Exception):
         prepare()
+    with one_blas_thread():
+        _answer(line, messages)
+
+
+def _answer(line: Connection, messages: queue.SimpleQueue[Any]) -> None:
+    """Do what comes, until the line is gone."""
     kept: list[Any] = []
     while True:
         message = messages.get()

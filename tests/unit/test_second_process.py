@@ -28,7 +28,6 @@ from squeezefilm.second_process import (
     values,
 )
 
-
 # Work must be functions of a module that another process can import: these are the library's.
 ADD, ROOT = operator.add, math.sqrt
 

@@ -190,9 +190,10 @@ def solid_mode(
     Without a label the plate's working mode. `pace` is told a text and a fraction, and its budget
     bounds the time: where finer meshes would not end in time the coarse one's answer is given, with
     its larger error (`coarseness`). The last plates that were solved are kept, those under each
-    budget by themselves; in full also on disk, from one process to the next (`KeptResults`). Raises what `solve_modes` and `harmonic_response` raise: `InputError`
-    where there is no such mode or nothing drives the plate, `GeometryError` for a plate that the
-    elements cannot carry, `OutOfTimeError` where not even the coarse mesh would end in time.
+    budget by themselves; in full also on disk, from one process to the next (`KeptResults`).
+    Raises what `solve_modes` and `harmonic_response` raise: `InputError` where there is no such
+    mode or nothing drives the plate, `GeometryError` for a plate that the elements cannot carry,
+    `OutOfTimeError` where not even the coarse mesh would end in time.
     """
     return _solid_mode(plate, label, pace)
 
