@@ -1,4 +1,4 @@
-"""Arrays that are dear to compute and small to keep, on disk from one process to the next.
+"""What is dear to compute and small to keep, on disk from one process to the next.
 
 Each is a file in the user's cache folder, named by a hash of all that it comes from: what was
 asked, the source of the modules that compute it, and the versions of this package, NumPy and numba.
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import functools
 import os
+import pickle
 import sys
 import tempfile
 from collections.abc import Iterable
@@ -18,13 +19,14 @@ from contextlib import suppress
 from hashlib import blake2b
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 CACHE_VARIABLE = "SQUEEZEFILM_CACHE"
-MOST_FILES = 20_000
-"""Above it the older half is deleted; of some 4 kB each."""
+MOST_FILES, MOST_RESULTS = 20_000, 32
+"""Of more the older half is deleted: arrays of some 4 kB each, and results of some 5 MB."""
 
 _DIGEST = 16
 _DTYPE = np.dtype("<f8")
@@ -46,8 +48,8 @@ def cache_folder() -> Path | None:
     return Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache") / "squeezefilm"
 
 
-class KeptArrays:
-    """Arrays of one kind; `sources` are the files and folders of modules that compute them."""
+class _Kept:
+    """Files of one kind; `sources` are the files and folders of modules that compute them."""
 
     def __init__(self, kind: str, sources: Iterable[Path]) -> None:
         self.kind, self.sources = kind, tuple(sources)
@@ -74,8 +76,8 @@ class KeptArrays:
         name = blake2b(f"{self._made_by} {asked}".encode(), digest_size=_DIGEST).hexdigest()
         return folder / self.kind / name
 
-    def get(self, asked: str, size: int) -> NDArray[np.float64] | None:
-        """The array of so many numbers kept under what was `asked`; None if there is none."""
+    def _read(self, asked: str) -> bytes | None:
+        """What is kept under what was `asked`; None if there is nothing, or it was damaged."""
         file = self._file(asked)
         if file is None:
             return None
@@ -83,22 +85,19 @@ class KeptArrays:
             data = file.read_bytes()
         except OSError:
             return None
-        whole = len(data) == _DIGEST + size * _DTYPE.itemsize
-        if not whole or _digest(data[_DIGEST:]) != data[:_DIGEST]:
-            return None
-        return np.frombuffer(data[_DIGEST:], _DTYPE).astype(np.float64)
+        return data[_DIGEST:] if _digest(data[_DIGEST:]) == data[:_DIGEST] else None
 
-    def put(self, asked: str, values: NDArray[np.float64]) -> None:
-        """Keep an array; where the folder cannot be written to nothing is kept."""
+    def _write(self, asked: str, data: bytes, most_files: int) -> None:
+        """Keep it; where the folder cannot be written to nothing is kept."""
         file = self._file(asked)
         if file is None:
             return
-        data = np.asarray(values, _DTYPE).tobytes()
         with suppress(OSError):
             file.parent.mkdir(parents=True, exist_ok=True)
-            if self._tidied != file.parent:  # once a process
+            # Of many small files once a process.
+            if self._tidied != file.parent or most_files < MOST_FILES:
                 self._tidied = file.parent
-                _tidy(file.parent)
+                _tidy(file.parent, most_files)
             with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as part:
                 try:
                     part.write(_digest(data) + data)
@@ -110,20 +109,54 @@ class KeptArrays:
                     raise
 
 
+class KeptArrays(_Kept):
+    """Arrays of one kind."""
+
+    def get(self, asked: str, size: int) -> NDArray[np.float64] | None:
+        """The array of so many numbers kept under what was `asked`; None if there is none."""
+        data = self._read(asked)
+        if data is None or len(data) != size * _DTYPE.itemsize:
+            return None
+        return np.frombuffer(data, _DTYPE).astype(np.float64)
+
+    def put(self, asked: str, values: NDArray[np.float64]) -> None:
+        """Keep an array; where the folder cannot be written to nothing is kept."""
+        self._write(asked, np.asarray(values, _DTYPE).tobytes(), MOST_FILES)
+
+
+class KeptResults(_Kept):
+    """Results of one kind, as pickles. Like what numba keeps beside them they are code of the user
+    whose folder it is: whoever can write there can already do all that this user can."""
+
+    def get(self, asked: str) -> Any:
+        """The result kept under what was `asked`; None if there is none."""
+        data = self._read(asked)
+        if data is None:
+            return None
+        # What another version of a library wrote may not be readable; it is then computed anew.
+        with suppress(Exception):
+            return pickle.loads(data)
+        return None
+
+    def put(self, asked: str, result: object) -> None:
+        """Keep a result; where the folder cannot be written to nothing is kept."""
+        self._write(asked, pickle.dumps(result, protocol=5), MOST_RESULTS)
+
+
 def _digest(data: bytes) -> bytes:
     return blake2b(data, digest_size=_DIGEST).digest()
 
 
-def _tidy(folder: Path) -> None:
+def _tidy(folder: Path, most: int) -> None:
     """Delete the older half of too many files; another process may be doing so too."""
     with os.scandir(folder) as entries:
         files = [entry for entry in entries if entry.is_file()]
-    if len(files) <= MOST_FILES:
+    if len(files) <= most:
         return
     aged = []
     for entry in files:
         with suppress(OSError):
             aged.append((entry.stat().st_mtime, entry.path))
-    for _, path in sorted(aged)[: len(aged) - MOST_FILES // 2]:
+    for _, path in sorted(aged)[: len(aged) - most // 2]:
         with suppress(OSError):
             Path(path).unlink()

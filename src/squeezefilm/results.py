@@ -33,6 +33,11 @@ def to_json(value: Any) -> Any:
     ``frequency_Hz``. Arrays become lists, complex numbers [real, imaginary] pairs, NaN and
     infinities None, since JSON has none.
     """
+    kind = type(value)
+    if kind is float:  # most of what there is
+        return value if math.isfinite(value) else None
+    if kind is str or value is None:
+        return value
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         hints = typing.get_type_hints(type(value), include_extras=True)
         out: dict[str, Any] = {}
@@ -44,7 +49,8 @@ def to_json(value: Any) -> Any:
     if isinstance(value, typing.Mapping):
         return {str(key): to_json(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
-        return to_json(value.tolist())
+        plain = value.dtype.kind in "fiub" and bool(np.isfinite(value).all())
+        return value.tolist() if plain else to_json(value.tolist())
     if isinstance(value, list | tuple):
         return [to_json(item) for item in value]
     if isinstance(value, complex | np.complexfloating):
@@ -55,7 +61,7 @@ def to_json(value: Any) -> Any:
         return int(value)
     if isinstance(value, float | np.floating):
         return float(value) if math.isfinite(value) else None
-    if value is None or isinstance(value, str):
+    if isinstance(value, str):
         return value
     if isinstance(value, Path):
         return str(value)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from squeezefilm import kept_arrays
-from squeezefilm.kept_arrays import CACHE_VARIABLE, KeptArrays, cache_folder
+from squeezefilm.kept_arrays import CACHE_VARIABLE, KeptArrays, KeptResults, cache_folder
 
 VALUES = np.array([0.1, -3.0, 1e300, np.nextafter(1.0, 2.0)])
 
@@ -134,3 +134,35 @@ def test_a_user_without_a_home_keeps_nothing(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.delenv(CACHE_VARIABLE)
     monkeypatch.setattr(Path, "home", homeless)
     assert cache_folder() is None
+
+
+def test_a_result_is_kept_as_it_is(folder: Path, source: Path) -> None:
+    KeptResults("kind", [source]).put("asked", {"values": VALUES})
+    found = KeptResults("kind", [source]).get("asked")
+    assert np.array_equal(found["values"], VALUES)
+    assert KeptResults("kind", [source]).get("other") is None
+    source.write_text("changed")
+    assert KeptResults("kind", [source]).get("asked") is None
+
+
+def test_a_damaged_or_unreadable_result_counts_as_not_there(folder: Path, source: Path) -> None:
+    kept = KeptResults("kind", [source])
+    kept.put("asked", VALUES)
+    (file,) = (folder / "kind").iterdir()
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-1] + b"?")
+    assert kept.get("asked") is None
+    # Whole, but what is pickled in it no longer exists.
+    kept._write("asked", b"cgone_module\nNothing\n.", 10)
+    assert kept.get("asked") is None
+
+
+def test_of_results_few_are_kept(
+    folder: Path, source: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(kept_arrays, "MOST_RESULTS", 6)
+    kept = KeptResults("kind", [source])
+    for number in range(20):
+        kept.put(str(number), number)
+    assert len(list((folder / "kind").iterdir())) <= 7
+    assert kept.get("19") == 19

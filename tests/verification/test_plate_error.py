@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from squeezefilm.plate.elements.blas_threads import one_blas_thread
+from squeezefilm.blas_threads import one_blas_thread
 from squeezefilm.plate.elements.krylov import modes_near, prolonged
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.solid.coarse_modes import coarse_modes

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -64,6 +65,7 @@ from squeezefilm.render.fidelity.survival import FidelityTable
 from squeezefilm.render.fidelity.trace import FrictionTrace
 from squeezefilm.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.results import Result, stamp, to_json
+from squeezefilm.second_process import later, values
 
 BAND_POINTS, BAND_SAMPLES = 9, 64
 """Amplitudes at which the band of the friction is computed, and draws at each."""
@@ -199,6 +201,14 @@ class Analysis(Result):
     def survival(self) -> TextureSurvival | None:
         """Which grating survives at which speed; None where no voltage makes an amplitude."""
         return survival_by_drive(self.display, self.prediction)
+
+    def compute(self, names: Sequence[str], tell: SayProgress) -> None:
+        """Compute properties that are asked for in any case, by their `names`; a second process
+        takes its share."""
+        pieces = {name: later(getattr, self, name) for name in names}
+        for name, piece in reversed(pieces.items()):
+            tell(name.replace("_", " "))
+            vars(self)[name] = values(piece)[0]
 
     def finest_period(self) -> dict[str, float]:
         """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""
@@ -336,6 +346,7 @@ def _what_follows(
     """What one decides from, of a prediction; what a deadline leaves no room for is left out."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
+    survives = later(what_survives, prediction, tau)
     tell("friction over the active area")
     area = judged_area(display, prediction, samples=samples)
     tell("friction against amplitude")
@@ -346,7 +357,7 @@ def _what_follows(
     else:
         unsure, why_not = None, "the budget left no time for its interval"
     tell("verdict")
-    table = what_survives(prediction, tau)
+    (table,) = values(survives)
     return Analysis(
         display=display,
         prediction=prediction,

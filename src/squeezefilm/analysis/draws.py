@@ -125,6 +125,12 @@ class Tally:
         self.heights[draw_of] += 1
         self.example = self.example or words
 
+    def take(self, other: Tally) -> None:
+        """Count what another tally counted after this one."""
+        self.reasons += other.reasons
+        self.heights += other.heights
+        self.example = self.example or other.example
+
     def found(self, evaluations: int) -> Refusals:
         """What was counted, of so many."""
         count = sum(self.reasons.values())
@@ -179,6 +185,16 @@ class Mixture:
         if key not in self._known:
             self._known[key] = outcome_of(self, draw, free(draw.display))
         return self._known[key]
+
+    def learn(self, points: si.DimensionlessArray, found: si.FloatArray) -> None:
+        """Keep what another process found at points, shape (n, 3), where it was not refused."""
+        for point, row in zip(points, found, strict=True):
+            if np.isfinite(row[0]):
+                self._known[point.tobytes()] = Outcome(*row.tolist())
+
+    def __getstate__(self) -> dict[str, Any]:
+        # What comes of draws is many times larger than what they are drawn from.
+        return vars(self) | {"_known": {}}
 
     def draws(self, points: si.DimensionlessArray) -> Iterator[Draw]:
         """The draws at points of the unit cube, shape (n, inputs)."""

@@ -32,10 +32,15 @@ from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
+from squeezefilm.second_process import later, values
 
 SAMPLES, POINTS = 32, 4
 """Base samples where none are asked for, and how many points make the interval for each: chosen by
 `tests/verification/test_uncertainty_coverage.py`."""
+
+
+# Draws that are computed in one go.
+_BLOCK = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -253,23 +258,37 @@ def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
     return points if joint is None else joint.picked(mixture.paths, points)
 
 
-@as_drawn()
 def evaluate(
     mixture: Mixture, points: si.DimensionlessArray, tell: SayProgress
 ) -> tuple[Outcome, Refusals]:
     """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
-    where refused; and what was refused. `tell` is told some twenty times."""
-    found = np.full((len(points), 3), np.nan)
-    scale, tally = FreeAmplitude(mixture.display, mixture.prediction), Tally()
-    every = max(len(points) // 20, 1)
+    where refused; and what was refused. `tell` is told as it goes on; a second process takes its
+    share."""
+    blocks = np.array_split(points, max(len(points) // _BLOCK, 1))
+    pieces = [later(_evaluated, mixture, block) for block in blocks]
+    tally, found = Tally(), []
+    for number, piece in enumerate(reversed(pieces)):
+        tell(f"friction of draw {number * _BLOCK + 1} of {len(points)}")
+        values(piece)
+    for piece in pieces:
+        outcomes, refused = piece.value
+        found.append(outcomes)
+        tally.take(refused)
+    mixture.learn(points, np.concatenate(found))
+    return Outcome(*np.concatenate(found).T), tally.found(len(points))
+
+
+@as_drawn()
+def _evaluated(mixture: Mixture, points: si.DimensionlessArray) -> tuple[si.FloatArray, Tally]:
+    """What comes of some draws, shape (n, 3), and what was refused."""
+    found, tally = np.full((len(points), 3), np.nan), Tally()
+    scale = FreeAmplitude(mixture.display, mixture.prediction)
     for number, draw in enumerate(mixture.draws(points)):
-        if number % every == 0:
-            tell(f"friction of draw {number + 1} of {len(points)}")
         try:
             found[number] = mixture.outcome(points[number], draw, scale)
         except SqueezefilmError as error:
             tally.refuse(draw.heights, error)
-    return Outcome(*found.T), tally.found(len(points))
+    return found, tally
 
 
 def _interval(values: si.FloatArray) -> tuple[float, float] | None:

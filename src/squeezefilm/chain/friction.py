@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cached_property
 from typing import Annotated, cast
 
 import numpy as np
@@ -53,10 +54,15 @@ class FrictionLaw(PadLaw):
             return replace(self, model=model)
         return replace(self, model=model, position=0.0, place=None)
 
-    @property
+    @cached_property
     def on_even_wave(self) -> FrictionLaw:
         """The law over an even wave: itself unless it has a place."""
-        return self if self.place is None else replace(self, place=None)
+        if self.place is None:
+            return self
+        even = replace(self, place=None)
+        for known in ("asperities", "friction_coefficient", "_even_swings"):
+            vars(even)[known] = getattr(self, known)
+        return even
 
     @si.checked_numbers
     def gap(self, amplitude: si.MetreLike) -> PaperGap:

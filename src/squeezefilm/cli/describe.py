@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -134,9 +135,8 @@ class AnalyzeOptions(PointOptions):
 def analyze(asked: AnalyzeOptions) -> None:
     """From the display's description to resonance, amplitude, friction and textures."""
     from squeezefilm.analysis.analyze import analyze as run
-    from squeezefilm.report.display.figures import drawing, prepare
-    from squeezefilm.report.display.terminal import show_analysis
-    from squeezefilm.report.kit.drawing_process import drawing_process
+    from squeezefilm.report.display.terminal import SHOWN, SHOWN_WITH_ALL, show_analysis
+    from squeezefilm.second_process import second_process
 
     display = to_be_solved(
         asked.target,
@@ -145,18 +145,26 @@ def analyze(asked: AnalyzeOptions) -> None:
         theory=asked.theory,
         quiet=asked.as_json,
     )
-    drawer = drawing_process(asked.out is not None, prepare, drawing)
-    with drawer as aside, working(asked.as_json) as step:
+    with second_process(partial(_prepare, asked.out is not None)), working(asked.as_json) as step:
         result = run(display, **given(asked, leave="target out as_json whole"), progress=step)
         written = None
+        if asked.out is None and not asked.as_json:
+            result.compute(SHOWN_WITH_ALL if asked.whole else SHOWN, step)
         if asked.out is not None:
             from squeezefilm.report.display.page import write_analysis
 
-            written = write_analysis(result, asked.out, progress=step, aside=aside)
+            written = write_analysis(result, asked.out, progress=step)
     show = partial(show_analysis, whole=asked.whole)
     answer(asked.as_json, result, show, report=written)
     if written is None and not asked.as_json:
         typer.echo("add --out DIR to write result.json and a report with figures")
+
+
+def _prepare(figures: bool) -> None:
+    """Load what an analysis takes, before there is anything to analyse."""
+    import_module("squeezefilm.analysis.analyze")
+    if figures:
+        import_module("squeezefilm.report.display.figures").prepare()
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,6 @@ in another way, stands with `require`.
 
 from __future__ import annotations
 
-import cmath
 import collections.abc
 import functools
 import inspect
@@ -20,7 +19,7 @@ import math
 import sys
 import types
 import typing
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, is_dataclass
 from typing import Any, Literal, ParamSpec, TypeVar
 
@@ -28,6 +27,16 @@ import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.quantities.bounds import ROWS, Limit, bounds_of
+from squeezefilm.quantities.plain_values import (
+    IsPlain,
+    never_plain,
+    or_none,
+    plainly_array,
+    plainly_complex,
+    plainly_either,
+    plainly_number,
+    plainly_one_of,
+)
 from squeezefilm.quantities.require import (
     HOLDS,
     is_whole,
@@ -64,8 +73,7 @@ class _Rule:
     words: tuple[Any, ...] = ()
     records: tuple[type, ...] = ()
 
-    least: float = field(init=False)
-    most: float = field(init=False)
+    is_plain: IsPlain = field(init=False, compare=False)
 
     def __post_init__(self) -> None:
         # Both ends within, and no float beyond: what most calls give is checked by two comparisons.
@@ -75,21 +83,19 @@ class _Rule:
             math.nextafter(ends.get("above", -math.inf), math.inf),
         ]
         highs = [ends.get("at_most", _MOST), math.nextafter(ends.get("below", math.inf), -math.inf)]
-        object.__setattr__(self, "least", max(-_MOST, *lows))
-        object.__setattr__(self, "most", min(_MOST, *highs))
-
-    def quickly(self, value: Any) -> bool:
-        """Whether a value is plainly good as it is; where not, it is looked at in full."""
-        kind, given = self.kind, type(value)
-        if given is float:
-            return kind in ("number", "either") and self.least <= value <= self.most
-        if given is np.ndarray:
-            if kind not in ("array", "either") or value.dtype != float or not value.ndim:
-                return False
-            return value.size > 0 and bool(self.least <= value.min() and value.max() <= self.most)
-        if given is complex:
-            return kind == "complex" and cmath.isfinite(value)
-        return kind == "word" and given is str and value in self.words
+        for limit in self.limits:
+            # A limit that does not say its ends is asked itself.
+            lows.append(getattr(limit, "least", math.inf))
+            highs.append(getattr(limit, "most", -math.inf))
+        reach = max(-_MOST, *lows), min(_MOST, *highs)
+        look: IsPlain = {
+            "number": plainly_number(*reach),
+            "array": plainly_array(*reach),
+            "either": plainly_either(*reach),
+            "complex": plainly_complex if not self.limits else never_plain,
+            "word": plainly_one_of(self.words),
+        }.get(self.kind, never_plain)
+        object.__setattr__(self, "is_plain", or_none(look) if self.optional else look)
 
     def within(self, value: Any) -> bool:
         """Whether a number is within the bounds."""
@@ -164,10 +170,11 @@ def _rows_of(hint: Any) -> Any:
 
 def _checked_value(name: str, value: Any, rule: _Rule) -> Any:
     """The value as the call takes it, floats for numbers. Raises `InputError`."""
-    if not rule.quickly(value):
-        if (value is None and rule.optional) or isinstance(value, rule.records):
-            return value
-        value = _in_kind(name, value, rule)
+    if rule.is_plain(value) or isinstance(value, rule.records):
+        return value
+    if value is None and rule.optional:
+        return value
+    value = _in_kind(name, value, rule)
     for limit in rule.limits:
         limit.refuse_outside(value, name)
     return value
@@ -287,6 +294,7 @@ def _guarded(
     """The function, its arguments checked before and its result after."""
     names = list(inspect.signature(function).parameters)
     ruled: list[tuple[int, str, _Rule]] = []
+    looks: list[tuple[int, str, IsPlain, bool]] = []
     unknown = (strictly | weakly) - set(names)
     if unknown:
         raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
@@ -307,7 +315,24 @@ def _guarded(
             elif any(bounds_of(hint)):
                 raise TypeError(f"{function.__qualname__}: {name} is bounded and is no number")
         ruled.extend((at, name, rules[name]) for at, name in enumerate(names) if name in rules)
+        looks.extend((at, name, rule.is_plain, rule.kind == "either") for at, name, rule in ruled)
         ready.append(True)
+
+    def is_plain(args: tuple[Any, ...], kwargs: dict[str, Any]) -> bool:
+        """Whether all is plainly good as it is, with one shape at most to broadcast."""
+        count, shapes = len(args), 0
+        for at, name, look, broadcasts in looks:
+            if at < count:
+                value = args[at]
+            elif name in kwargs:
+                value = kwargs[name]
+            else:
+                continue
+            if not look(value):
+                return False
+            if broadcasts and type(value) is np.ndarray:
+                shapes += 1
+        return shapes < 2
 
     def check(args: list[Any], kwargs: dict[str, Any]) -> None:
         """Check arguments and put what the call takes in their place."""
@@ -331,15 +356,17 @@ def _guarded(
             read_annotations()
         if len(args) > len(names):
             return function(*args, **kwargs)  # which says how many arguments it takes
-        given: list[Any] = list(args)
-        check(given, kwargs)
+        given: Sequence[Any] = args
+        if not is_plain(args, kwargs):
+            given = list(args)
+            check(given, kwargs)
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"):
                 result = function(*given, **kwargs)
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             asked = dict(zip(names, given, strict=False)) | kwargs
             raise _beyond(function, asked, str(error)) from error
-        if _finite(result):
+        if result is None or _finite(result):
             return result
         asked = dict(zip(names, given, strict=False)) | kwargs
         raise _beyond(function, asked, "the result is not finite")

@@ -232,6 +232,9 @@ def _kinds(
     shares: si.DimensionlessArray, *columns: si.FloatArray
 ) -> tuple[si.FloatArray, si.DimensionlessArray]:
     """What differs among points, shape (columns, kinds), and the share of the pad of each kind."""
+    if len(columns) == 1:  # several times quicker than along an axis
+        alike, at = np.unique(columns[0], return_inverse=True)
+        return alike[None, :], np.bincount(at, weights=shares).astype(float)
     kinds, at = np.unique(np.stack(columns), axis=1, return_inverse=True)
     return kinds, np.bincount(at.ravel(), weights=shares).astype(float)
 

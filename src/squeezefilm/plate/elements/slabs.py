@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -33,9 +34,24 @@ class Slabs:
 
     def __init__(self, model: BoxModel) -> None:
         self.model = model
-        self.patterns: list[bytes] = []
+        self._number()
+
+    @functools.cached_property
+    def sections(self) -> list[CrossSection]:
+        """The matrices of every slice."""
+        return self._sliced[0]
+
+    @functools.cached_property
+    def patterns(self) -> list[bytes]:
+        """What every slice is like, but for the numbers of its ceramics."""
+        return self._sliced[1]
+
+    @functools.cached_property
+    def _sliced(self) -> tuple[list[CrossSection], list[bytes]]:
+        model = self.model
+        patterns: list[bytes] = []
+        found: list[CrossSection] = []
         sections: dict[bytes, CrossSection] = {}
-        self.sections: list[CrossSection] = []
         # Slices that differ only in the numbers of their ceramics share their matrices.
         shapes: dict[bytes, CrossSection] = {}
         for e in range(model.x.elements):
@@ -46,9 +62,14 @@ class Slabs:
                     codes = _renumbered(model, shapes[shape], e)
                 sections[exact] = codes or cross_section(model, e)
                 shapes.setdefault(shape, sections[exact])
-            self.sections.append(sections[exact])
-            self.patterns.append(shape)
-        self._number()
+            found.append(sections[exact])
+            patterns.append(shape)
+        return found, patterns
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Megabytes that are made anew in milliseconds, where anybody multiplies by them.
+        made_anew = ("sections", "patterns", "_sliced")
+        return {name: one for name, one in vars(self).items() if name not in made_anew}
 
     def _number(self) -> None:
         x = self.model.x

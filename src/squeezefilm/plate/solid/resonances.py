@@ -14,7 +14,7 @@ from scipy import ndimage
 from scipy.linalg import eigh
 
 from squeezefilm import quantities as si
-from squeezefilm.plate.elements.blas_threads import one_blas_thread
+from squeezefilm.blas_threads import one_blas_thread
 from squeezefilm.plate.solid.modes import Label, label_of, profiles, surface_shapes
 from squeezefilm.plate.solid.reduced import ReducedClass
 from squeezefilm.plate.solid.symmetry import Symmetry

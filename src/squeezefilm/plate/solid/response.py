@@ -12,11 +12,11 @@ import numpy as np
 from scipy import ndimage
 
 from squeezefilm import quantities as si
+from squeezefilm.blas_threads import one_blas_thread
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.elements.again import SolvedAgain
-from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.layers import COARSE, NORMAL, Resolution
 from squeezefilm.plate.solid.modes import MODEL

@@ -12,9 +12,9 @@ import math
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.blas_threads import one_blas_thread
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import BAND_MODES, require_within
-from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.layers import SCREENING
 from squeezefilm.plate.solid.mesh import wave_number

@@ -13,9 +13,9 @@ import time
 from typing import Annotated
 
 from squeezefilm import quantities as si
+from squeezefilm.blas_threads import one_blas_thread
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY
-from squeezefilm.plate.elements.blas_threads import one_blas_thread
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import (
     CoarseModes,

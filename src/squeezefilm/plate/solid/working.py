@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import json
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.kept_arrays import KeptResults
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.layers import Resolution
@@ -32,6 +36,9 @@ from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.size import solve_size
 from squeezefilm.plate.solid.solve import solve_for_response
 from squeezefilm.progress import NO_HURRY, Deadline, Pace
+from squeezefilm.results import to_json
+
+_KEPT = KeptResults("solved-plates", [Path(__file__).parents[1]])
 
 RESPONSE_POINTS = 200
 _LINE_POINTS = 401
@@ -183,16 +190,45 @@ def solid_mode(
     Without a label the plate's working mode. `pace` is told a text and a fraction, and its budget
     bounds the time: where finer meshes would not end in time the coarse one's answer is given, with
     its larger error (`coarseness`). The last plates that were solved are kept, those under each
-    budget by themselves. Raises what `solve_modes` and `harmonic_response` raise: `InputError`
-    where there is no such mode or nothing drives the plate, `GeometryError` for a plate that the
-    elements cannot carry, `OutOfTimeError` where not even the coarse mesh would end in time.
+    budget by themselves; in full also on disk, from one process to the next (`KeptResults`).
+    Raises what `solve_modes` and `harmonic_response` raise: `InputError` where there is no such
+    mode or nothing drives the plate, `GeometryError` for a plate that the elements cannot carry,
+    `OutOfTimeError` where not even the coarse mesh would end in time.
     """
     return _solid_mode(plate, label, pace)
 
 
-# A plate keeps 10 to 100 MB.
+# A plate keeps 10 to 100 MB in memory and 5 MB on disk.
 @functools.lru_cache(maxsize=8)
 def _solid_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pace) -> SolidMode:
+    asked = json.dumps([to_json(plate), label], sort_keys=True)
+    kept: SolidMode | None = _KEPT.get(asked)
+    if kept is None:
+        kept = _solved_mode(plate, label, pace)
+        if not kept.coarseness:
+            _KEPT.put(asked, _solved_again(kept, None, None))
+    # Without its bulk wherever else it is sent.
+    return _solved_again(
+        kept,
+        functools.partial(_modes_again, plate, label),
+        functools.partial(_response_again, plate, label),
+    )
+
+
+def _solved_again(
+    found: SolidMode,
+    modes: Callable[[], PlateModes] | None,
+    response: Callable[[], HarmonicResponse] | None,
+) -> SolidMode:
+    """The same, with how its parts are solved again; with None nothing of it stays behind."""
+    return dataclasses.replace(
+        found,
+        modes=dataclasses.replace(found.modes, _again=modes),
+        response=dataclasses.replace(found.response, _again=response),
+    )
+
+
+def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pace) -> SolidMode:
     wanted = label or plate.working_label
     modes, pieces = solve_for_response(
         plate,
@@ -203,15 +239,12 @@ def _solid_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pa
     )
     index = modes.index(wanted)
     frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
-    response = dataclasses.replace(
-        harmonic_response(
-            plate,
-            response_frequencies(frequency, quality),
-            resolution=modes.resolution,
-            progress=pace.share(_MODES, 1.0),
-            solved=pieces,
-        ),
-        _again=functools.partial(_response_again, plate, label),
+    response = harmonic_response(
+        plate,
+        response_frequencies(frequency, quality),
+        resolution=modes.resolution,
+        progress=pace.share(_MODES, 1.0),
+        solved=pieces,
     )
     lengthwise = wanted[0] >= wanted[1]
     span, across = (plate.length, plate.width)[:: 1 if lengthwise else -1]
@@ -280,6 +313,10 @@ def _answer_change(
         return 0.0
     coarse = answer(rough.solved, rough.values[number], rough.vectors[:, number])
     return abs(coarse / fine - 1)
+
+
+def _modes_again(plate: RectangularPlate, label: tuple[int, int] | None) -> PlateModes:
+    return solid_mode(plate, label).modes
 
 
 def _response_again(plate: RectangularPlate, label: tuple[int, int] | None) -> HarmonicResponse:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING
+import copy
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from squeezefilm.report.display import (
     area_figures,
@@ -114,7 +115,6 @@ FIGURES = (*DECISION, *MODELS, *TEXTURES)
 
 def prepare() -> None:
     """Load what drawing takes, before there is anything to draw."""
-    importlib.import_module("squeezefilm.analysis.analyze")
     style.svg(style.message_figure("Fonts", "are looked for"), "fonts", "")
 
 
@@ -125,3 +125,10 @@ def drawing(analysis: Analysis, key: str) -> str:
         figure = item.draw(analysis)
         message = " ".join(figure.get_suptitle().split())
         return style.svg(figure, key, f"{item.heading}. {message}. {item.reading}")
+
+
+def drawing_of(analysis: Analysis, key: str, shows: Mapping[str, Any]) -> str:
+    """As `drawing`, of an analysis of which what the figure `shows` is given, by name."""
+    whole = copy.copy(analysis)
+    vars(whole).update(shows)
+    return drawing(whole, key)

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.report.display.figures import DECISION, FIGURES, MODELS, TEXTURES, drawing
+from squeezefilm.report.display.figures import (
+    DECISION,
+    FIGURES,
+    MODELS,
+    TEXTURES,
+    drawing,
+    drawing_of,
+)
 from squeezefilm.report.display.rows import (
     decision_rows,
     more_rows,
@@ -19,7 +26,6 @@ from squeezefilm.report.display.rows import (
     working_point,
 )
 from squeezefilm.report.kit.decisions import interval_rows, sensitivity_rows
-from squeezefilm.report.kit.drawing_process import DrawingProcess
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.model_rows import (
     MISSED_HEADING,
@@ -45,6 +51,7 @@ from squeezefilm.report.kit.page_style import (
 )
 from squeezefilm.report.kit.point_rows import electronics_rows
 from squeezefilm.results import to_json
+from squeezefilm.second_process import later, values
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -54,6 +61,20 @@ if TYPE_CHECKING:
 # More samples of a trace than a reader can use would make megabytes of text.
 _MOST_SAMPLES = 4000
 _KINDS = {"good": "✓ Good", "limit": "△ Limit", "doubt": "? Doubt"}
+# What stands beside an analysis for comparison, each computed by itself.
+_BESIDE = (
+    "film_models",
+    "survival",
+    "ears",
+    "band",
+    "sensitivities",
+    "friction_curves",
+    "model_curves",
+    "other_models",
+    "texture",
+    "response",
+    "felt",
+)
 # Of what could be measured: as many rows as one decides from.
 _NEXT = 5
 
@@ -62,26 +83,24 @@ def write_analysis(
     analysis: Analysis,
     folder: Path,
     progress: Callable[[str], None] | None = None,
-    aside: DrawingProcess | None = None,
 ) -> Path:
     """Write result.json and report.html into `folder`; the path of the page.
 
-    The process `aside`, where there is one, draws figures while this one goes on. Raises
-    `InputError` where the folder cannot be written to.
+    A second process takes its share of the figures and of what they show. Raises `InputError`
+    where the folder cannot be written to.
     """
     folder, tell = require_folder(folder), progress or (lambda _: None)
-    if aside is not None:
-        aside.begin(analysis)
-    for number, item in enumerate(FIGURES, start=1):
-        tell(f"figure {number} of {len(FIGURES)}: {item.heading.lower()}")
-        shows = {name: getattr(analysis, name) for name in item.needs}
-        if aside is not None:
-            aside.ask(item.key, shows)
-    tell("what is felt, what each value does, other models")
+    figures = {item: later(drawing, analysis, item.key) for item in FIGURES if not item.needs}
+    analysis.compute(_BESIDE, tell)
+    for item in FIGURES:
+        if item.needs:
+            shows = {name: getattr(analysis, name) for name in item.needs}
+            figures[item] = later(drawing_of, analysis, item.key, shows)
+    tell("figures")
     summary = analysis.summary()
-    tell("writing the report")
     data = json_text(result_data(analysis, summary))
-    drawn = {} if aside is None else aside.drawings()
+    drawn = {item.key: svg for item, svg in zip(figures, values(*figures.values()), strict=True)}
+    tell("writing the report")
     whole = report_page(analysis, summary, drawn)
     write_folder(folder, {"result.json": data, "report.html": whole})
     return folder / "report.html"

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from squeezefilm.kept_arrays import CACHE_VARIABLE
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.solid.layers import FINE
@@ -79,3 +82,34 @@ def test_the_amplitude_s_error_holds_the_finer_mesh(mode: SolidMode) -> None:
     finer = harmonic_response(PLATE, f, resolution=FINE).amplitude_at(*mode.lobe).max()
     assert 0 < mode.amplitude_error < 0.05 * mode.amplitude_per_volt
     assert abs(mode.amplitude_per_volt - finer) <= mode.amplitude_error
+
+
+def test_another_process_has_the_solved_plate_to_the_bit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mode: SolidMode
+) -> None:
+    from squeezefilm.plate.solid import working
+
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    working._solid_mode.cache_clear()
+    first = solid_mode(PLATE, LABEL)
+    # As another process finds it: nothing in memory, and no solver to ask.
+    working._solid_mode.cache_clear()
+    monkeypatch.setattr(working, "_solved_mode", None)
+    kept = solid_mode(PLATE, LABEL)
+    working._solid_mode.cache_clear()
+    assert kept is not first
+    x, y = np.linspace(0, PLATE.length, 7), np.linspace(0, PLATE.width, 5)
+    for found in (first, kept):
+        assert np.array_equal(found.modes.frequencies, mode.modes.frequencies)
+        assert np.array_equal(found.response.displacement(x, y), mode.response.displacement(x, y))
+        assert found.response.neighbour(mode.frequency) == mode.response.neighbour(mode.frequency)
+        power = found.response.dissipated_power(10.0)
+        assert power == pytest.approx(mode.response.dissipated_power(10.0), rel=1e-12)
+        field = found.modes.field(0, x, y, PLATE.thickness)
+        assert np.array_equal(field, mode.modes.field(0, x, y, PLATE.thickness))
+    # Another plate is another question.
+    monkeypatch.undo()
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    other = dataclasses.replace(PLATE, thickness=1.3e-3)
+    assert solid_mode(other, LABEL).frequency != kept.frequency
+    working._solid_mode.cache_clear()

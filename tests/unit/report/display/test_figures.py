@@ -15,11 +15,11 @@ import pytest
 from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.display import load_display
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.report.display.figures import FIGURES, drawing, prepare
+from squeezefilm.report.display.figures import FIGURES, drawing, drawing_of, prepare
 from squeezefilm.report.display.layout_figures import drive_strip
 from squeezefilm.report.display.plate_figures import half_power
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.drawing_process import drawing_process
+from squeezefilm.second_process import later, second_process, values
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = (
@@ -168,14 +168,15 @@ def test_another_process_draws_the_same_from_what_a_figure_needs(
     name: str, analysis_of: Callable[[str], Analysis]
 ) -> None:
     analysis = analysis_of(name)
-    with drawing_process(True, prepare, drawing) as aside:
+    with second_process(prepare) as aside:
         if aside is None:
             pytest.skip("there is one processor")
         # Without what was asked of it before.
-        aside.begin(dataclasses.replace(analysis))
+        fresh, pieces = dataclasses.replace(analysis), {}
         for item in FIGURES:
-            aside.ask(item.key, {need: getattr(analysis, need) for need in item.needs})
-        drawn = aside.drawings()
+            shows = {need: getattr(analysis, need) for need in item.needs}
+            pieces[item.key] = later(drawing_of, fresh, item.key, shows)
+        drawn = dict(zip(pieces, values(*pieces.values()), strict=True))
     assert drawn == {key: drawing(analysis, key) for key in KEYS}
 
 
