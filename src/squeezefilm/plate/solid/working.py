@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,7 +35,6 @@ from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.size import solve_size
 from squeezefilm.plate.solid.solve import solve_for_response
 from squeezefilm.progress import NO_HURRY, Deadline, Pace
-from squeezefilm.results import to_json
 
 _KEPT = KeptResults("solved-plates", [Path(__file__).parents[1]])
 
@@ -201,7 +199,7 @@ def solid_mode(
 # A plate keeps 10 to 100 MB in memory and 5 MB on disk.
 @functools.lru_cache(maxsize=8)
 def _solid_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pace) -> SolidMode:
-    asked = json.dumps([to_json(plate), label], sort_keys=True)
+    asked = repr((plate, label))
     kept: SolidMode | None = _KEPT.get(asked)
     if kept is None:
         kept = _solved_mode(plate, label, pace)
