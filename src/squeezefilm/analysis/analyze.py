@@ -347,8 +347,6 @@ def _what_follows(
     mode = prediction.mode
     tau = prediction.envelope_time_constant
     survives = later(what_survives, prediction, tau)
-    tell("friction over the active area")
-    area = judged_area(display, prediction, samples=samples)
     tell("friction against amplitude")
     own = friction_curve(prediction, prediction.surface, prediction.model)
     tell("how sure the friction is")
@@ -356,6 +354,9 @@ def _what_follows(
         unsure, why_not = interval_or_reason(display, prediction, samples=samples)
     else:
         unsure, why_not = None, "the budget left no time for its interval"
+    # After the interval, of whose draws its odds are.
+    tell("friction over the active area")
+    area = judged_area(display, prediction, samples=samples)
     tell("verdict")
     (table,) = values(survives)
     return Analysis(

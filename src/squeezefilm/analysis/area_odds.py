@@ -15,16 +15,22 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import Outcome, as_drawn, mixture_of
-from squeezefilm.analysis.free_amplitude import FreeAmplitude
+from squeezefilm.analysis.draws import Mixture, Outcome, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import quantiles
-from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, sobol_points
+from squeezefilm.analysis.uncertainty import (
+    DRAWN_AT_ONCE,
+    POINTS,
+    SAMPLES,
+    evaluate,
+    sobol_points,
+)
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea, active_area
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.pad_place import pad_place
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.second_process import later, values
 
 WHERE = ("best", "median", "worst")
 
@@ -86,13 +92,30 @@ def area_odds(
     if p.touch.sharing is None or p.vibration_amplitude == 0 or not area.of_note:
         return None
     over = _elsewhere(display, p, area)
-    mixture, free = mixture_of(display, p), FreeAmplitude(display, p)
+    mixture = mixture_of(display, p)
     points = sobol_points(mixture, POINTS * samples, seed)
+    outcomes = np.stack(evaluate(mixture, points, lambda _: None)[0], axis=1)
+    blocks = max(len(points) // DRAWN_AT_ONCE, 1)
+    parts = zip(np.array_split(points, blocks), np.array_split(outcomes, blocks), strict=True)
+    pieces = [later(_drawn, mixture, over, *part) for part in parts]
+    return AreaOdds(np.concatenate(values(*pieces)))
+
+
+@as_drawn()
+def _drawn(
+    mixture: Mixture,
+    over: list[_Elsewhere | None],
+    points: si.DimensionlessArray,
+    outcomes: si.FloatArray,
+) -> si.DimensionlessArray:
+    """The friction of draws at places, shape (draws, places), NaN where a draw is refused."""
     drawn = np.full((len(points), len(over)), np.nan)
-    for row, point, draw in zip(drawn, points, mixture.draws(points), strict=True):
-        with contextlib.suppress(SqueezefilmError), as_drawn():
-            row[:] = _met(mixture.law(draw), mixture.outcome(point, draw, free), over)
-    return AreaOdds(drawn)
+    for row, outcome, draw in zip(drawn, outcomes.tolist(), mixture.draws(points), strict=True):
+        found = Outcome(*outcome)
+        if np.isfinite(found.friction):
+            with contextlib.suppress(SqueezefilmError):
+                row[:] = _met(mixture.law(draw), found, over)
+    return drawn
 
 
 class _Elsewhere(NamedTuple):

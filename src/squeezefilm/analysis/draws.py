@@ -186,6 +186,11 @@ class Mixture:
             self._known[key] = outcome_of(self, draw, free(draw.display))
         return self._known[key]
 
+    def known(self, points: si.DimensionlessArray) -> si.FloatArray:
+        """What was found at points before, shape (n, 3), NaN where nothing was."""
+        unknown = Outcome(np.nan, np.nan, np.nan)
+        return np.array([self._known.get(point.tobytes(), unknown) for point in points], float)
+
     def learn(self, points: si.DimensionlessArray, found: si.FloatArray) -> None:
         """Keep what another process found at points, shape (n, 3), where it was not refused."""
         for point, row in zip(points, found, strict=True):

@@ -39,8 +39,8 @@ SAMPLES, POINTS = 32, 4
 `tests/verification/test_uncertainty_coverage.py`."""
 
 
-# Draws that are computed in one go.
-_BLOCK = 12
+# So many that nobody waits long for the other process, and so few messages that they take no time.
+DRAWN_AT_ONCE = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,18 +264,19 @@ def evaluate(
     """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
     where refused; and what was refused. `tell` is told as it goes on; a second process takes its
     share."""
-    blocks = np.array_split(points, max(len(points) // _BLOCK, 1))
-    pieces = [later(_evaluated, mixture, block) for block in blocks]
-    tally, found = Tally(), []
+    found = mixture.known(points)
+    new = np.flatnonzero(np.isnan(found[:, 0]))
+    blocks = np.array_split(new, max(new.size // DRAWN_AT_ONCE, 1))
+    pieces = [later(_evaluated, mixture, points[block]) for block in blocks]
     for number, piece in enumerate(reversed(pieces)):
-        tell(f"friction of draw {number * _BLOCK + 1} of {len(points)}")
+        tell(f"friction of draw {number * DRAWN_AT_ONCE + 1} of {len(points)}")
         values(piece)
-    for piece in pieces:
-        outcomes, refused = piece.value
-        found.append(outcomes)
+    tally = Tally()
+    for block, piece in zip(blocks, pieces, strict=True):
+        found[block], refused = piece.value
         tally.take(refused)
-    mixture.learn(points, np.concatenate(found))
-    return Outcome(*np.concatenate(found).T), tally.found(len(points))
+    mixture.learn(points[new], found[new])
+    return Outcome(*found.T), tally.found(len(points))
 
 
 @as_drawn()
