@@ -32,7 +32,7 @@ from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
-from squeezefilm.second_process import later, values
+from squeezefilm.second_process import is_present, later, values
 
 SAMPLES, POINTS = 32, 4
 """Base samples where none are asked for, and how many points make the interval for each: chosen by
@@ -262,14 +262,17 @@ def evaluate(
     mixture: Mixture, points: si.DimensionlessArray, tell: SayProgress
 ) -> tuple[Outcome, Refusals]:
     """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
-    where refused; and what was refused. `tell` is told as it goes on; a second process takes its
-    share."""
+    where refused; and what was refused. `tell` is told some twenty times; a second process takes
+    its share."""
     found = mixture.known(points)
     new = np.flatnonzero(np.isnan(found[:, 0]))
-    blocks = np.array_split(new, max(new.size // DRAWN_AT_ONCE, 1))
+    blocks = np.array_split(new, -(-new.size // DRAWN_AT_ONCE)) if new.size else []
     pieces = [later(_evaluated, mixture, points[block]) for block in blocks]
-    for number, piece in enumerate(reversed(pieces)):
-        tell(f"friction of draw {number * DRAWN_AT_ONCE + 1} of {len(points)}")
+    every = max(len(pieces) // 20, 1)
+    # The other process begins with the first of them.
+    for number, piece in enumerate(reversed(pieces) if is_present() else pieces):
+        if number % every == 0:
+            tell(f"friction of draw {number * DRAWN_AT_ONCE + 1} of {len(points)}")
         values(piece)
     tally = Tally()
     for block, piece in zip(blocks, pieces, strict=True):
