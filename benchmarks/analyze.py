@@ -1,10 +1,10 @@
 """The whole verb `analyze` with its report: what an engineer waits for, and what takes the time.
 
-Peer: the same answer without report and interval, `predict` alone, in the same process. Times are
-those of the processor, one thread, of the process that computes (another draws the figures
-meanwhile), what was compiled loaded from the cache; the verb is run once before it is measured.
-"asked again" finds the films that the run before it solved and kept on disk, "first" solves them.
-A step takes all until the next one is told.
+Wall-clock times, imports included, what was compiled loaded from the cache, the least of some runs.
+"first" solves the plate and the films under the finger, "again" finds what the run before it kept
+on disk. Peers: the same run again on one processor, where there is no second process, and `predict`
+alone in the same process. Steps are the processor time of the process that an engineer waits for;
+one takes all until the next is told. The speed of a machine drifts: compare within one run only.
 Run: python benchmarks/analyze.py [DISPLAY …]
 """
 
@@ -19,62 +19,78 @@ import json
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
+from typing import NamedTuple
 
-ROUNDS = 2
+ROUNDS = 3
 DISPLAYS = ("biet2008-plate", "biet2008-stator", "touchpad-glass")
 PREDICT = ("resonance, amplitude and friction", "solve")
 
 # Its own process, as a person starts it: imports are waited for too.
 STEPS = """
-import json, sys, time
+import json, os, sys, time
+if sys.argv[3] == "one":
+    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
 took, last = {}, ["imports", 0.0]
 def tell(text):
     name, began = last
     now = time.process_time()
-    name = "what figures show" if name.startswith("figure") else name
-    name = "solve" if name.startswith(("coarse", "fine", "reducing")) else name
+    name = "draws" if name.startswith("friction of draw") else name
+    name = "solve" if name.startswith(("coarse", "fine", "reducing", "response")) else name
     took[name] = took.get(name, 0.0) + now - began
     last[:] = [text, now]
 from pathlib import Path
-from squeezefilm.analysis.analyze import analyze
-from squeezefilm.display import load_display
-from squeezefilm.report.display.figures import drawing, prepare
-from squeezefilm.report.display.page import write_analysis
-from squeezefilm.report.kit.drawing_process import drawing_process
-with drawing_process(True, prepare, drawing) as aside:
+from squeezefilm.report.display import figures
+from squeezefilm.second_process import second_process
+with second_process(figures.prepare):
+    from squeezefilm.analysis.analyze import analyze
+    from squeezefilm.display import load_display
+    from squeezefilm.report.display.page import write_analysis
     found = analyze(load_display(sys.argv[1]), progress=tell)
     tell("summary")
-    write_analysis(found, Path(sys.argv[2]), tell, aside)
-tell("end")
+    write_analysis(found, Path(sys.argv[2]), tell)
+    tell("end")
 print(json.dumps(took))
 """
 
 
-def steps(display: str, folder: Path, kept: str) -> dict[str, float]:
-    """Processor time (s) of each step of one run; `kept` is where films are kept, or "off"."""
-    command = [sys.executable, "-c", STEPS, display, str(folder / "report")]
+class Run(NamedTuple):
+    """What one run took: on the clock (s), and its steps by name, processor time (s)."""
+
+    wall: float
+    steps: dict[str, float]
+
+
+def run(display: str, folder: Path, kept: str, processors: str) -> Run:
+    """Run the verb; `kept` is where films and plates are kept, or "off"."""
+    command = [sys.executable, "-c", STEPS, display, str(folder / "report"), processors]
     environment = os.environ | {"SQUEEZEFILM_CACHE": kept}
+    began = time.perf_counter()
     done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
-    found: dict[str, float] = json.loads(done.stdout)
-    return found
+    return Run(time.perf_counter() - began, json.loads(done.stdout))
 
 
 def main() -> None:
-    """Print the least of some rounds for each display, and what limits it."""
-    print(f"{'display':<16}{'first':>8}{'asked again':>13}{'over predict':>14}   what takes it")
+    """Print for each display how long its analysis takes, over its peers, and what limits it."""
+    head = f"{'first':>8}{'again':>9}{'one processor':>15}{'over predict':>14}"
+    print(f"{'display':<16}{head}   what takes it")
     for display in sys.argv[1:] or DISPLAYS:
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            rounds = [steps(display, folder, str(folder / "kept")) for _ in range(ROUNDS + 1)][1:]
-            first = sum(steps(display, folder, "off").values())
-        best = min(rounds, key=lambda one: sum(one.values()))
-        whole = sum(best.values())
-        predicted = sum(best[step] for step in PREDICT if step in best)
-        ranked = sorted(best.items(), key=lambda item: -item[1])[:5]
+            kept = str(folder / "kept")
+            first = run(display, folder, kept, "all")
+            # In turn, so that both meet the same machine.
+            pairs = [
+                [run(display, folder, kept, one) for one in ("all", "one")] for _ in range(ROUNDS)
+            ]
+        both, alone = (min(some, key=lambda one: one.wall) for some in zip(*pairs, strict=True))
+        whole = sum(alone.steps.values())
+        predicted = sum(alone.steps[step] for step in PREDICT if step in alone.steps)
+        ranked = sorted(alone.steps.items(), key=lambda item: -item[1])[:5]
         most = ", ".join(f"{name} {100 * took / whole:.0f} %" for name, took in ranked)
-        times = f"{first:>6.1f} s{whole:>11.1f} s{whole / predicted:>14.1f}"
-        print(f"{display:<16}{times}   {most}", flush=True)
+        times = f"{first.wall:>6.1f} s{both.wall:>7.1f} s{alone.wall:>13.1f} s"
+        print(f"{display:<16}{times}{whole / predicted:>14.1f}   {most}", flush=True)
 
 
 if __name__ == "__main__":

@@ -149,6 +149,7 @@ class PadLaw:
             at = np.zeros(met.size)
             limit = self.kind.limit
             return self._pad(amplitude, self.speed, limit=limit, points=at, posture=wave).mean_gap
+        _require_tabulated(amplitude, met)
         swings = np.outer(amplitude, met)
         pressure = self.finger.plateau_pressure(self.normal_force)
         with self._named_force():
@@ -218,6 +219,7 @@ class PadLaw:
             # A pad that lies level: where along it a ridge is makes no difference.
             met, shares = self.ridge_swings
             points, posture = np.zeros(met.size), PadPosture(swings=met, shares=shares)
+            _require_tabulated(amplitude, met)
         elif points is None:
             points = ridge_points(self.finger, self.contact_side)
         with self._named_force():
@@ -249,4 +251,18 @@ class PadLaw:
         finger = self.finger
         return AsperityShear(
             speed, self.friction_coefficient, finger.tangential_stiffness, finger.tangential_ratio
+        )
+
+
+def _require_tabulated(amplitude: si.MetreLike, met: si.DimensionlessArray) -> None:
+    """Refuse what ridges cannot meet: films at such swings take minutes to tabulate, and no plate
+    moves so far."""
+    most = float(np.max(amplitude)) * float(np.max(met))
+    if most > HIGHEST_AMPLITUDE * (1 + 1e-9):
+        shown, highest = (
+            si.format_quantity(one, si.Unit("m")) for one in (most, HIGHEST_AMPLITUDE)
+        )
+        raise OutOfRangeError(
+            f"a ridge would meet an amplitude of {shown}; friction is known up to {highest}. "
+            "Vibrate less, or take a place where the face moves less"
         )
