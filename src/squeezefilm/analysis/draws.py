@@ -175,15 +175,21 @@ class Mixture:
     def at(self, prediction: Prediction, display: Display) -> Mixture:
         """The same inputs around another working point, of a display with another actuator."""
         other = copy.copy(self)
+        vars(other).pop("free", None)
         other.prediction, other.display, other._known = prediction, display, {}
         return other
 
-    def outcome(self, point: si.DimensionlessArray, draw: Draw, free: FreeAmplitude) -> Outcome:
+    @functools.cached_property
+    def free(self) -> FreeAmplitude:
+        """The amplitude without a finger of whatever is drawn; it keeps what it solved for that."""
+        return FreeAmplitude(self.display, self.prediction)
+
+    def outcome(self, point: si.DimensionlessArray, draw: Draw) -> Outcome:
         """What comes of the draw at a point of the unit cube, kept: whatever is asked of a display
         is asked of the same points."""
         key = point.tobytes()
         if key not in self._known:
-            self._known[key] = outcome_of(self, draw, free(draw.display))
+            self._known[key] = outcome_of(self, draw, self.free(draw.display))
         return self._known[key]
 
     def known(self, points: si.DimensionlessArray) -> si.FloatArray:

@@ -16,7 +16,6 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, mixture_of
-from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import Prediction
@@ -167,12 +166,11 @@ def _drawn(
     """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
     none is, NaN where the draw is refused; None with the reason where too many are."""
     mixture = mixture_of(display, p)
-    scale = FreeAmplitude(display, p)
     found = np.full((count, len(speeds)), np.nan)
     points = sobol_points(mixture, count, seed=1)
     for number, draw in enumerate(mixture.draws(points)):
         try:
-            high = mixture.outcome(points[number], draw, scale).amplitude
+            high = mixture.outcome(points[number], draw).amplitude
             found[number] = _felt_of(mixture, draw, high, senses, speeds)
         except SqueezefilmError:
             continue

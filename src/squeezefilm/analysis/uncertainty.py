@@ -19,7 +19,6 @@ from squeezefilm.analysis.draws import (
     between_limits,
     mixture_of,
 )
-from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.influences import (
     GroupInfluence,
     Influence,
@@ -286,10 +285,9 @@ def evaluate(
 def _evaluated(mixture: Mixture, points: si.DimensionlessArray) -> tuple[si.FloatArray, Tally]:
     """What comes of some draws, shape (n, 3), and what was refused."""
     found, tally = np.full((len(points), 3), np.nan), Tally()
-    scale = FreeAmplitude(mixture.display, mixture.prediction)
     for number, draw in enumerate(mixture.draws(points)):
         try:
-            found[number] = mixture.outcome(points[number], draw, scale)
+            found[number] = mixture.outcome(points[number], draw)
         except SqueezefilmError as error:
             tally.refuse(draw.heights, error)
     return found, tally

@@ -314,3 +314,15 @@ def test_the_active_area_of_a_disc_is_said_to_be_a_disc() -> None:
     stated = active_area(of_its_own, predict(of_its_own))
     assert stated is not None
     assert stated.sentence.startswith("Over the active area of 6 mm × 4 mm (as the display's ")
+
+
+def test_what_no_ridge_can_meet_is_refused_before_films_are_tabulated() -> None:
+    p = predicted("plate")
+    shape = surface_shape(PLATE.actuator, p.mode)
+    law = dataclasses.replace(p.law, place=PadPlace(shape, 41.5e-3, 24.5e-3))
+    for one in (law, law.on_even_wave):
+        most = one.largest_amplitude
+        with pytest.raises(OutOfRangeError, match="friction is known up to 50 µm"):
+            one.curve(np.array([1e-6, 1.01 * most / min(1.0, np.max(one.ridge_swings[0]))]))
+        with pytest.raises(OutOfRangeError, match="a ridge would meet"):
+            one.mean_gap(99e-6)

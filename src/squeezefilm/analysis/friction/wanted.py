@@ -18,7 +18,6 @@ from squeezefilm.analysis.draws import (
     as_drawn,
     between_limits,
 )
-from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, refusal_words, sobol_points
 from squeezefilm.chain.amplitude_search import HIGHEST_AMPLITUDE
@@ -201,7 +200,7 @@ def uncertain_voltage(
     )
     mixture = Mixture(display, unit, driven=True)
     points = sobol_points(mixture, POINTS * samples, seed)
-    scale, tally = FreeAmplitude(display, unit), Tally()
+    tally = Tally()
     volts = np.full(len(points), np.nan)
     every, first = max(len(points) // 20, 1), max(p.vibration_amplitude, 1e-6)
     for number, draw in enumerate(mixture.draws(points)):
@@ -211,7 +210,7 @@ def uncertain_voltage(
         try:
             amplitude = _amplitude(law, draw, relative_friction, first)
             kept = kept_at(mixture.mode(draw), law, amplitude) if np.isfinite(amplitude) else 1.0
-            volts[number] = amplitude / (scale(draw.display) * kept)
+            volts[number] = amplitude / (mixture.free(draw.display) * kept)
         except SqueezefilmError as error:
             tally.refuse(draw.heights, error)
     refused = tally.found(len(points))
