@@ -225,7 +225,7 @@ def _key_numbers(analysis: Analysis) -> str:
             for label, text, remark in of_subject
         ]
         kinds += ["subject", *[""] * len(of_subject)]
-    here = working_point(analysis.prediction)
+    here = as_html(working_point(analysis.prediction))
     return html_table(f"{here[0].upper()}{here[1:]}", _HEAD, rows, kinds=kinds)
 
 

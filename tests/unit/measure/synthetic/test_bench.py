@@ -125,8 +125,8 @@ def test_every_vibration_of_a_default_bench_is_adequate_and_near_the_truth(tmp_p
     names = [name for name in bench.recordings if not name.startswith("friction")]
     kept = {name: bench.recordings[name] for name in names}
     write_synthetic_bench(tmp_path, SyntheticBench(kept, bench.truth))
-    observed, left_out = folder_observations(display, tmp_path, lambda _: None)
-    assert left_out == ()
+    seen = folder_observations(display, tmp_path, lambda _: None)
+    assert seen.left_out == ()
     true = working_mode(bench.truth.display.actuator)
     assert true.solid is not None
     allowed = {
@@ -136,6 +136,6 @@ def test_every_vibration_of_a_default_bench_is_adequate_and_near_the_truth(tmp_p
         "quality_factor": (true.quality_factor, 0.03),
     }
     for answer, (value, share) in allowed.items():
-        found = [one.value for one in observed if one.answer == answer]
+        found = [one.value for one in seen.observations if one.answer == answer]
         assert found, answer
         assert found == pytest.approx([value] * len(found), rel=share), answer
