@@ -271,7 +271,8 @@ def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
     name = re.sub(r"[^A-Za-z0-9._-]+", "-", file.stem) or "display"
     own = re.sub(r'(?m)^name = ".*"$', f'name = "{name}"', text, count=1)
     header = (
-        f"# Started from the preset {preset}: change what is yours, and say where it is from.\n"
+        f"# Started from the preset {preset}: change what is yours, the title too, "
+        "and say where it is from.\n"
         "# While the next line stands, a number that you change loses the source beside it, until\n"
         f'# the words of the source are yours too.\ncopied_from = "{preset}"\n\n'
     )

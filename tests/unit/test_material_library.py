@@ -107,6 +107,7 @@ def test_a_material_that_is_only_taken_for_it_makes_its_values_assumed() -> None
 def test_a_name_that_is_none_is_refused_with_what_there_is() -> None:
     for table, says in (
         ('material = "aluminium 5803"', "Did you mean 'aluminium 5083'"),
+        ('material = "aluminium"', "Several names contain it"),
         ('material = "PZT-4"', "'PZT-4' is a ceramic, and a substrate is wanted here"),
         ("material = 3", "3 is no name of a material"),
     ):

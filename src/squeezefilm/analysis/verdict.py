@@ -165,7 +165,8 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
         where += f", at {p.vibration_amplitude * 1e6:.3g} µm"
     elif abs(p.law.place.at_centre - 1) > 0.005:
         told_of = p.law.place.antinode_said
-        where += f" ({told_of}, of which amplitudes are told, {p.vibration_amplitude * 1e6:.3g} µm)"
+        amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
+        where += f" ({amplitude} at {told_of}, where amplitudes are given elsewhere)"
     asked = f"{PAPER_CRITERION:.2f}, as the paper asks"
     if unsure is None:
         because = why_not or "no interval was computed"

@@ -68,7 +68,10 @@ def materials(
 @app.command()
 def new(
     file: Annotated[Path, typer.Argument(callback=reachable, help="The TOML file to write.")],
-    source: Annotated[str, typer.Option("--from", help="The preset to start from.")],
+    source: Annotated[
+        str,
+        typer.Option("--from", help="The preset to start from; squeezefilm presets lists them."),
+    ],
     force: Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")] = False,
 ) -> None:
     """Write a commented TOML file of your own, starting from a preset."""

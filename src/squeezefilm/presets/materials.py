@@ -74,6 +74,9 @@ def named(name: str, kind: Kind | None = None) -> Material:
     if found is None:
         words = [word for one in library() for word in (one.name, *one.also)]
         hint = si.did_you_mean(name, words) or si.did_you_mean(name.lower(), words)
+        # "aluminium" or "PZT" is part of several names: to propose one of them would be chance.
+        if wanted and sum(wanted in _plain(one.name) for one in library()) > 1:
+            hint = " Several names contain it: write one of them."
         raise InputError(f"there is no material '{name[:100]}'.{hint} {known}")
     if kind not in (None, found.kind):
         raise InputError(f"'{found.name}' is a {found.kind}, and a {kind} is wanted here. {known}")

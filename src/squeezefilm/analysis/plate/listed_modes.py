@@ -168,7 +168,7 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
     best = max(able, key=lambda mode: mode.amplitude_per_volt / (1 + 4 * mode.neighbour_share))
     straight = "" if best.straightness is None else ", its nodal lines cross one side only"
     others = (
-        f", and of {len(able)} such modes it moves most for its neighbours"
+        f", and of {len(able)} such modes it moves most, counting against it what neighbours add"
         if len(able) > 1
         else ", the only such mode here"
     )

@@ -126,7 +126,7 @@ def collected_modes(
         energy_shares=np.array(taken(table.energy_shares for table in tables)),
         model=MODEL,
         status=(
-            f"all {len(order)} modes within {tolerance:.1e} (estimated)"
+            f"the frequencies of all {len(order)} modes within {100 * tolerance:.2g} % (estimated)"
             if over == 0
             else f"{over} of {len(order)} modes have an estimated error above {tolerance:.1e}; "
             + ("the time was up" if coarse else "the finest mesh was used")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
-from squeezefilm.report.kit.numbers import HZ, PER_VOLT, A, M, V, changed, shown
+from squeezefilm.report.kit.numbers import HZ, PER_VOLT, A, M, V, changed, printable, shown
 from squeezefilm.report.kit.point_rows import Row, heat_rows, sound_rows
 from squeezefilm.report.kit.terminal import heading, show_rows, table
 
@@ -184,7 +184,7 @@ def show_plate(result: SolvedBody) -> None:
         )
     console.print(f"{result.model}; {result.status}")
     for doubt in (*result.objections, *result.heat.doubts):
-        console.print(f"! {doubt}")
+        console.print(f"! {printable(doubt)}")
 
 
 def _theory_rows(result: PlateAnalysis) -> list[Row]:
