@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from squeezefilm import quantities as si
 from squeezefilm.plate.layout import Actuator, RectangularPlate
 from squeezefilm.plate.solid.resonances import DrivenMode, Moving, strongest_neighbour
-from squeezefilm.plate.solid.screening import symmetry_in_words
+from squeezefilm.plate.solid.screening import SCREENING_ERROR, symmetry_in_words
 
 _HZ, _PER_VOLT = si.Unit("Hz"), si.Unit("m/V")
 
@@ -36,7 +36,8 @@ class ListedMode:
     its own, `neighbour_share` how much it adds, over this mode's amplitude. `unique` is whether no
     other mode of the list with at least a tenth of its amplitude has the label. `straightness` is
     the share of the shape that has straight nodal lines, `choice` what to write into the display's
-    file to work in this mode; None where there is no such thing.
+    file to work in this mode; None where there is no such thing. A mode is `perhaps_audible` where
+    the error of its frequency reaches into the hearing range.
     """
 
     label: str
@@ -52,6 +53,7 @@ class ListedMode:
     unique: bool = True
     straightness: si.Dimensionless | None = None
     choice: str | None = None
+    perhaps_audible: bool = False
 
     @property
     def half_bandwidth(self) -> si.Hertz:
@@ -89,6 +91,8 @@ def listed_mode(mode: DrivenMode) -> ListedMode:
         audible=mode.frequency < HEARING,
         straightness=mode.straightness,
         choice=_choice(mode.label),
+        # Screened frequencies are too high if anything.
+        perhaps_audible=HEARING <= mode.frequency < HEARING * (1 + SCREENING_ERROR),
     )
 
 
@@ -155,15 +159,15 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
         mode
         for mode in modes
         if mode.choice is not None
-        and not mode.audible
+        and not (mode.audible or mode.perhaps_audible)
         and (mode.straightness is None or mode.straightness >= _STRAIGHT)
     ]
     if not able:
         return Suggestion(
             None,
-            "No driven mode in this band is above the hearing range and has straight nodal lines "
-            "across one side only, so that none can be suggested: look in a wider band (--band), "
-            "or change the ceramics' polarity, place or size.",
+            "No driven mode in this band is surely above the hearing range and has straight nodal "
+            "lines across one side only, so that none can be suggested: look in a wider band "
+            "(--band), or change the ceramics' polarity, place or size.",
         )
     best = max(able, key=lambda mode: mode.amplitude_per_volt / (1 + 4 * mode.neighbour_share))
     straight = "" if best.straightness is None else ", its nodal lines cross one side only"

@@ -57,6 +57,8 @@ def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
 def _remarks(mode: ListedMode) -> Iterator[str]:
     if mode.audible:
         yield "audible"
+    if mode.perhaps_audible:
+        yield "perhaps audible"
     if mode.hidden:
         yield "hidden"
     elif mode.crowded:

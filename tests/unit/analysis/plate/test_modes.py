@@ -100,6 +100,9 @@ def test_the_suggestion_is_inaudible_straight_and_moves_most() -> None:
     assert best.mode is modes[3]
     assert best.text.startswith("Write nodal_lines = 8: at 30 kHz (8,0)")
     assert "of 2 such modes" in best.text
+    # What may be audible for all that was screened is not advised, however far it moves.
+    doubtful = row("(6,0)", 20.5e3, 9e-7, perhaps_audible=True)
+    assert suggested([doubtful, *modes]).text == best.text
     # What the file has already need not be written.
     kept = suggested(modes, modes[3])
     assert kept.text.startswith("Keep nodal_lines = 8, as described: at 30 kHz (8,0)")
