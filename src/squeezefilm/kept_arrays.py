@@ -140,7 +140,8 @@ class KeptResults(_Kept):
 
     def put(self, asked: str, result: object) -> None:
         """Keep a result; where the folder cannot be written to nothing is kept."""
-        self._write(asked, pickle.dumps(result, protocol=5), MOST_RESULTS)
+        if self._file(asked) is not None:
+            self._write(asked, pickle.dumps(result, protocol=5), MOST_RESULTS)
 
 
 def _digest(data: bytes) -> bytes:
