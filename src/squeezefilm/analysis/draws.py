@@ -92,6 +92,21 @@ class Refusals:
         """Of all draws."""
         return self.count / self.evaluations
 
+    @staticmethod
+    def none() -> Refusals:
+        """Of no draws."""
+        return Tally().found(0)
+
+    def together_with(self, more: Refusals) -> Refusals:
+        """These and those of other draws."""
+        return Refusals(
+            self.count + more.count,
+            self.evaluations + more.evaluations,
+            self.reasons + more.reasons,
+            self.heights + more.heights,
+            self.example or more.example,
+        )
+
     @property
     def sentence(self) -> str:
         """How many were refused and why."""

@@ -1,4 +1,8 @@
-"""How much of the variance of µ′/µ each input explains: Sobol' indices from Saltelli's design."""
+"""How much of the variance of µ′/µ each input explains: Sobol' indices from Saltelli's design.
+
+Most inputs of a display explain next to nothing, which some rows of the design show: the others are
+drawn for the rest alone.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,10 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Input
 from squeezefilm.analysis.parameters import Knowledge
+
+
+# An input whose share of the variance is below this, its doubt included, is followed no further.
+_NEXT_TO_NOTHING = 0.02
 
 
 @dataclass(frozen=True)
@@ -41,16 +49,33 @@ def influences_of(
     inputs: tuple[Input, ...], friction: si.DimensionlessArray
 ) -> tuple[Influence, ...]:
     """What each input explains of the design's frictions, shape (samples, inputs + 4); the most
-    important first."""
+    important first. An input that was not `followed` to the end has NaN in the last rows."""
     a, b = friction[:, 0], friction[:, -3]
-    whole = (a - b) ** 2
+    scale = float(np.mean((a - b) ** 2)) or 1.0
     found = []
     for k, item in enumerate(inputs):
         with_b = friction[:, k + 1]
-        total, total_error = _ratio((a - with_b) ** 2, whole)
-        rest, rest_error = _ratio((b - with_b) ** 2, whole)
+        there = np.isfinite(with_b)
+        of_a, of_b, with_b = a[there], b[there], with_b[there]
+        whole = (of_a - of_b) ** 2
+        total, total_error = _ratio((of_a - with_b) ** 2, whole, scale)
+        rest, rest_error = _ratio((of_b - with_b) ** 2, whole)
         found.append(Influence(item, 1 - rest, rest_error, total, total_error))
     return tuple(sorted(found, key=lambda item: -item.total))
+
+
+def followed(friction: si.DimensionlessArray) -> si.IntArray:
+    """The columns of the design, by number, that are worth drawing further after the frictions of
+    its first rows, shape (rows, inputs + 4): all but those of inputs that explain next to nothing.
+    Refused draws are NaN."""
+    known = friction[np.isfinite(friction).all(axis=1)]
+    every = np.arange(friction.shape[1])
+    if not len(known):
+        return every
+    a, b = known[:, 0], known[:, -3]
+    whole = (a - b) ** 2
+    small = [k for k in every[1:-3] if sum(_ratio((a - known[:, k]) ** 2, whole)) < _NEXT_TO_NOTHING]
+    return np.setdiff1d(every, small)
 
 
 def groups_of(friction: si.DimensionlessArray) -> tuple[GroupInfluence, ...]:
@@ -69,13 +94,15 @@ def groups_of(friction: si.DimensionlessArray) -> tuple[GroupInfluence, ...]:
     )
 
 
-def _ratio(part: si.FloatArray, whole: si.FloatArray) -> tuple[float, float]:
+def _ratio(
+    part: si.FloatArray, whole: si.FloatArray, scale: float | None = None
+) -> tuple[float, float]:
     """Jansen's estimator of a share of the variance, and the half width of its 95 % interval.
 
     Half the mean square of what differs where only some inputs do over that where all do: as a
-    ratio of the same rows, in which most of the noise cancels. Jansen 1999,
-    10.1016/S0010-4655(98)00154-4.
+    ratio of the same rows, in which most of the noise cancels. `scale` is the mean of the whole
+    where more rows of it are known. Jansen 1999, 10.1016/S0010-4655(98)00154-4.
     """
-    scale = float(np.mean(whole)) or 1.0
+    scale = scale or float(np.mean(whole)) or 1.0
     share = float(np.mean(part)) / scale
     return share, 1.96 * float(np.std(part - share * whole)) / scale / len(part) ** 0.5

@@ -22,6 +22,7 @@ from squeezefilm.analysis.draws import (
 from squeezefilm.analysis.influences import (
     GroupInfluence,
     Influence,
+    followed,
     groups_of,
     influences_of,
 )
@@ -40,6 +41,9 @@ SAMPLES, POINTS = 32, 4
 
 # So many that nobody waits long for the other process, and so few messages that they take no time.
 DRAWN_AT_ONCE = 12
+
+# From fewer rows one cannot tell which inputs matter.
+_FIRST_ROWS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,8 +151,8 @@ def uncertain_friction(
 
     What is drawn, and with which weights, says `draws.Mixture`. The interval is that of 4 × samples
     Sobol' points (`samples` a power of two, 8 to 65 536). The influences are by Saltelli's design,
-    in which a law is drawn by a uniform coordinate as a value is: samples × (inputs + 4) more.
-    Source: Saltelli et al. 2010, 10.1016/j.cpc.2009.09.018.
+    in which a law is drawn by a uniform coordinate as a value is: at most samples × (inputs + 4)
+    more, less for inputs that explain next to nothing in the first rows. Source: Saltelli et al. 2010, 10.1016/j.cpc.2009.09.018.
 
     Raises `InputError` for `samples` that are no power of two, `OutOfRangeError` where more than
     2 % of the draws have no friction.
@@ -159,18 +163,15 @@ def uncertain_friction(
         )
     mixture = mixture_of(display, prediction)
     count = POINTS * samples
-    design = _design(mixture, samples, seed)
-    rows, columns, _ = design.shape
-    points = np.concatenate(
-        [sobol_points(mixture, count, seed), design.reshape(rows * columns, -1)]
-    )
-    drawn, refused = evaluate(mixture, points, progress or (lambda _: None))
+    tell = progress or (lambda _: None)
+    drawn, of_points = evaluate(mixture, sobol_points(mixture, count, seed), tell)
+    kept, of_design = _saltelli(mixture, samples, seed, tell)
+    refused = of_points.together_with(of_design)
     if refused.share > MOST_REFUSED:
         raise OutOfRangeError(refusal_words(refused))
-    friction, blocks = drawn.friction[:count], drawn.friction[count:].reshape(rows, columns)
+    friction = drawn.friction
     known = np.isfinite(friction)
     low, middle, high = (float(one) for one in quantiles(friction))
-    kept = blocks[np.isfinite(blocks).all(axis=1)]
     driven = prediction.voltage is not None
     power = mixture.power(mixture.prediction.touch)
     return UncertainFriction(
@@ -179,16 +180,16 @@ def uncertain_friction(
         interval=(low, high),
         level=LEVEL,
         samples=friction[known],
-        amplitudes=drawn.amplitude[:count][known],
+        amplitudes=drawn.amplitude[known],
         draws=count,
         influences=influences_of(mixture.inputs, kept),
         groups=groups_of(kept),
         refused=refused,
         seed=seed,
         model="film and asperities share the load; laws and mechanisms by their assumed weights",
-        amplitude_interval=_interval(drawn.amplitude[:count]) if driven else None,
+        amplitude_interval=_interval(drawn.amplitude) if driven else None,
         power=power,
-        power_interval=None if power is None else _interval(drawn.power[:count]),
+        power_interval=None if power is None else _interval(drawn.power),
     )
 
 
@@ -245,6 +246,28 @@ def _design(mixture: Mixture, samples: int, seed: int) -> si.FloatArray:
     if joint is None:
         return design
     return joint.moved(mixture.paths, design.reshape(-1, len(inputs))).reshape(design.shape)
+
+
+def _saltelli(
+    mixture: Mixture, samples: int, seed: int, tell: SayProgress
+) -> tuple[si.FloatArray, Refusals]:
+    """µ′/µ of the design, shape (samples, inputs + 4) less the rows with a refused draw, and what
+    was refused; NaN where an input explained too little to be followed."""
+    design = _design(mixture, samples, seed)
+    found = np.full(design.shape[:2], np.nan)
+    first = max(samples // 4, _FIRST_ROWS)
+    columns, refused = np.arange(found.shape[1]), Refusals.none()
+    for rows in (slice(0, first), slice(first, samples)):
+        asked = design[rows][:, columns]
+        if not asked.size:
+            break
+        drawn, more = evaluate(mixture, asked.reshape(-1, asked.shape[-1]), tell)
+        refused = refused.together_with(more)
+        found[rows, columns] = drawn.friction.reshape(asked.shape[:2])
+        columns = followed(found[rows])
+    whole = np.isfinite(found[:, columns]).all(axis=1)
+    whole[:first] &= np.isfinite(found[:first]).all(axis=1)
+    return found[whole], refused
 
 
 def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
