@@ -36,7 +36,7 @@ took, last = {}, ["imports", 0.0]
 def tell(text):
     name, began = last
     now = time.process_time()
-    name = "draws" if name.startswith("friction of draw") else name
+    name = "draws" if " draw " in name else name
     name = "solve" if name.startswith(("coarse", "fine", "reducing", "response")) else name
     took[name] = took.get(name, 0.0) + now - began
     last[:] = [text, now]

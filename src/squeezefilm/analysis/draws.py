@@ -49,14 +49,16 @@ from squeezefilm.errors import OutOfRangeWarning, SqueezefilmError
 from squeezefilm.plate.heat.warming import heat_source
 from squeezefilm.plate.loaded_mode import LoadedMode
 from squeezefilm.plate.working_mode import WorkingMode
+from squeezefilm.quantities.outermost import outermost_checked
 
 Input = Parameter | Choice
 
 
 @contextlib.contextmanager
 def as_drawn() -> Iterator[None]:
-    """Within it a draw beyond the range of its law counts as it is, without a warning for each."""
-    with warnings.catch_warnings():
+    """Within it a draw beyond the range of its law counts as it is, without a warning for each, and
+    what is made of a draw is checked once."""
+    with warnings.catch_warnings(), outermost_checked():
         warnings.simplefilter("ignore", OutOfRangeWarning)
         yield
 
@@ -91,11 +93,6 @@ class Refusals:
     def share(self) -> si.Dimensionless:
         """Of all draws."""
         return self.count / self.evaluations
-
-    @staticmethod
-    def none() -> Refusals:
-        """Of no draws."""
-        return Tally().found(0)
 
     def together_with(self, more: Refusals) -> Refusals:
         """These and those of other draws."""

@@ -42,6 +42,7 @@ SAMPLES, POINTS = 32, 4
 # So many that nobody waits long for the other process, and so few messages that they take no time.
 DRAWN_AT_ONCE = 12
 
+_WHICH = "which value matters, by draw"
 # From fewer rows one cannot tell which inputs matter.
 _FIRST_ROWS = 8
 
@@ -256,17 +257,20 @@ def _saltelli(
     design = _design(mixture, samples, seed)
     found = np.full(design.shape[:2], np.nan)
     first = max(samples // 4, _FIRST_ROWS)
-    columns, refused = np.arange(found.shape[1]), Refusals.none()
-    for rows in (slice(0, first), slice(first, samples)):
+    first, every = max(samples // 4, _FIRST_ROWS), np.arange(found.shape[1])
+
+    def draw(rows: slice, columns: si.IntArray) -> Refusals:
         asked = design[rows][:, columns]
-        if not asked.size:
-            break
-        drawn, more = evaluate(mixture, asked.reshape(-1, asked.shape[-1]), tell)
-        refused = refused.together_with(more)
+        drawn, refused = evaluate(mixture, asked.reshape(-1, asked.shape[-1]), tell, _WHICH)
         found[rows, columns] = drawn.friction.reshape(asked.shape[:2])
-        columns = followed(found[rows])
+        return refused
+
+    refused, columns = draw(slice(first), every), every
+    if samples > first:
+        columns = followed(found[:first])
+        refused = refused.together_with(draw(slice(first, samples), columns))
     whole = np.isfinite(found[:, columns]).all(axis=1)
-    whole[:first] &= np.isfinite(found[:first]).all(axis=1)
+    whole[:first] = np.isfinite(found[:first]).all(axis=1)
     return found[whole], refused
 
 
@@ -281,7 +285,10 @@ def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
 
 
 def evaluate(
-    mixture: Mixture, points: si.DimensionlessArray, tell: SayProgress
+    mixture: Mixture,
+    points: si.DimensionlessArray,
+    tell: SayProgress,
+    what: str = "friction of draw",
 ) -> tuple[Outcome, Refusals]:
     """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
     where refused; and what was refused. `tell` is told some twenty times; a second process takes
@@ -294,7 +301,7 @@ def evaluate(
     # The other process begins with the first of them.
     for number, piece in enumerate(reversed(pieces) if is_present() else pieces):
         if number % every == 0:
-            tell(f"friction of draw {number * DRAWN_AT_ONCE + 1} of {len(points)}")
+            tell(f"{what} {number * DRAWN_AT_ONCE + 1} of {len(points)}")
         values(piece)
     tally = Tally()
     for block, piece in zip(blocks, pieces, strict=True):

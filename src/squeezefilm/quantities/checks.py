@@ -26,6 +26,7 @@ from typing import Any, Literal, ParamSpec, TypeVar
 import numpy as np
 
 from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.quantities import outermost
 from squeezefilm.quantities.bounds import ROWS, Limit, bounds_of
 from squeezefilm.quantities.plain_values import (
     IsPlain,
@@ -300,6 +301,7 @@ def _guarded(
         raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
     rules: dict[str, _Rule] = {}
     ready: list[bool] = []
+    makes = function.__name__ == "__init__"
 
     def read_annotations() -> None:
         # The result's annotation may be imported for type checking only.
@@ -352,6 +354,8 @@ def _guarded(
 
     @functools.wraps(function)
     def guarded(*args: _P.args, **kwargs: _P.kwargs) -> _R:
+        if outermost.WITHIN.get() and not makes:
+            return function(*args, **kwargs)
         if not ready:
             read_annotations()
         if len(args) > len(names):
@@ -360,12 +364,16 @@ def _guarded(
         if not is_plain(args, kwargs):
             given = list(args)
             check(given, kwargs)
+        token = outermost.WITHIN.set(True) if outermost.ONLY.get() and not makes else None
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"):
                 result = function(*given, **kwargs)
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             asked = dict(zip(names, given, strict=False)) | kwargs
             raise _beyond(function, asked, str(error)) from error
+        finally:
+            if token is not None:
+                outermost.WITHIN.reset(token)
         if result is None or _finite(result):
             return result
         asked = dict(zip(names, given, strict=False)) | kwargs
