@@ -14,7 +14,6 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Input
 from squeezefilm.analysis.parameters import Knowledge
 
-
 # An input whose share of the variance is below this, its doubt included, is followed no further.
 _NEXT_TO_NOTHING = 0.02
 
@@ -74,7 +73,9 @@ def followed(friction: si.DimensionlessArray) -> si.IntArray:
         return every
     a, b = known[:, 0], known[:, -3]
     whole = (a - b) ** 2
-    small = [k for k in every[1:-3] if sum(_ratio((a - known[:, k]) ** 2, whole)) < _NEXT_TO_NOTHING]
+    small = [
+        k for k in every[1:-3] if sum(_ratio((a - known[:, k]) ** 2, whole)) < _NEXT_TO_NOTHING
+    ]
     return np.setdiff1d(every, small)
 
 

@@ -153,7 +153,8 @@ def uncertain_friction(
     What is drawn, and with which weights, says `draws.Mixture`. The interval is that of 4 × samples
     Sobol' points (`samples` a power of two, 8 to 65 536). The influences are by Saltelli's design,
     in which a law is drawn by a uniform coordinate as a value is: at most samples × (inputs + 4)
-    more, less for inputs that explain next to nothing in the first rows. Source: Saltelli et al. 2010, 10.1016/j.cpc.2009.09.018.
+    more, less for inputs that explain next to nothing in the first rows. Source: Saltelli et al.
+    2010, 10.1016/j.cpc.2009.09.018.
 
     Raises `InputError` for `samples` that are no power of two, `OutOfRangeError` where more than
     2 % of the draws have no friction.

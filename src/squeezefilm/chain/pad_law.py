@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -19,10 +20,12 @@ from squeezefilm.chain.friction_models import (
     ModelKind,
 )
 from squeezefilm.chain.pad_place import PadPlace
+from squeezefilm.compiled import announce
 from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED, Finger
+from squeezefilm.contact.finger.load import compiled_finger
 from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.rough_contact import ContactLaw
-from squeezefilm.contact.sharing.balance import share_load
+from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
+from squeezefilm.contact.sharing.balance import require_balanced
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import (
     FrictionRipple,
@@ -39,6 +42,11 @@ from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.hard_limits import FINGER_SPEED
 from squeezefilm.materials import Gas
 from squeezefilm.plate.loaded_mode import mean_square_wave
+
+if TYPE_CHECKING:
+    from squeezefilm.contact.finger.load_kernel import CompiledFinger
+
+PascalPerMetreComplex = Annotated[complex, si.Unit("Pa/m")]
 
 
 @si.checked_numbers
@@ -140,20 +148,54 @@ class PadLaw:
         return float(np.sqrt(self.finger.contact_area(self.normal_force)))
 
     @si.checked_numbers
-    def mean_gap(self, amplitude: si.MetreLike) -> si.MetreArray:
-        """The plateaus' mean gap (m) at amplitudes (m) of an even wave, wherever the pad is, in the
-        model's limit: of `sharing` what the vibration depends on, without the friction."""
-        met, shares = self._even_swings
+    def felt_stiffness(
+        self, amplitude: Annotated[si.Metre, si.AtLeast(0.0)]
+    ) -> PascalPerMetreComplex:
+        """What the plate feels of the finger per area of contact (Pa/m, complex) at an amplitude
+        (m) of an even wave, wherever the pad is, in the model's limit: of `sharing` what the
+        vibration depends on, without the friction. See `interface_stiffness`."""
+        from squeezefilm.contact.finger.load_kernel import felt
+        from squeezefilm.contact.sharing import kernel
+
+        (met, shares), table = self._even_swings, self._films
         if self.kind.limit != "own":
-            wave = PadPosture(swings=met, shares=shares)
-            at = np.zeros(met.size)
+            at, wave = np.zeros(met.size), PadPosture(swings=met, shares=shares)
             limit = self.kind.limit
-            return self._pad(amplitude, self.speed, limit=limit, points=at, posture=wave).mean_gap
+            tied = self._pad(amplitude, self.speed, limit=limit, points=at, posture=wave)
+            gap = float(tied.mean_gap[0])
+            swing = min(amplitude, 0.9 * gap, gap - self._least_gap)
+            return complex(felt(gap, swing, self._compiled_finger, self.asperities.compiled()))
         _require_tabulated(amplitude, met)
-        swings = np.outer(amplitude, met)
+        ridges = kernel.CompiledRidges(met, np.zeros(met.size), shares)
         pressure = self.finger.plateau_pressure(self.normal_force)
-        with self._named_force():
-            return share_load(self._films, self.asperities, swings, pressure).mean_gap @ shares
+        law, rows = self.asperities.compiled(), np.zeros((met.size, kernel.COLUMNS))
+        finger, least = self._compiled_finger, self._least_gap
+        announce(kernel.felt_stiffness, "stiffness under the finger", 20)
+        while True:
+            _, found, lacking = kernel.felt_stiffness(
+                amplitude, ridges, pressure, finger, least, law, table.compiled, rows
+            )
+            if lacking < 0:
+                break
+            table.build(lacking)
+        if lacking == -2:
+            with self._named_force():
+                require_balanced(
+                    rows, self.asperities, amplitude * met, np.full(met.size, pressure)
+                )
+        return complex(found)
+
+    @cached_property
+    def _compiled_finger(self) -> CompiledFinger:
+        finger = self.finger
+        share = finger.plateau_width / finger.ridge_period
+        return compiled_finger(finger.plateau_width, self.frequency, self.gas, finger.skin, share)
+
+    @property
+    def _least_gap(self) -> si.Metre:
+        """The gap at which the contact's law ends (m); none for separate asperities."""
+        law = self.asperities
+        return law.least_gap if isinstance(law, RoughContact) else -math.inf
 
     @property
     def mean_square(self) -> si.Dimensionless:

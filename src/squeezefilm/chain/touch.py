@@ -14,10 +14,7 @@ from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.contact.finger.load import (
     NewtonSecondPerMetreComplex,
     finger_impedance,
-    finger_stiffness,
-    interface_stiffness,
 )
-from squeezefilm.contact.rough_contact import RoughContact
 from squeezefilm.contact.sharing.pad import PadFriction
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode
@@ -214,16 +211,16 @@ def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: si.MetreArray) -
     if mode.modal_mass is None:
         return found
     pad = _Pad.of(law)
-    gaps = pad.law.mean_gap(pad.scale * amplitude)
-    for i, (one, gap) in enumerate(zip(amplitude, gaps, strict=True)):
-        felt = _felt(pad, float(one), float(gap))
-        found[i] = _loaded(mode, mode.modal_mass, felt).load_ratio
+    for i, one in enumerate(amplitude.tolist()):
+        found[i] = _loaded(mode, mode.modal_mass, _carried(pad, one)).load_ratio
     return found
 
 
 def _carried(pad: _Pad, amplitude: si.Metre) -> _Felt:
     """What the plate feels at an amplitude of the best antinode."""
-    return _felt(pad, amplitude, float(pad.law.mean_gap(pad.scale * amplitude)[0]))
+    law = pad.law
+    stiffness = law.felt_stiffness(pad.scale * amplitude)
+    return _Felt(stiffness, law.finger.contact_area(law.normal_force), pad.mean_square)
 
 
 class _Felt(NamedTuple):
@@ -245,31 +242,6 @@ class _Left(NamedTuple):
     amplitude: float
     mode: LoadedMode | None
     felt: _Felt
-
-
-def _felt(pad: _Pad, amplitude: si.Metre, mean_gap: si.Metre) -> _Felt:
-    law = pad.law
-    finger, asperities = law.finger, law.asperities
-    # The plateaus' mean gap beside the antinode's swing, which most of them do not meet: no deeper
-    # than the contact's law goes.
-    deepest = 0.9 * mean_gap
-    if isinstance(asperities, RoughContact):
-        deepest = min(deepest, mean_gap - asperities.least_gap)
-    interface = interface_stiffness(
-        mean_gap,
-        min(pad.scale * amplitude, deepest),
-        finger.plateau_width,
-        law.frequency,
-        law.gas,
-        asperities,
-    )
-    share = finger.plateau_width / finger.ridge_period
-    area = finger.contact_area(law.normal_force)
-    return _Felt(
-        finger_stiffness(interface, finger.skin, law.frequency, share),
-        area,
-        pad.mean_square,
-    )
 
 
 def _loaded(mode: WorkingMode, modal_mass: float, felt: _Felt) -> LoadedMode:

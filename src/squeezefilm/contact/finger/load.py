@@ -8,20 +8,22 @@ it.
 
 from __future__ import annotations
 
-from typing import Annotated
+import math
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.compiled import announce
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw
-from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.materials import Gas
 
-NewtonSecondPerMetreComplex = Annotated[complex, si.Unit("N*s/m")]
+if TYPE_CHECKING:
+    from squeezefilm.contact.finger.load_kernel import CompiledFinger
 
-_PHASES = np.cos(2 * np.pi * np.arange(64) / 64)
+NewtonSecondPerMetreComplex = Annotated[complex, si.Unit("N*s/m")]
 
 
 @si.checked_numbers
@@ -40,15 +42,33 @@ def interface_stiffness(
     harmonic of their law over the swing, −2⟨p_a cos T⟩/a, exact at any amplitude. Raises
     `InputError` for a gap, width or frequency not above 0, or a negative amplitude.
     """
-    sigma = squeeze_number(frequency, plateau_width, mean_gap, gas.viscosity, gas.ambient_pressure)
-    knudsen = gas.mean_free_path / mean_gap
-    spring = relative_stiffness(sigma, "strip", knudsen_number=knudsen)
-    damper = relative_damping(sigma, "strip", knudsen_number=knudsen)
-    film = gas.ambient_pressure / mean_gap * complex(float(spring), float(damper))
-    # A swing of ten picometres at the least: the limit of the difference quotient, without 0/0.
-    swing = max(amplitude, 1e-11)
-    pressure = np.asarray(asperities.pressure(mean_gap - swing * _PHASES))
-    return film + 2 * float(np.mean(pressure * _PHASES)) / swing
+    from squeezefilm.contact.finger import load_kernel as kernel
+
+    announce(kernel.felt, "stiffness under the finger", 5)
+    strip = compiled_finger(plateau_width, frequency, gas, Skin(), 1.0)
+    return complex(kernel.between(mean_gap, amplitude, strip, asperities.compiled()))
+
+
+@si.checked_numbers
+def compiled_finger(
+    plateau_width: si.Metre,
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
+    gas: Gas,
+    skin: Skin,
+    plateau_share: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)],
+) -> CompiledFinger:
+    """A finger at a frequency (Hz) as the compiled code takes it: plateaus of a width (m), which
+    are a share (0 to 1) of the contact, on a skin. Raises `InputError` for what cannot be used."""
+    from squeezefilm.contact.finger.load_kernel import CompiledFinger
+
+    unit = squeeze_number(frequency, plateau_width, 1.0, gas.viscosity, gas.ambient_pressure)
+    return CompiledFinger(
+        math.sqrt(float(unit)),
+        float(gas.mean_free_path),
+        float(gas.ambient_pressure),
+        plateau_share,
+        skin.dynamic_stiffness(frequency),
+    )
 
 
 @si.checked_numbers

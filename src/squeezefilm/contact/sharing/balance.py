@@ -87,8 +87,7 @@ def share_load(
         if lacking < 0:
             break
         table.build(lacking)
-    _refuse(rows, a, p)
-    _require_law(asperities, rows[:, kernel.GAP] - rows[:, kernel.SWING], p)
+    require_balanced(rows, asperities, a, p)
     model = _model(table, asperities, skin, "each plateau at its own balance")
     return _shared(a.reshape(form), p.reshape(form), rows, table, asperities, model)
 
@@ -166,6 +165,17 @@ def _shared(
         model=model,
         **{name: rows[..., at].reshape(pressure.shape) for name, at in columns.items()},
     )
+
+
+def require_balanced(
+    rows: si.FloatArray, law: ContactLaw, amplitude: si.FloatArray, pressure: si.FloatArray
+) -> None:
+    """Raise what `share_load` raises of the kernel's rows, each plateau at an amplitude (m) under a
+    pressure (Pa) of its own."""
+    from squeezefilm.contact.sharing import kernel
+
+    _refuse(rows, amplitude, pressure)
+    _require_law(law, rows[:, kernel.GAP] - rows[:, kernel.SWING], pressure)
 
 
 def _require_law(law: ContactLaw, nearest: si.FloatArray, pressure: si.FloatArray) -> None:

@@ -15,6 +15,7 @@ from squeezefilm import quantities as si
 from squeezefilm.compiled import compiled
 from squeezefilm.contact.asperities import CompiledAsperities
 from squeezefilm.contact.asperity_kernel import asperity_mean, bessel
+from squeezefilm.contact.finger.load_kernel import CompiledFinger, felt
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
 """What became of a balance."""
@@ -292,3 +293,38 @@ def balance_rows(
         if out[i, STATUS] == NEEDS_PANEL and lacking < 0:
             lacking = int(out[i, PANEL])
     return lacking
+
+
+@compiled(error_model="numpy")
+def felt_stiffness(
+    antinode: float,
+    ridges: CompiledRidges,
+    pressure: float,
+    finger: CompiledFinger,
+    least_gap: float,
+    asperities: CompiledAsperities,
+    films: CompiledFilms,
+    out: si.FloatArray,
+) -> tuple[float, complex, int]:
+    """The mean gap of plateaus (m), each at its own balance over a wave whose antinode has an
+    amplitude (m), and what the plate feels of them per area of contact (Pa/m).
+
+    `ridges` meet `amplitudes` over the antinode's. The third is the first panel lacking, −1 where
+    none does, and −2 where a plateau finds no balance or comes nearer than `least_gap` (m), where
+    the contact's law ends.
+    """
+    met, _, shares = ridges
+    lacking = balance_rows(
+        antinode * met, np.full(met.size, pressure), np.zeros(3), asperities, films, out
+    )
+    if lacking >= 0:
+        return math.nan, complex(math.nan), lacking
+    gap = 0.0
+    for i in range(met.size):
+        if out[i, STATUS] != BALANCED or out[i, GAP] - out[i, SWING] < least_gap:
+            return math.nan, complex(math.nan), -2
+        gap += shares[i] * out[i, GAP]
+    # The plateaus' mean gap beside the antinode's swing, which most of them do not meet: no deeper
+    # than the contact's law goes.
+    deepest = min(0.9 * gap, gap - least_gap)
+    return gap, felt(gap, min(antinode, deepest), finger, asperities), -1
