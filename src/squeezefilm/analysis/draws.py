@@ -183,12 +183,14 @@ class Mixture:
         self._pressure = display.finger.plateau_pressure()
         self.paths = tuple(one.path for one in self.inputs)
         self._known: dict[bytes, Outcome] = {}
+        self._parts: dict[str, tuple[dict[str, float], Any]] = {}
 
     def at(self, prediction: Prediction, display: Display) -> Mixture:
         """The same inputs around another working point, of a display with another actuator."""
         other = copy.copy(self)
         vars(other).pop("free", None)
-        other.prediction, other.display, other._known = prediction, display, {}
+        other.prediction, other.display = prediction, display
+        other._known, other._parts = {}, {}
         return other
 
     @functools.cached_property
@@ -217,7 +219,7 @@ class Mixture:
 
     def __getstate__(self) -> dict[str, Any]:
         # What comes of draws is many times larger than what they are drawn from.
-        return vars(self) | {"_known": {}}
+        return vars(self) | {"_known": {}, "_parts": {}}
 
     def draws(self, points: si.DimensionlessArray) -> Iterator[Draw]:
         """The draws at points of the unit cube, shape (n, inputs)."""
@@ -243,19 +245,24 @@ class Mixture:
         force = values.get(FORCE, p.normal_force)
         compliance = values.get(SKIN_COMPLIANCE, 1.0)
         beside = (FORCE, SKIN_COMPLIANCE, AMPLITUDE_SHARE, FRICTION_OFFSET)
-        rest = {k: v for k, v in values.items() if k not in beside}
-        here = with_values(self.display, rest)
+        by_part: dict[str, dict[str, float]] = {}
+        for path, value in values.items():
+            if path not in beside:
+                name, _, rest = path.partition(".")
+                by_part.setdefault(name, {})[rest] = value
+        parts = {name: self._part(name, changed) for name, changed in by_part.items()}
+        finger = parts.pop("finger", self.display.finger)
         changes: dict[str, object] = {
             path.split(".")[-1]: chosen[path] for path in (SHEAR, MOISTURE) if path in chosen
         }
-        asperities = here.finger.asperities
+        asperities = finger.asperities
         heights = chosen.get(HEIGHT_LAW, getattr(asperities, "heights", "persson"))
         changes["asperities"] = same_interface(asperities, heights, self._pressure)
         if not hasattr(changes["asperities"], "modulus"):
             # Of separate asperities no real contact area is known: µ is as described.
             changes["shear_strength"] = None
-        finger = dataclasses.replace(here.finger, **changes)  # type: ignore[arg-type]
-        here = dataclasses.replace(here, finger=finger)
+        finger = dataclasses.replace(finger, **changes)
+        here = dataclasses.replace(self.display, finger=finger, **parts)
         joint = self.display.joint
         return Draw(
             here,
@@ -266,6 +273,13 @@ class Mixture:
             values.get(AMPLITUDE_SHARE, 1.0 if joint is None else joint.amplitude_share),
             values.get(FRICTION_OFFSET, 0.0 if joint is None else joint.friction_offset),
         )
+
+    def _part(self, name: str, values: dict[str, float]) -> Any:
+        """A part of the display with other values. In a design of one change at a time most parts
+        are those of the draw before."""
+        if name not in self._parts or self._parts[name][0] != values:
+            self._parts[name] = values, with_values(getattr(self.display, name), values)
+        return self._parts[name][1]
 
     def mode(self, draw: Draw) -> WorkingMode:
         """The working mode of a draw: as described, but for its quality factor."""

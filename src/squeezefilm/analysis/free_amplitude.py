@@ -38,17 +38,25 @@ class FreeAmplitude:
         self.free = prediction.touch.free_amplitude
         self.reference = self._per_volt(display.actuator) if prediction.voltage is not None else 1.0
         self._curves: dict[str, tuple[float, float]] = {}
+        self._last: tuple[Actuator, float] = display.actuator, 1.0
 
     def __call__(self, display: Display) -> si.Metre:
         """The amplitude of a display (m)."""
-        free = self.free * self._volts(display)
-        here, nominal = display.actuator, self.nominal.actuator
+        here = display.actuator
+        # Draws one after the other often have the same.
+        if here is not self._last[0]:
+            self._last = here, self._share(here)
+        return self.free * self._volts(display) * self._last[1]
+
+    def _share(self, here: Actuator) -> float:
+        """The amplitude with an actuator over that with the described one."""
+        nominal = self.nominal.actuator
         if self.prediction.voltage is None or here == nominal:
-            return free
+            return 1.0
         if dataclasses.replace(here, quality_factor=nominal.quality_factor) == nominal:
             # At resonance, in proportion; a stator's amplitude is measured, whatever its Q.
             measured = isinstance(here, AnnularStator)
-            return free * (1 if measured else here.quality_factor / nominal.quality_factor)
+            return 1.0 if measured else here.quality_factor / nominal.quality_factor
         values = _values(here, nominal, self._paths)
         share = math.prod(self._moved(path, value) for path, value in values)
         if isinstance(here, RectangularPlate):
@@ -56,7 +64,7 @@ class FreeAmplitude:
             laid_out = dataclasses.replace(here, **as_made)
             if laid_out != nominal:
                 share *= self._per_volt(laid_out) / self.reference
-        return free * share
+        return share
 
     def _volts(self, display: Display) -> float:
         """An uncertain drive in proportion; a voltage asked for stands as it is."""

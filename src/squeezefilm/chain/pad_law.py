@@ -44,7 +44,7 @@ from squeezefilm.materials import Gas
 from squeezefilm.plate.loaded_mode import mean_square_wave
 
 if TYPE_CHECKING:
-    from squeezefilm.contact.finger.load_kernel import CompiledFinger
+    from squeezefilm.contact.sharing.kernel import CompiledPad
 
 PascalPerMetreComplex = Annotated[complex, si.Unit("Pa/m")]
 
@@ -133,7 +133,7 @@ class PadLaw:
             shear=self._shear(self.speed),
         )
 
-    @property
+    @cached_property
     def _films(self) -> FilmTable:
         return film_table(self.frequency, self.finger.plateau_width, self.gas, self.slip)
 
@@ -157,45 +157,42 @@ class PadLaw:
         from squeezefilm.contact.finger.load_kernel import felt
         from squeezefilm.contact.sharing import kernel
 
-        (met, shares), table = self._even_swings, self._films
+        (met, shares), known = self._even_swings, self._compiled
         if self.kind.limit != "own":
             at, wave = np.zeros(met.size), PadPosture(swings=met, shares=shares)
             limit = self.kind.limit
             tied = self._pad(amplitude, self.speed, limit=limit, points=at, posture=wave)
             gap = float(tied.mean_gap[0])
-            swing = min(amplitude, 0.9 * gap, gap - self._least_gap)
-            return complex(felt(gap, swing, self._compiled_finger, self.asperities.compiled()))
+            swing = min(amplitude, 0.9 * gap, gap - known.least_gap)
+            return complex(felt(gap, swing, known.finger, known.asperities))
         _require_tabulated(amplitude, met)
-        ridges = kernel.CompiledRidges(met, np.zeros(met.size), shares)
-        pressure = self.finger.plateau_pressure(self.normal_force)
-        law, rows = self.asperities.compiled(), np.zeros((met.size, kernel.COLUMNS))
-        finger, least = self._compiled_finger, self._least_gap
-        announce(kernel.felt_stiffness, "stiffness under the finger", 20)
+        rows, table = np.zeros((met.size, kernel.COLUMNS)), self._films
         while True:
-            _, found, lacking = kernel.felt_stiffness(
-                amplitude, ridges, pressure, finger, least, law, table.compiled, rows
-            )
+            _, found, lacking = kernel.felt_stiffness(amplitude, known, table.compiled, rows)
             if lacking < 0:
                 break
             table.build(lacking)
         if lacking == -2:
+            swings, alike = amplitude * met, np.full(met.size, known.pressure)
             with self._named_force():
-                require_balanced(
-                    rows, self.asperities, amplitude * met, np.full(met.size, pressure)
-                )
+                require_balanced(rows, self.asperities, swings, alike)
         return complex(found)
 
     @cached_property
-    def _compiled_finger(self) -> CompiledFinger:
-        finger = self.finger
-        share = finger.plateau_width / finger.ridge_period
-        return compiled_finger(finger.plateau_width, self.frequency, self.gas, finger.skin, share)
+    def _compiled(self) -> CompiledPad:
+        """The pad on an even wave as the compiled code takes it."""
+        from squeezefilm.contact.sharing import kernel
 
-    @property
-    def _least_gap(self) -> si.Metre:
-        """The gap at which the contact's law ends (m); none for separate asperities."""
-        law = self.asperities
-        return law.least_gap if isinstance(law, RoughContact) else -math.inf
+        announce(kernel.felt_stiffness, "stiffness under the finger", 20)
+        finger, law = self.finger, self.asperities
+        share, (met, shares) = finger.plateau_width / finger.ridge_period, self._even_swings
+        return kernel.CompiledPad(
+            kernel.CompiledRidges(met, np.zeros(met.size), shares),
+            finger.plateau_pressure(self.normal_force),
+            compiled_finger(finger.plateau_width, self.frequency, self.gas, finger.skin, share),
+            law.least_gap if isinstance(law, RoughContact) else -math.inf,
+            law.compiled(),
+        )
 
     @property
     def mean_square(self) -> si.Dimensionless:

@@ -46,6 +46,17 @@ class CompiledRidges(NamedTuple):
     shares: si.FloatArray
 
 
+class CompiledPad(NamedTuple):
+    """Plateaus, each at its own balance under a `pressure` (Pa), whose ridges meet `amplitudes`
+    over an antinode's; `least_gap` (m) is where the contact's law ends."""
+
+    ridges: CompiledRidges
+    pressure: float
+    finger: CompiledFinger
+    least_gap: float
+    asperities: CompiledAsperities
+
+
 @compiled(error_model="numpy")
 def _panel_value(c: si.FloatArray, xi: float, eta: float) -> float:
     """A two-dimensional Chebyshev sum by Clenshaw's recurrence, along η for each row, then ξ."""
@@ -297,34 +308,25 @@ def balance_rows(
 
 @compiled(error_model="numpy")
 def felt_stiffness(
-    antinode: float,
-    ridges: CompiledRidges,
-    pressure: float,
-    finger: CompiledFinger,
-    least_gap: float,
-    asperities: CompiledAsperities,
-    films: CompiledFilms,
-    out: si.FloatArray,
+    antinode: float, pad: CompiledPad, films: CompiledFilms, out: si.FloatArray
 ) -> tuple[float, complex, int]:
-    """The mean gap of plateaus (m), each at its own balance over a wave whose antinode has an
-    amplitude (m), and what the plate feels of them per area of contact (Pa/m).
+    """The mean gap of a pad's plateaus (m) over a wave whose antinode has an amplitude (m), and
+    what the plate feels of them per area of contact (Pa/m).
 
-    `ridges` meet `amplitudes` over the antinode's. The third is the first panel lacking, −1 where
-    none does, and −2 where a plateau finds no balance or comes nearer than `least_gap` (m), where
-    the contact's law ends.
+    The third is the first panel lacking, −1 where none does, and −2 where a plateau finds no
+    balance or comes nearer than the contact's law goes.
     """
-    met, _, shares = ridges
-    lacking = balance_rows(
-        antinode * met, np.full(met.size, pressure), np.zeros(3), asperities, films, out
-    )
+    met, _, shares = pad.ridges
+    pressure, rigid = np.full(met.size, pad.pressure), np.zeros(3)
+    lacking = balance_rows(antinode * met, pressure, rigid, pad.asperities, films, out)
     if lacking >= 0:
         return math.nan, complex(math.nan), lacking
     gap = 0.0
     for i in range(met.size):
-        if out[i, STATUS] != BALANCED or out[i, GAP] - out[i, SWING] < least_gap:
+        if out[i, STATUS] != BALANCED or out[i, GAP] - out[i, SWING] < pad.least_gap:
             return math.nan, complex(math.nan), -2
         gap += shares[i] * out[i, GAP]
     # The plateaus' mean gap beside the antinode's swing, which most of them do not meet: no deeper
     # than the contact's law goes.
-    deepest = min(0.9 * gap, gap - least_gap)
-    return gap, felt(gap, min(antinode, deepest), finger, asperities), -1
+    deepest = min(0.9 * gap, gap - pad.least_gap)
+    return gap, felt(gap, min(antinode, deepest), pad.finger, pad.asperities), -1
