@@ -133,7 +133,7 @@ class PadLaw:
             shear=self._shear(self.speed),
         )
 
-    @cached_property
+    @property
     def _films(self) -> FilmTable:
         return film_table(self.frequency, self.finger.plateau_width, self.gas, self.slip)
 
