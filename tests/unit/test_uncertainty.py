@@ -371,12 +371,16 @@ def test_an_additive_model_has_the_indices_of_its_variances(made_up: Callable[..
     drawn += 0.5 * (0.8 + 0.4 * random.random(10**6)) + 0.2 * random.random(10**6)
     assert found.interval == pytest.approx(np.quantile(drawn, [0.05, 0.95]), abs=0.01)
     assert found.median == pytest.approx(np.median(drawn), abs=0.03)
-    # 4 · 256 points for the interval; for the influences A, B, one for each input and two mixed.
+    # 4 · 256 points for the interval; for the influences A, B, one for each input and two mixed:
+    # after a quarter of the rows only the three inputs that explain anything.
     assert found.samples.size == 1024
-    assert found.refused.evaluations == 1024 + 256 * (len(found.influences) + 4)
+    columns = len(found.influences) + 4
+    assert found.refused.evaluations == 1024 + 64 * columns + 192 * (3 + 4)
     assert found.amplitudes == pytest.approx(2e-6 + 1e-6 * found.samples)
-    assert told[0] == f"friction of draw 1 of {found.refused.evaluations}"
-    assert 20 <= len(told) <= 22
+    assert told[0] == "friction of draw 1 of 1024"
+    matters = [text for text in told if text.startswith("which value matters, by draw")]
+    assert matters[0].endswith(f" 1 of {64 * columns}")
+    assert len(told) <= 3 * 22
 
 
 def test_what_matters_only_in_company_has_a_total_and_nothing_alone(

@@ -325,4 +325,4 @@ def test_what_no_ridge_can_meet_is_refused_before_films_are_tabulated() -> None:
         with pytest.raises(OutOfRangeError, match="friction is known up to 50 µm"):
             one.curve(np.array([1e-6, 1.01 * most / min(1.0, np.max(one.ridge_swings[0]))]))
         with pytest.raises(OutOfRangeError, match="a ridge would meet"):
-            one.mean_gap(99e-6)
+            one.felt_stiffness(99e-6)

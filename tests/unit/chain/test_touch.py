@@ -38,11 +38,7 @@ def loads(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """Takes the finger's modal load over the mode's own, as a function of the amplitude."""
 
     def take(ratio: Callable[[float], complex]) -> None:
-        def mean_gap(amplitude: Any) -> np.ndarray:
-            return np.asarray(2 * np.atleast_1d(amplitude))
-
-        def felt(law: object, amplitude: float, gap: float) -> SimpleNamespace:
-            assert gap == 2 * amplitude
+        def carried(pad: Any, amplitude: float) -> SimpleNamespace:
             load = ratio(amplitude)
             return SimpleNamespace(load=load, impedance=lambda frequency: load / frequency)
 
@@ -50,8 +46,7 @@ def loads(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
             assert mass == 4e-3
             return LoadedMode(F, Q, felt.load)
 
-        monkeypatch.setattr(LAW, "mean_gap", mean_gap, raising=False)
-        monkeypatch.setattr(module, "_felt", felt)
+        monkeypatch.setattr(module, "_carried", carried)
         monkeypatch.setattr(module, "_loaded", loaded)
 
     return take
