@@ -95,11 +95,8 @@ _RC: dict[str, Any] = {
     "grid.color": GRID,
     "grid.linewidth": 0.8,
     "figure.facecolor": "none",
-    # About where most axes end: their labels are measured there (`report.kit.margins`).
-    "figure.subplot.left": 0.07,
-    "figure.subplot.right": 0.98,
-    "figure.subplot.bottom": 0.26,
-    "figure.subplot.top": 0.88,
+    # About where axes with a legend below them end: it is measured there (`report.kit.margins`).
+    "figure.subplot.bottom": 0.25,
     "figure.titlesize": 12.5,
     "figure.titleweight": "bold",
     "savefig.facecolor": "none",
