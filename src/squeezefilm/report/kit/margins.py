@@ -1,9 +1,10 @@
 """Room for labels and legends around the axes of a figure, measured once.
 
-Matplotlib's own layout measures each axes twice each time that a figure is drawn, since numbers
-along an axis can change when the axes change their size. Here the second time gives what the first
-one found, so that only the first costs anything. A figure begins with about the margins that it
-ends with (`figure.subplot` in the style), and its labels are what they will be.
+Matplotlib's own layout measures each of the axes twice each time that a figure is drawn, since the
+numbers along an axis, and a legend below, can change when the axes change their size. Here the
+second time gives what the first one found, so that only the first costs anything. Axes begin above
+the room of a legend (`figure.subplot.bottom` in the style): higher than they end, so that what was
+measured is rather too much than too little.
 """
 
 from __future__ import annotations
@@ -69,8 +70,6 @@ def _remembered(axes: Axes, measure: Callable[..., Bbox | None]) -> Callable[...
         if found[0] is None:
             return None
         left, bottom, right, top = found[0]
-        return Bbox.from_extents(
-            here.x0 + left, here.y0 + bottom, here.x1 + right, here.y1 + top
-        )
+        return Bbox.from_extents(here.x0 + left, here.y0 + bottom, here.x1 + right, here.y1 + top)
 
     return box
