@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squeezefilm.report.kit import style
+from squeezefilm.report.kit.margins import MeasuredOnce
 
 
 def test_the_style_holds_within_another_and_is_undone() -> None:
@@ -99,6 +100,7 @@ def test_axes_are_measured_once_unless_their_shape_is_fixed(
 
     monkeypatch.setattr(Axes, "get_tightbbox", count)
     figure, axes = _labelled(4.4)
+    assert isinstance(figure.get_layout_engine(), MeasuredOnce)
     style.svg(figure, "one", "label")
     assert counted.count(axes) == 1
     assert "get_tightbbox" not in vars(axes), "what was put there for the layout is gone"
