@@ -39,7 +39,7 @@ def _measured_once(figure: Figure) -> Iterator[None]:
     """Within, each of the figure's axes has its own `get_tightbbox`, which remembers."""
     every: list[Any] = list(figure.axes)
     for axes in every:
-        axes.get_tightbbox = _remembered(axes, axes.get_tightbbox)
+        axes.get_tightbbox = _remembered(figure, axes)
     try:
         yield
     finally:
@@ -47,12 +47,13 @@ def _measured_once(figure: Figure) -> Iterator[None]:
             del axes.get_tightbbox
 
 
-def _remembered(axes: Axes, measure: Callable[..., Bbox | None]) -> Callable[..., Bbox | None]:
+def _remembered(figure: Figure, axes: Axes) -> Callable[..., Bbox | None]:
     """What is drawn of these axes, as a box: measured once, then moved along with the axes."""
+    measure: Callable[..., Bbox | None] = axes.get_tightbbox
     found: list[tuple[float, float, float, float] | None] = []
 
     def box(renderer: Any = None, **options: Any) -> Bbox | None:
-        here = axes.get_position(original=True).transformed(axes.get_figure().transSubfigure)
+        here = axes.get_position(original=True).transformed(figure.transFigure)
         if not found:
             # Spines lie on the edge of the axes, which are measured anyhow.
             parts = axes.get_default_bbox_extra_artists()

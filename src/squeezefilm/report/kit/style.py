@@ -338,7 +338,8 @@ def svg(figure: Figure, prefix: str, label: str) -> str:
         # As `print_svg` does, but what measures texts for the layout draws them too, and so
         # measures each once. (`savefig` even draws all of it twice.)
         dots, figure.dpi = figure.dpi, canvas.fixed_dpi
-        renderer = RendererSVG(*figure.bbox.size, stream, image_dpi=dots)
+        drawn_by: Any = RendererSVG
+        renderer = drawn_by(*figure.bbox.size, stream, image_dpi=dots)
         canvas.get_renderer = lambda: renderer
         figure.draw(renderer)
         renderer.finalize()
