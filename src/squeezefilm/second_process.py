@@ -29,6 +29,7 @@ from typing import Any
 
 from squeezefilm import quantities as si
 from squeezefilm.blas_threads import one_blas_thread
+from squeezefilm.loading import loading
 
 _PATIENCE: si.Second = 60.0
 _LEAVE: si.Second = 2.0
@@ -250,7 +251,7 @@ def _work(line: Connection, prepare: Callable[[], object]) -> None:
     messages: queue.SimpleQueue[Any] = queue.SimpleQueue()
     threading.Thread(target=_take, args=(line, messages), daemon=True).start()
     # What fails here is done, and fails, where somebody sees it.
-    with contextlib.suppress(Exception):
+    with contextlib.suppress(Exception), loading():
         prepare()
     with one_blas_thread():
         _answer(line, messages)

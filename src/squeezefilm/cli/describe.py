@@ -137,25 +137,31 @@ class AnalyzeOptions(PointOptions):
 @called_with(AnalyzeOptions)
 def analyze(asked: AnalyzeOptions) -> None:
     """From the display's description to resonance, amplitude, friction and textures."""
-    from squeezefilm.analysis.analyze import analyze as run
-    from squeezefilm.report.display.terminal import SHOWN, SHOWN_WITH_ALL, show_analysis
+    from squeezefilm.loading import loading
     from squeezefilm.second_process import second_process
 
-    display = to_be_solved(
-        asked.target,
-        asked.voltage,
-        amplitude=asked.vibration_amplitude,
-        theory=asked.theory,
-        quiet=asked.as_json,
-    )
+    with loading():
+        display = to_be_solved(
+            asked.target,
+            asked.voltage,
+            amplitude=asked.vibration_amplitude,
+            theory=asked.theory,
+            quiet=asked.as_json,
+        )
     with second_process(partial(_prepare, asked.out is not None)), working(asked.as_json) as step:
+        # Both processes load the rest at the same time.
+        with loading():
+            from squeezefilm.analysis.analyze import analyze as run
+            from squeezefilm.report.display.terminal import SHOWN, SHOWN_WITH_ALL, show_analysis
         result = run(display, **given(asked, leave="target out as_json whole"), progress=step)
         written = None
         if asked.out is None and not asked.as_json:
             result.compute(SHOWN_WITH_ALL if asked.whole else SHOWN, step)
         if asked.out is not None:
-            from squeezefilm.report.display.page import write_analysis
+            with loading():
+                from squeezefilm.report.display.page import write_analysis
 
+                _prepare(figures=True)
             written = write_analysis(result, asked.out, progress=step)
     show = partial(show_analysis, whole=asked.whole)
     answer(asked.as_json, result, show, report=written)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy import ndimage
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.linalg import eigh
 
 from squeezefilm import quantities as si
@@ -133,6 +133,9 @@ def antinode(w: si.FloatArray) -> float:
     """|w| at the highest point of a grid (x, y) that is inside it and not below its neighbours;
     the highest of all where there is no such point."""
     size = np.abs(w)
-    peaks = size == ndimage.maximum_filter(size, size=3, mode="nearest")
-    inner = np.where(peaks, size, 0.0)[1:-1, 1:-1]
-    return float(np.max(inner)) if np.any(inner > 0) else float(np.max(size))
+    if min(size.shape) < 3:
+        return float(np.max(size))
+    around = sliding_window_view(size, (3, 3)).max(axis=(2, 3))
+    inner = size[1:-1, 1:-1]
+    peaks = inner[inner == around]
+    return float(np.max(peaks)) if np.any(peaks > 0) else float(np.max(size))

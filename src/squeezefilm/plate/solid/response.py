@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from scipy import ndimage
 
 from squeezefilm import quantities as si
 from squeezefilm.blas_threads import one_blas_thread
@@ -203,8 +202,10 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         """
         peak = int(np.argmax(self.admittance.real))
         # The contiguous stretch around the peak only.
-        runs, _ = ndimage.label(self.admittance.real > 0.3 * self.admittance.real[peak])
-        near = np.flatnonzero(runs == runs[peak])
+        below = np.flatnonzero(~(self.admittance.real > 0.3 * self.admittance.real[peak]))
+        ends = np.concatenate([[-1], below, [self.frequencies.size]])
+        after = int(np.searchsorted(ends, peak))
+        near = np.arange(ends[after - 1] + 1, ends[after])
         if near.size < 8:
             raise InputError(
                 f"only {near.size} frequencies lie within the resonance; give at least 8 there "

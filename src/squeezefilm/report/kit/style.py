@@ -14,6 +14,7 @@ import textwrap
 import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
+from html import escape
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -94,6 +95,8 @@ _RC: dict[str, Any] = {
     "grid.color": GRID,
     "grid.linewidth": 0.8,
     "figure.facecolor": "none",
+    # About where axes with a legend below them end: it is measured there (`report.kit.margins`).
+    "figure.subplot.bottom": 0.25,
     "figure.titlesize": 12.5,
     "figure.titleweight": "bold",
     "savefig.facecolor": "none",
@@ -149,9 +152,10 @@ def drawn(draw: Callable[[_A], Figure]) -> Callable[[_A], Figure]:
 def new_figure(title: str, model: str, height: float) -> Figure:
     """An empty figure with the message as its title and the model as its small print."""
     from matplotlib.figure import Figure
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    padding = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.03, hspace=0.05)
+    from squeezefilm.report.kit.margins import MeasuredOnce
+
+    padding = MeasuredOnce(w_pad=0.08, h_pad=0.08, wspace=0.03, hspace=0.05)
     figure = Figure(figsize=(WIDTH, height), layout=padding)
     figure.suptitle(textwrap.fill(unit_stays(title), 90), x=0.012, ha="left")
     figure.supxlabel(
@@ -326,28 +330,35 @@ def svg(figure: Figure, prefix: str, label: str) -> str:
     `prefix` starts every id, so that two figures on a page cannot be mixed up; `label` is read out
     in the figure's place. Colours of the palette become CSS variables ``--ink`` and so on.
     """
-    from xml.sax.saxutils import quoteattr
-
-    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.backends.backend_svg import FigureCanvasSVG, RendererSVG
 
     stream = io.StringIO()
     with rc():
-        # `savefig` draws all of it twice, the first time for the layout alone, which drawing does.
         canvas: Any = FigureCanvasSVG(figure)
-        canvas.print_svg(stream, metadata={"Date": None})
+        # As `print_svg` does, but what measures texts for the layout draws them too, and so
+        # measures each once. (`savefig` even draws all of it twice.)
+        dots, figure.dpi = figure.dpi, canvas.fixed_dpi
+        drawn_by: Any = RendererSVG
+        renderer = drawn_by(*figure.bbox.size, stream, image_dpi=dots)
+        canvas.get_renderer = lambda: renderer
+        figure.draw(renderer)
+        renderer.finalize()
     text = stream.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     text = re.sub(r"<!--.*?-->\s*", "", text, flags=re.DOTALL)
-    text = re.sub(r'\bid="([^"]*)"', lambda m: f'id="{prefix}-{m[1]}"', text)
-    text = re.sub(r'(?:xlink:)?href="#([^"]*)"', lambda m: f'href="#{prefix}-{m[1]}"', text)
-    text = re.sub(r"url\(#([^)]*)\)", lambda m: f"url(#{prefix}-{m[1]})", text)
+    for before, after in (
+        (' id="', f' id="{prefix}-'),
+        (' xlink:href="#', f' href="#{prefix}-'),
+        ("url(#", f"url(#{prefix}-"),
+    ):
+        text = text.replace(before, after)
     for role, (light, _) in PALETTE.items():
         text = text.replace(light, f"var(--{role})")
     box = re.search(r'viewBox="([^"]*)"', text)
     assert box is not None, "matplotlib's SVG has a viewBox"
     body = text[text.index(">") + 1 :]
-    return f'<svg viewBox="{box[1]}" role="img" aria-label={quoteattr(label)}>{body}'
+    return f'<svg viewBox="{box[1]}" role="img" aria-label="{escape(label)}">{body}'
 
 
 def png(figure: Figure, dots_per_inch: float = 130) -> bytes:

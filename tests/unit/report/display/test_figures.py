@@ -203,7 +203,7 @@ def test_svg_follows_the_palette_and_stands_alone(plate_analysis: Analysis) -> N
     assert "http" not in text
     assert "<metadata" not in text
     assert "var(--blue)" in text
-    assert "aria-label='a \"label\" &lt;b&gt;'" in text
+    assert 'aria-label="a &quot;label&quot; &lt;b&gt;"' in text
     assert not any(light in text for light, _ in style.PALETTE.values())
 
 
