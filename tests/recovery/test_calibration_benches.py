@@ -52,7 +52,7 @@ def test_ranks_of_a_plates_parameters_and_blind_answers_are_flat(plates: Plates)
     for number in range(BENCHES):
         scores = random.normal(size=len(plates.problem.scores.parameters))
         answers = plates.truth(scores, drawn_scales(random), random)
-        found.append(plate_bench(plates, scores, answers, seed=number))
+        found.append(plate_bench(plates, scores, answers, seed=number, misread=True))
     ranks = np.array([[*one.ranks, *one.blind_ranks] for one in found])
     odds = [flat(column) for column in ranks.T]
     inside = np.mean([one.inside for one in found], axis=0)
@@ -92,8 +92,8 @@ def test_a_wrong_plate_is_a_misfit_or_covered(plates: Plates) -> None:
     random = np.random.default_rng(2027)
     asked = plates.problem.asked
     wrong = {
-        "parallel_resonance_frequency": 0.012,
-        "resonance_frequency": 0.006,
+        "mass": -0.01,
+        "resonance_frequency": 0.012,
         "coupling_coefficient": -0.08,
         "static_capacitance": -0.1,
         "amplitude_per_volt": -0.25,
@@ -103,8 +103,10 @@ def test_a_wrong_plate_is_a_misfit_or_covered(plates: Plates) -> None:
         scores = random.normal(size=len(plates.problem.scores.parameters))
         answers = plates.truth(scores, 0.0, random)
         # Each bench suffers two of them.
+        logs = np.log(answers)
         for name in random.choice(list(wrong), 2, replace=False):
-            answers[asked.index(Asked(name))] *= 1 + wrong[name]
+            logs[asked.index(Asked(name))] += np.log1p(wrong[name])
+        answers = plates.bound(logs)
         one = plate_bench(plates, scores, answers, seed=number)
         covered.append(one.inside)
         misfits.append(not one.fits)

@@ -49,7 +49,7 @@ def problem(*observations: Observation) -> PlateProblem:
     z = ndtri(drawn)
     emulator = emulator_of(scores.coordinates(z), z @ SLOPES.T)
     asked = tuple(Asked(name) for name in NAMES)
-    return PlateProblem(scores, emulator, asked, np.zeros(3), observations)
+    return PlateProblem(scores, emulator, asked, np.zeros(3), np.zeros(3), observations)
 
 
 def seen(name: str, score: tuple[float, float], error: float) -> Observation:
