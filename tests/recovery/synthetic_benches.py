@@ -93,6 +93,23 @@ class Plates:
         coupling coefficient is: no bench has another."""
         return np.exp(self.problem.bound(logs[None, :])[0])
 
+    def least_errors(self, scores: np.ndarray) -> np.ndarray:
+        """The standard deviations (relative) that anybody's estimate of the blind answers has at
+        least, on average over such benches, where the model is right: van Trees' bound, of priors,
+        slopes at `scores`, and the errors of emulator, solver and instruments."""
+        asked, step = self.problem.asked, 1e-3
+        moved = step * np.vstack([np.eye(scores.size), -np.eye(scores.size)])
+        there = self.problem.answers(scores + moved)
+        slopes = (there[: scores.size] - there[scores.size :]).T / (2 * step)
+        spread = self.problem.moved(self.problem.answers(scores[None, :]))[0]
+        prior = slopes @ slopes.T + spread @ self.problem.model_covariance @ spread.T
+        seen = [asked.index(Asked(name)) for name in NOISE]
+        blind = [asked.index(one) for one in BLIND]
+        noise = np.diag(np.square(list(NOISE.values())))
+        gain = prior[np.ix_(blind, seen)] @ np.linalg.inv(prior[np.ix_(seen, seen)] + noise)
+        left = prior[np.ix_(blind, blind)] - gain @ prior[np.ix_(seen, blind)]
+        return np.sqrt(np.diag(left))
+
     def observed(
         self, answers: np.ndarray, random: np.random.Generator, *, misread: bool
     ) -> tuple[Observation, ...]:

@@ -65,11 +65,12 @@ def test_ranks_of_a_plates_parameters_and_blind_answers_are_flat(plates: Plates)
 @pytest.mark.campaign
 def test_where_the_model_is_right_blind_answers_are_met(plates: Plates) -> None:
     random = np.random.default_rng(7)
-    found = []
+    found, least = [], []
     for number in range(60):
         scores = random.normal(size=len(plates.problem.scores.parameters))
         answers = plates.truth(scores, 0.0, random)
         found.append(plate_bench(plates, scores, answers, seed=number))
+        least.append(plates.least_errors(scores))
     errors = np.abs([one.errors for one in found])
     widths = np.median([one.widths for one in found], axis=0)
     unmeasured = np.std(
@@ -78,9 +79,13 @@ def test_where_the_model_is_right_blind_answers_are_met(plates: Plates) -> None:
     print(
         f"blind errors, median {np.median(errors, axis=0)}, 95 % "
         f"{np.quantile(errors, 0.95, axis=0)}, "
-        f"interval widths {widths}; spread without data {unmeasured[:6]}"
+        f"interval widths {widths}; spread without data {unmeasured[:6]}; root mean square error "
+        f"{np.sqrt(np.mean(errors**2, axis=0))}, at least {np.sqrt(np.mean(np.square(least), axis=0))}"
     )
-    assert np.all(np.median(errors, axis=0) < [0.002, 0.05])
+    assert np.all(np.median(errors, axis=0) < [0.001, 0.05])
+    assert np.quantile(errors[:, 0], 0.95) < 0.002
+    # No estimate could be much nearer: what is left is the instruments' noise.
+    assert np.sqrt(np.mean((errors / least) ** 2, axis=0)) == pytest.approx(1.0, abs=0.35)
     assert np.mean([one.fits for one in found]) > 0.9
 
 

@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 
 from squeezefilm import kept_arrays
-from squeezefilm.kept_arrays import CACHE_VARIABLE, KeptArrays, KeptResults, cache_folder, in_passing
+from squeezefilm.kept_arrays import (
+    CACHE_VARIABLE,
+    KeptArrays,
+    KeptResults,
+    cache_folder,
+    in_passing,
+)
 
 VALUES = np.array([0.1, -3.0, 1e300, np.nextafter(1.0, 2.0)])
 
