@@ -327,8 +327,8 @@ def predictive(problem: PlateProblem, posterior: PlatePosterior, *, seed: int) -
         left = problem.observed - there[:, columns] + np.einsum("doa,da->do", moved, middle)
         middle = np.einsum("dao,do->da", gain, left)
     wide = prior - gain @ crossed
-    # A hair keeps the factor where an observation left nothing.
-    hair = 1e-9 * np.max(np.diagonal(wide, axis1=1, axis2=2), axis=1)
-    root = np.linalg.cholesky(wide + hair[:, None, None] * np.eye(len(problem.asked)))
+    # A hair of each answer's own keeps the factor where an observation left nothing.
+    hair = 1e-9 * np.einsum("daa->da", prior)
+    root = np.linalg.cholesky(wide + hair[:, :, None] * np.eye(len(problem.asked)))
     error = middle + np.einsum("dab,db->da", root, random.normal(size=answers.shape))
     return Predictive(problem.asked, np.exp(problem.bound(answers + error)))

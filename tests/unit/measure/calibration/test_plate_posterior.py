@@ -246,7 +246,7 @@ def test_the_slopes_of_what_is_bound_are_its_differences() -> None:
 
 
 def test_an_error_that_all_readings_share_is_not_averaged_away() -> None:
-    """Many sharp recordings of one answer that all read 1 % beside it: its interval stays so wide."""
+    """Of many sharp recordings that all misread an answer alike the interval stays so wide."""
     shared, count = 0.01, 30
     seen_ = [Observation("resonance_frequency", 3e4, 0.3) for _ in range(count)]
     for readings, expected in (
