@@ -152,7 +152,7 @@ class KeptResults(_Kept):
         return None
 
     def put(self, asked: str, result: object) -> None:
-        """Keep a result; where the folder cannot be written to, and `in_passing`, nothing is kept."""
+        """Keep a result; none `in_passing`, or where the folder cannot be written to."""
         if not _IN_PASSING.get() and self._file(asked) is not None:
             self._write(asked, pickle.dumps(result, protocol=5), MOST_RESULTS)
 

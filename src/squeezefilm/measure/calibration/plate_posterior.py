@@ -46,8 +46,8 @@ class PlateProblem:
     """Observations of a plate's answers beside the emulator that predicts them.
 
     `asked` are the emulator's answers; `solver_errors` (asked,) what the solver itself may be off
-    by, and `readings` (asked,) what all readings of an answer are off by together (`reading
-    errors` of `SolvedAnswers`), both relative. Where resonance, parallel resonance and coupling are
+    by, and `readings` (asked,) what all readings of an answer are off by together
+    (`SolvedAnswers.readings`), both relative. Where resonance, parallel resonance and coupling are
     all asked, the parallel one follows from the other two (k² = 1 − (fs/fp)²), its error too.
     """
 
@@ -86,8 +86,8 @@ class PlateProblem:
     @cached_property
     def reading_covariance(self) -> si.DimensionlessArray:
         """Of what the observations are off the bench's true answers, shape (observations,
-        observations): their noise, each recording's own reading error, and the one that all readings
-        of an answer share, which no number of them averages away."""
+        observations): their noise, each recording's own reading error, and the one that all
+        readings of an answer share, which no number of them averages away."""
         same = np.equal.outer(self.columns, self.columns)
         shared = self.readings[self.columns]
         own = np.array([READ_ALONE.get(one.answer, 0.0) for one in self.observations])

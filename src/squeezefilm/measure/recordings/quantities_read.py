@@ -227,8 +227,8 @@ class Reading:
             or hasattr(self.columns, "time")
         ):
             raise self.description.error(
-                f"the {words(name)} is no amplitude here, and only amplitudes have decibels; export "
-                "linear values",
+                f"the {words(name)} is no amplitude here, and only amplitudes have decibels; "
+                "export linear values",
                 ["columns", name, "unit"],
             )
         if np.any(values > _MOST_DECIBELS):
