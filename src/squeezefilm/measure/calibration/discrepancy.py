@@ -54,9 +54,9 @@ READ_ALONE: dict[str, si.Dimensionless] = {
     "amplitude_per_volt": 5e-3,
 }
 """**Assumed**: what one recording's reading of an answer may be off by beyond its noise, as a
-share, each recording by itself: another temperature, another mounting, another way of fitting. Of the size
-by which recordings of one made-up bench differ (raw signals read its resonance 0.025 % beside the
-frequency response, amplitudes lie up to 1 % apart); instruments of a real one do hardly better."""
+share, each recording by itself: another temperature, another mounting, another way of fitting. Of
+the size by which recordings of one made-up bench differ (raw signals read its resonance 0.025 %
+beside the frequency response, amplitudes lie up to 1 % apart); a real one does hardly better."""
 
 FREQUENCIES = ("resonance_frequency", "parallel_resonance_frequency", "mode_frequency")
 KINDS: tuple[tuple[str, ...], ...] = (
