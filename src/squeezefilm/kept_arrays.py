@@ -14,8 +14,9 @@ import os
 import pickle
 import sys
 import tempfile
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from hashlib import blake2b
 from importlib.metadata import version
 from pathlib import Path
@@ -28,6 +29,7 @@ CACHE_VARIABLE = "SQUEEZEFILM_CACHE"
 MOST_FILES, MOST_RESULTS = 20_000, 32
 """Of more the older half is deleted: arrays of some 4 kB each, and results of some 5 MB."""
 
+_IN_PASSING: ContextVar[bool] = ContextVar("in_passing", default=False)
 _DIGEST = 16
 _DTYPE = np.dtype("<f8")
 
@@ -46,6 +48,17 @@ def cache_folder() -> Path | None:
     if sys.platform == "darwin":
         return home / "Library" / "Caches" / "squeezefilm"
     return Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache") / "squeezefilm"
+
+
+@contextmanager
+def in_passing() -> Iterator[None]:
+    """While results are computed that nobody asks for again: no `KeptResults` is written, so that a
+    hundred of them do not push out the few that somebody works on. What is there is read."""
+    before = _IN_PASSING.set(True)
+    try:
+        yield
+    finally:
+        _IN_PASSING.reset(before)
 
 
 class _Kept:
@@ -139,8 +152,8 @@ class KeptResults(_Kept):
         return None
 
     def put(self, asked: str, result: object) -> None:
-        """Keep a result; where the folder cannot be written to nothing is kept."""
-        if self._file(asked) is not None:
+        """Keep a result; none `in_passing`, or where the folder cannot be written to."""
+        if not _IN_PASSING.get() and self._file(asked) is not None:
             self._write(asked, pickle.dumps(result, protocol=5), MOST_RESULTS)
 
 

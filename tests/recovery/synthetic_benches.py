@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,7 +69,12 @@ class Plates:
     def posed(self, observations: tuple[Observation, ...]) -> PlateProblem:
         known = self.problem
         return PlateProblem(
-            known.scores, known.emulator, known.asked, known.solver_errors, observations
+            known.scores,
+            known.emulator,
+            known.asked,
+            known.solver_errors,
+            known.readings,
+            observations,
         )
 
     def truth(
@@ -79,18 +85,46 @@ class Plates:
         squares = np.broadcast_to(np.square(scales), len(KINDS))
         covariance = np.tensordot(squares, self.problem.discrepancies, 1)
         covariance = covariance + self.problem.model_covariance
-        logs = self.problem.answers(scores[None, :])[0]
-        return np.exp(random.multivariate_normal(logs, covariance))
+        errors = random.multivariate_normal(np.zeros(len(covariance)), covariance)
+        return self.bound(self.problem.answers(scores[None, :])[0] + errors)
 
-    def observed(self, answers: np.ndarray, random: np.random.Generator) -> tuple[Observation, ...]:
-        """What the bench's instruments say of its answers."""
-        found = []
-        for name, noise in NOISE.items():
-            true = float(answers[self.problem.asked.index(Asked(name))])
-            found.append(
-                Observation(name, true * float(np.exp(noise * random.normal())), true * noise)
-            )
-        return tuple(found)
+    def bound(self, logs: np.ndarray) -> np.ndarray:
+        """Answers of their logarithms, with the parallel resonance that is a bench's by what its
+        coupling coefficient is: no bench has another."""
+        return np.exp(self.problem.bound(logs[None, :])[0])
+
+    def least_errors(self, scores: np.ndarray) -> np.ndarray:
+        """The standard deviations (relative) that anybody's estimate of the blind answers has at
+        least, on average over such benches, where the model is right: van Trees' bound, of priors,
+        slopes at `scores`, and the errors of emulator, solver and instruments."""
+        asked, step = self.problem.asked, 1e-3
+        moved = step * np.vstack([np.eye(scores.size), -np.eye(scores.size)])
+        there = self.problem.answers(scores + moved)
+        slopes = (there[: scores.size] - there[scores.size :]).T / (2 * step)
+        spread = self.problem.moved(self.problem.answers(scores[None, :]))[0]
+        prior = slopes @ slopes.T + spread @ self.problem.model_covariance @ spread.T
+        seen = [asked.index(Asked(name)) for name in NOISE]
+        blind = [asked.index(one) for one in BLIND]
+        noise = np.diag(np.square(list(NOISE.values())))
+        gain = prior[np.ix_(blind, seen)] @ np.linalg.inv(prior[np.ix_(seen, seen)] + noise)
+        left = prior[np.ix_(blind, blind)] - gain @ prior[np.ix_(seen, blind)]
+        return np.sqrt(np.diag(left))
+
+    def observed(
+        self, answers: np.ndarray, random: np.random.Generator, *, misread: bool
+    ) -> tuple[Observation, ...]:
+        """What the bench's instruments say of its answers: with noise, and where they are `misread`
+        with as much beside it as a calibration believes of readings."""
+        true = {name: float(answers[self.problem.asked.index(Asked(name))]) for name in NOISE}
+        exact = tuple(Observation(name, true[name], true[name] * NOISE[name]) for name in NOISE)
+        covariance = np.diag(np.square(list(NOISE.values())))
+        if misread:
+            covariance = self.posed(exact).reading_covariance
+        off = np.exp(random.multivariate_normal(np.zeros(len(exact)), covariance))
+        return tuple(
+            dataclasses.replace(one, value=one.value * by)
+            for one, by in zip(exact, off.tolist(), strict=True)
+        )
 
 
 @dataclass
@@ -107,11 +141,17 @@ class PlateBench:
 
 
 def plate_bench(
-    plates: Plates, scores: np.ndarray, answers: np.ndarray, seed: int, steps: int = 800
+    plates: Plates,
+    scores: np.ndarray,
+    answers: np.ndarray,
+    seed: int,
+    steps: int = 800,
+    *,
+    misread: bool = False,
 ) -> PlateBench:
     """Calibrate on what the bench observed, and compare the rest."""
     random = np.random.default_rng(seed)
-    problem = plates.posed(plates.observed(answers, random))
+    problem = plates.posed(plates.observed(answers, random, misread=misread))
     posterior = sampled_posterior(problem, seed=seed, steps=steps)
     made = predictive(problem, posterior, seed=seed)
     drawn = np.stack([made.of(one) for one in BLIND], axis=1)

@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 
 from squeezefilm import kept_arrays
-from squeezefilm.kept_arrays import CACHE_VARIABLE, KeptArrays, KeptResults, cache_folder
+from squeezefilm.kept_arrays import (
+    CACHE_VARIABLE,
+    KeptArrays,
+    KeptResults,
+    cache_folder,
+    in_passing,
+)
 
 VALUES = np.array([0.1, -3.0, 1e300, np.nextafter(1.0, 2.0)])
 
@@ -166,3 +172,17 @@ def test_of_results_few_are_kept(
         kept.put(str(number), number)
     assert len(list((folder / "kind").iterdir())) <= 7
     assert kept.get("19") == 19
+
+
+def test_in_passing_results_are_read_and_none_is_kept(folder: Path, source: Path) -> None:
+    kept = KeptResults("kind", [source])
+    kept.put("mine", 1)
+    with in_passing():
+        kept.put("of many", 2)
+        assert kept.get("mine") == 1
+        # Small, and what a stopped calibration goes on with.
+        KeptArrays("numbers", [source]).put("asked", VALUES)
+    assert kept.get("of many") is None
+    assert KeptArrays("numbers", [source]).get("asked", VALUES.size) is not None
+    kept.put("of many", 2)
+    assert kept.get("of many") == 2

@@ -24,6 +24,7 @@ from typing import Any
 
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.kept_arrays import in_passing
 from squeezefilm.plate.layout import Actuator
 from squeezefilm.search.answers import numbers_of
 from squeezefilm.search.verbs import VERBS
@@ -63,7 +64,8 @@ def answer_of(point: Point) -> Answer:
     began = time.perf_counter()
     verb = VERBS[point.verb]
     try:
-        with warnings.catch_warnings():
+        # A sweep keeps its answers, and not the plates.
+        with in_passing(), warnings.catch_warnings():
             # Verbs collect those that are of the answer.
             warnings.simplefilter("ignore")
             display = verb.display(point.display, point.options)

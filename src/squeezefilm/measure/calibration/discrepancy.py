@@ -43,6 +43,21 @@ that little of its error is left. The mesh adds less (0.1 % in frequency, 1 % in
 paper's own plate lies further from its maker's model, 14 % in frequency and 64 % in amplitude: such
 a bench is a misfit here, and its scales large."""
 
+READ_ALONE: dict[str, si.Dimensionless] = {
+    "resonance_frequency": 2e-4,
+    "parallel_resonance_frequency": 2e-4,
+    "mode_frequency": 2e-4,
+    "half_wavelength": 5e-4,
+    "coupling_coefficient": 2e-3,
+    "static_capacitance": 5e-3,
+    "quality_factor": 5e-3,
+    "amplitude_per_volt": 5e-3,
+}
+"""**Assumed**: what one recording's reading of an answer may be off by beyond its noise, as a
+share, each recording by itself: another temperature, another mounting, another way of fitting. Of
+the size by which recordings of one made-up bench differ (raw signals read its resonance 0.025 %
+beside the frequency response, amplitudes lie up to 1 % apart); a real one does hardly better."""
+
 FREQUENCIES = ("resonance_frequency", "parallel_resonance_frequency", "mode_frequency")
 KINDS: tuple[tuple[str, ...], ...] = (
     FREQUENCIES,

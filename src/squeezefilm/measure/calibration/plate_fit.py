@@ -95,7 +95,8 @@ def _rough(problem: PlateProblem) -> bool:
 
 
 class Solves:
-    """Solved plates as they are added: scores, logarithms of answers, the solver's errors."""
+    """Solved plates as they are added: scores, logarithms of answers, errors of solver and
+    readings."""
 
     def __init__(
         self,
@@ -111,6 +112,7 @@ class Solves:
         self.points: list[si.FloatArray] = []
         self.logs: list[si.FloatArray] = []
         self.errors: list[si.FloatArray] = []
+        self.readings: list[si.FloatArray] = []
         self.lost = 0
         self.example = ""
 
@@ -134,6 +136,7 @@ class Solves:
             self.points.append(point)
             self.logs.append(np.log(found.values))
             self.errors.append(found.errors)
+            self.readings.append(found.readings)
 
     def _lose(self, why: str) -> None:
         self.lost += 1
@@ -154,9 +157,11 @@ class Solves:
         logs = np.array(self.logs)
         whole = np.asarray(np.isfinite(logs).all(axis=0))
         emulator = emulator_of(self.scores.coordinates(np.array(self.points)), logs[:, whole])
-        solver_errors = np.sqrt(np.mean(np.square(self.errors), axis=0))[whole]
+        solver_errors, readings = (
+            np.sqrt(np.mean(np.square(one), axis=0))[whole] for one in (self.errors, self.readings)
+        )
         asked = tuple(one for one, has in zip(self.asked, whole.tolist(), strict=True) if has)
-        return PlateProblem(self.scores, emulator, asked, solver_errors, observations)
+        return PlateProblem(self.scores, emulator, asked, solver_errors, readings, observations)
 
 
 def fitted_plate(

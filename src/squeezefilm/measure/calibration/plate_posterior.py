@@ -18,6 +18,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.calibration.discrepancy import (
     KINDS,
+    READ_ALONE,
     Misfit,
     misfit_of,
     scales_of,
@@ -33,6 +34,11 @@ from squeezefilm.progress import SayProgress
 STEPS, BURN_IN = 2000, 500
 """Of each walker: kept, and left out before."""
 _DRAWS = 2000
+BOUND = ("resonance_frequency", "parallel_resonance_frequency", "coupling_coefficient")
+"""Of which each follows from the other two, by what a coupling coefficient is."""
+# Of ln k: a body that is nearly all ceramic stays below.
+_MOST_COUPLED = -0.01
+_PASSES = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +46,16 @@ class PlateProblem:
     """Observations of a plate's answers beside the emulator that predicts them.
 
     `asked` are the emulator's answers; `solver_errors` (asked,) what the solver itself may be off
-    by, relative.
+    by, and `readings` (asked,) what all readings of an answer are off by together
+    (`SolvedAnswers.readings`), both relative. Where resonance, parallel resonance and coupling are
+    all asked, the parallel one follows from the other two (k² = 1 − (fs/fp)²), its error too.
     """
 
     scores: NormalScores
     emulator: Emulator
     asked: tuple[Asked, ...]
     solver_errors: si.DimensionlessArray
+    readings: si.DimensionlessArray
     observations: tuple[Observation, ...]
 
     def __post_init__(self) -> None:
@@ -75,8 +84,19 @@ class PlateProblem:
         return np.array([one.standard_error / one.value for one in self.observations])
 
     @cached_property
+    def reading_covariance(self) -> si.DimensionlessArray:
+        """Of what the observations are off the bench's true answers, shape (observations,
+        observations): their noise, each recording's own reading error, and the one that all
+        readings of an answer share, which no number of them averages away."""
+        same = np.equal.outer(self.columns, self.columns)
+        shared = self.readings[self.columns]
+        own = np.array([READ_ALONE.get(one.answer, 0.0) for one in self.observations])
+        return np.asarray(np.outer(shared, shared) * same + np.diag(self.noise**2 + own**2))
+
+    @cached_property
     def model_covariance(self) -> si.DimensionlessArray:
-        """Of the emulator's and the solver's relative errors, shape (asked, asked)."""
+        """Of the emulator's and the solver's relative errors, shape (asked, asked); not to be used
+        of an answer that others fix (`moved`)."""
         names = [one.name for one in self.asked]
         found = solver_covariance(names, self.solver_errors)
         return np.asarray(found + np.diag(self.emulator.errors**2))
@@ -85,8 +105,9 @@ class PlateProblem:
     def covariance(self) -> si.DimensionlessArray:
         """Of the observed logarithms if the model is right, shape (observations, observations): of
         the measurement, the emulator and the solver."""
-        rows = np.ix_(self.columns, self.columns)
-        return np.asarray(self.model_covariance[rows] + np.diag(self.noise**2))
+        here = self.answers(np.zeros((1, len(self.scores.parameters))))
+        moved = self.moved(here)[0, self.columns]
+        return np.asarray(self.reading_covariance + moved @ self.model_covariance @ moved.T)
 
     @cached_property
     def discrepancies(self) -> si.DimensionlessArray:
@@ -100,7 +121,40 @@ class PlateProblem:
 
     def answers(self, scores: si.DimensionlessArray) -> si.FloatArray:
         """Logarithms of all answers at scores (points, parameters), shape (points, asked)."""
-        return self.emulator(self.scores.coordinates(scores))
+        return self.bound(self.emulator(self.scores.coordinates(scores)))
+
+    @cached_property
+    def _bound(self) -> tuple[int, int, int] | None:
+        """The columns of resonance, parallel resonance and coupling, if all are asked."""
+        three = [Asked(name) for name in BOUND]
+        if not set(three) <= set(self.asked):
+            return None
+        short, opened, coupling = (self.asked.index(one) for one in three)
+        return short, opened, coupling
+
+    def bound(self, logs: si.FloatArray) -> si.FloatArray:
+        """Logarithms of answers (points, asked), with the parallel resonance that goes with
+        resonance and coupling."""
+        if self._bound is None:
+            return logs
+        short, opened, coupling = self._bound
+        found = np.array(logs)
+        squares = np.exp(2 * np.minimum(found[:, coupling], _MOST_COUPLED))
+        found[:, opened] = found[:, short] - np.log1p(-squares) / 2
+        return found
+
+    def moved(self, logs: si.FloatArray) -> si.DimensionlessArray:
+        """By how much errors of the answers (columns) move the answers (rows) at `logs` (points,
+        asked), shape (points, asked, asked): each its own but for a parallel resonance that is
+        `bound`."""
+        found = np.tile(np.eye(len(self.asked)), (len(logs), 1, 1))
+        if self._bound is not None:
+            short, opened, coupling = self._bound
+            squares = np.exp(2 * np.minimum(logs[:, coupling], _MOST_COUPLED))
+            found[:, opened, opened] = 0.0
+            found[:, opened, short] = 1.0
+            found[:, opened, coupling] = squares / (1 - squares)
+        return found
 
     def residuals(self, scores: si.DimensionlessArray) -> si.FloatArray:
         """Observed less predicted logarithms, shape (points, observations)."""
@@ -111,14 +165,22 @@ class PlateProblem:
         root = np.linalg.cholesky(self.covariance)
         return np.asarray(np.linalg.solve(root, self.residuals(scores).T).T)
 
+    def errors(self, scales: si.DimensionlessArray) -> si.DimensionlessArray:
+        """Covariances of the model's errors, emulator and solver included, at the discrepancy's
+        `scales` (points, kinds), shape (points, asked, asked)."""
+        wide = np.einsum("pk,kij->pij", scales**2, self.discrepancies)
+        return np.asarray(wide + self.model_covariance)
+
     def log_posterior(self, points: si.DimensionlessArray) -> si.FloatArray:
         """The logarithm of the posterior density, but for a constant, at `points` (points,
         parameters + kinds): scores, and last those of the discrepancy's scales."""
         scores, scales = points[:, : -len(KINDS)], scales_of(points[:, -len(KINDS) :])
         prior = -np.sum(points**2, axis=1) / 2
-        off = self.residuals(scores)[:, :, None]
-        units = self.discrepancies[:, self.columns][:, :, self.columns]
-        covariance = self.covariance + np.einsum("pk,kij->pij", scales**2, units)
+        logs = self.answers(scores)
+        off = (self.observed - logs[:, self.columns])[:, :, None]
+        moved = self.moved(logs)[:, self.columns]
+        covariance = moved @ self.errors(scales) @ moved.transpose(0, 2, 1)
+        covariance += self.reading_covariance
         squares = (off * np.linalg.solve(covariance, off)).sum(axis=(1, 2))
         return np.asarray(prior - (squares + np.linalg.slogdet(covariance)[1]) / 2)
 
@@ -252,16 +314,21 @@ def predictive(problem: PlateProblem, posterior: PlatePosterior, *, seed: int) -
     random = np.random.default_rng(seed)
     answers = problem.answers(posterior.scores)
     columns = problem.columns
-    wide = np.einsum("dk,kij->dij", posterior.scales**2, problem.discrepancies)
-    wide += problem.model_covariance
-    # The error of all answers, given those that were observed: Gaussian for every draw.
-    seen = wide[:, columns][:, :, columns] + np.diag(problem.noise**2)
-    gain = np.linalg.solve(seen, wide[:, columns]).transpose(0, 2, 1)
-    left = problem.observed - answers[:, columns]
-    middle = np.einsum("dao,do->da", gain, left)
-    wide = wide - gain @ wide[:, columns]
-    # A hair keeps the factor where an observation left nothing.
-    hair = 1e-9 * np.max(np.diagonal(wide, axis1=1, axis2=2), axis=1)
-    root = np.linalg.cholesky(wide + hair[:, None, None] * np.eye(len(problem.asked)))
+    prior = problem.errors(posterior.scales)
+    # The error of all answers, given those that were observed: Gaussian for every draw, but for the
+    # little by which the parallel resonance is no linear function of the others.
+    middle = np.zeros_like(answers)
+    for _ in range(_PASSES):
+        there = problem.bound(answers + middle)
+        moved = problem.moved(there)[:, columns]
+        crossed = moved @ prior
+        seen = crossed @ moved.transpose(0, 2, 1) + problem.reading_covariance
+        gain = np.linalg.solve(seen, crossed).transpose(0, 2, 1)
+        left = problem.observed - there[:, columns] + np.einsum("doa,da->do", moved, middle)
+        middle = np.einsum("dao,do->da", gain, left)
+    wide = prior - gain @ crossed
+    # A hair of each answer's own keeps the factor where an observation left nothing.
+    hair = 1e-9 * np.einsum("daa->da", prior)
+    root = np.linalg.cholesky(wide + hair[:, :, None] * np.eye(len(problem.asked)))
     error = middle + np.einsum("dab,db->da", root, random.normal(size=answers.shape))
-    return Predictive(problem.asked, np.exp(answers + error))
+    return Predictive(problem.asked, np.exp(problem.bound(answers + error)))

@@ -18,13 +18,13 @@ import numpy as np
 import squeezefilm.plate
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.kept_arrays import KeptArrays, in_passing
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.ring.body import ring_body
 from squeezefilm.plate.ring.modes import clamped_capacitance
 from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.solid.working import solid_mode
+from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.plate.working_mode import working_mode
 from squeezefilm.results import to_json
 
@@ -42,6 +42,9 @@ PLATE_ANSWERS = (
     "modal_mass",
 )
 """In SI units: of the working mode, its circuit, and the body's mass (kg, ceramics included)."""
+
+# What a bench's impedance sweep usually is: half-bandwidths on each side, points, noise.
+_BAND, _READ_POINTS, _READ_NOISE = 8.0, 161, 0.01
 
 _KEPT = KeptArrays("plate_answers", [Path(squeezefilm.plate.__file__).parent, Path(__file__)])
 
@@ -90,10 +93,16 @@ def asked_by(observation: Observation) -> Asked:
 
 class SolvedAnswers(NamedTuple):
     """Answers of one actuator (SI), NaN where it has none, and the solver's own relative errors of
-    them where it estimates one (else 0), in the order that they were asked in."""
+    them where it estimates one (else 0), in the order that they were asked in.
+
+    `readings` is by how much, relative, a fit of one circuit to this body's own admittance reads an
+    answer beside what it is, since the neighbours of the mode are in the band; 0 where that is not
+    known. Every such fit errs alike.
+    """
 
     values: si.FloatArray
     errors: si.DimensionlessArray
+    readings: si.DimensionlessArray
 
 
 def solved_answers(actuator: Actuator, asked: tuple[Asked, ...]) -> SolvedAnswers:
@@ -116,8 +125,8 @@ def solved_answers(actuator: Actuator, asked: tuple[Asked, ...]) -> SolvedAnswer
     for one in asked:
         if one.lines is not None and isinstance(actuator, RectangularPlate):
             found[one] = _other_mode(actuator, one.lines)
-    pairs = np.array([found[one] for one in asked]).reshape(-1, 2)
-    return SolvedAnswers(pairs[:, 0], pairs[:, 1])
+    rows = np.array([found[one] for one in asked]).reshape(-1, 3)
+    return SolvedAnswers(rows[:, 0], rows[:, 1], rows[:, 2])
 
 
 _OF_A_DISC = tuple(name for name in PLATE_ANSWERS if name != "mass")
@@ -127,38 +136,45 @@ def _question(actuator: Actuator, mode: object) -> str:
     return json.dumps([to_json(actuator), mode], sort_keys=True)
 
 
-def _working(actuator: RectangularPlate | DiscPlate) -> dict[Asked, tuple[float, float]]:
-    """All answers of the working mode, each with its relative error."""
+def _working(actuator: RectangularPlate | DiscPlate) -> dict[Asked, tuple[float, ...]]:
+    """All answers of the working mode, each with its relative errors, of solver and reading."""
     question = _question(actuator, "working")
-    kept = _KEPT.get(question, 2 * len(PLATE_ANSWERS))
+    kept = _KEPT.get(question, 3 * len(PLATE_ANSWERS))
     if kept is None:
-        named = (
+        named, read = (
             _of_plate(actuator) if isinstance(actuator, RectangularPlate) else _of_disc(actuator)
         )
-        kept = np.array([named.get(name, (math.nan, 0.0)) for name in PLATE_ANSWERS]).ravel()
+        kept = np.array(
+            [(*named.get(name, (math.nan, 0.0)), read.get(name, 0.0)) for name in PLATE_ANSWERS]
+        ).ravel()
         _KEPT.put(question, kept)
-    rows = kept.reshape(-1, 2).tolist()
-    return {Asked(name): (row[0], row[1]) for name, row in zip(PLATE_ANSWERS, rows, strict=True)}
+    rows = kept.reshape(-1, 3).tolist()
+    return {Asked(name): tuple(row) for name, row in zip(PLATE_ANSWERS, rows, strict=True)}
 
 
-def _of_plate(plate: RectangularPlate) -> Mapping[str, tuple[float, float]]:
-    mode = solid_mode(plate)
-    modes, at = mode.modes, mode.index
+_Named = Mapping[str, tuple[float, float]]
+
+
+def _of_plate(plate: RectangularPlate) -> tuple[_Named, Mapping[str, float]]:
+    # Of a hundred plates only these numbers are asked for again.
+    with in_passing():
+        mode = solid_mode(plate)
+        modes, at = mode.modes, mode.index
+        response = mode.response
     error = mode.frequency_error / mode.frequency
-    static, lossy = math.nan, 0.0
+    static = math.nan
     with contextlib.suppress(InputError):
-        circuit = mode.response.equivalent_circuit()
-        static = circuit.static_capacitance
-        # A bench reads the response's Q; the mode's is that of its energies, some 1 % beside it.
-        lossy = abs(circuit.quality_factor / mode.quality_factor - 1)
+        static = response.equivalent_circuit().static_capacitance
     coupling = float(modes.couplings[at])
-    return {
+    named = {
         "resonance_frequency": (mode.frequency, error),
         "parallel_resonance_frequency": (float(modes.open_frequencies[at]), error),
-        # k² = 1 − (fs/fp)².
-        "coupling_coefficient": (coupling, error * (1 / coupling**2 - 1) if coupling else 0.0),
+        "coupling_coefficient": (
+            coupling,
+            float(modes.coupling_errors[at]) / coupling if coupling else 0.0,
+        ),
         "static_capacitance": (static, 0.0),
-        "quality_factor": (mode.quality_factor, lossy),
+        "quality_factor": (mode.quality_factor, 0.0),
         "amplitude_per_volt": (
             mode.amplitude_per_volt,
             mode.amplitude_error / mode.amplitude_per_volt,
@@ -167,9 +183,33 @@ def _of_plate(plate: RectangularPlate) -> Mapping[str, tuple[float, float]]:
         "mass": (plate_mass(plate), 0.0),
         "modal_mass": (mode.modal_mass, 0.0),
     }
+    return named, _read_beside(mode, named)
 
 
-def _of_disc(disc: DiscPlate) -> Mapping[str, tuple[float, float]]:
+def _read_beside(mode: SolidMode, named: _Named) -> Mapping[str, float]:
+    """How far beside a plate's answers a bench's fit of its admittance reads them, as shares: over
+    the usual band of so many half-bandwidths, with the usual noise, which weighs the points."""
+    from squeezefilm.measure.fits.circuit.impedance import fit_impedance
+    from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+
+    half, known = mode.frequency / (2 * mode.quality_factor), mode.response.frequencies
+    ends = mode.frequency - _BAND * half, mode.frequency + _BAND * half
+    band = np.linspace(max(ends[0], known[0]), min(ends[1], known[-1]), _READ_POINTS)
+    admittance = mode.response.at(band).admittance
+    noise = np.random.default_rng(0).standard_normal((2, band.size)) / math.sqrt(2)
+    size = _READ_NOISE * float(np.max(np.abs(admittance)))
+    try:
+        fit = fit_impedance(ImpedanceSweep(band, admittance + size * (noise[0] + 1j * noise[1])))
+    except InputError:
+        return {}
+    return {
+        one.answer: abs(one.value / named[one.answer][0] - 1)
+        for one in fit.observations
+        if named[one.answer][0] > 0
+    }
+
+
+def _of_disc(disc: DiscPlate) -> tuple[_Named, Mapping[str, float]]:
     mode, body = working_mode(disc), ring_body(disc)
     annular = mode.disc
     assert annular is not None
@@ -177,7 +217,7 @@ def _of_disc(disc: DiscPlate) -> Mapping[str, tuple[float, float]]:
     held = clamped_capacitance(body.section, body.drive)
     coupling = annular.coupling_coefficient(body.drive, held)
     error = (mode.frequency_error or 0.0) / mode.resonance_frequency
-    return {
+    named = {
         "resonance_frequency": (mode.resonance_frequency, error),
         "parallel_resonance_frequency": (
             mode.resonance_frequency / math.sqrt(1 - coupling**2),
@@ -190,9 +230,11 @@ def _of_disc(disc: DiscPlate) -> Mapping[str, tuple[float, float]]:
         "half_wavelength": (mode.half_wavelength, 0.0),
         "modal_mass": (mode.modal_mass, 0.0),
     }
+    # Its modes are far apart, and none is solved beside the working one.
+    return named, {}
 
 
-def _other_mode(plate: RectangularPlate, lines: tuple[int, int]) -> tuple[float, float]:
+def _other_mode(plate: RectangularPlate, lines: tuple[int, int]) -> tuple[float, ...]:
     question = _question(plate, list(lines))
     kept = _KEPT.get(question, 2)
     if kept is None:
@@ -206,7 +248,7 @@ def _other_mode(plate: RectangularPlate, lines: tuple[int, int]) -> tuple[float,
             frequency = float(modes.frequencies[at])
             kept = np.array([frequency, float(modes.errors[at]) / frequency])
         _KEPT.put(question, kept)
-    return float(kept[0]), float(kept[1])
+    return float(kept[0]), float(kept[1]), 0.0
 
 
 def plate_mass(plate: RectangularPlate) -> si.Kilogram:

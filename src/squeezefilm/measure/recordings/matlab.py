@@ -26,8 +26,8 @@ def read_matlab(path: Path) -> RawTable:
     data = read_regular(path, RECORDING_BYTES, "a MATLAB file")
     if b"MATLAB 7.3" in data[:128] or data[:8] == b"\x89HDF\r\n\x1a\n":
         raise ConfigError(
-            "is a MATLAB file of version 7.3 (HDF5), which is not read; save it in MATLAB with "
-            "save('file.mat', '-v7')",
+            "is a MATLAB file of version 7.3 (HDF5), which is not read; write it again in MATLAB: "
+            f"S = load('{path.name}'); save('{path.name}', '-struct', 'S', '-v7')",
             file=path,
         )
     variables = _variables(data, path)

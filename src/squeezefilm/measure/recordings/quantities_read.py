@@ -23,6 +23,9 @@ from squeezefilm.measure.recordings.description import (
 from squeezefilm.measure.recordings.raw_table import RawTable
 
 _SCALE = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)\s*")
+_DECIBELS = re.compile(r"\s*dB\s+re\s+(\S.*?)\s*")
+_IN_DECIBELS = ("magnitude", "admittance_magnitude", "displacement", "velocity")
+_MOST_DECIBELS = 600.0
 _LEAST_ROWS = 3
 
 
@@ -131,8 +134,8 @@ class Reading:
                 f"{self._unit_words(column)} is no unit of a {words(name)}; write one of {wanted}",
                 ["columns", name, "unit"],
             )
+        values = scale * self._linear(name, column, place)
         self._require_own_unit(name, column, place)
-        values = scale * self.table.values[:, place]
         said = f"column {place + 1}"
         said += f" '{self.table.names[place]}'" if self.table.names[place] else ""
         said += f" in {self._unit_words(column)}"
@@ -179,10 +182,14 @@ class Reading:
         """The scale to SI and the dimension of a column's unit, times its scale."""
         column = self._column(name)
         factor, total = 1.0, None
-        for key, text in (("unit", column.unit), ("scale", column.scale)):
+        decibels = _DECIBELS.fullmatch(column.unit)
+        unit = column.unit if decibels is None else decibels[1]
+        for key, text in (("unit", unit), ("scale", column.scale)):
             if text is None:
                 continue
             number = 1.0
+            if key == "unit" and decibels is not None and (match := _SCALE.fullmatch(text)):
+                number, text = float(match[1]), match[2]
             if key == "scale":
                 match = _SCALE.fullmatch(text)
                 if match is None:
@@ -195,16 +202,40 @@ class Reading:
             try:
                 scale, dimension = si.parse_unit(text)
             except QuantityError as error:
-                decibels = "; decibels are not read: export linear values" if "dB" in text else ""
-                allowed = si.allowed_units(QUANTITIES[name].unit)
-                raise self.description.error(
-                    f"{error}{decibels}; units of a {words(name)}: {allowed}",
-                    ["columns", name, key],
-                ) from error
+                si_unit, allowed = QUANTITIES[name].unit, si.allowed_units(QUANTITIES[name].unit)
+                message = f"{error}; units of a {words(name)}: {allowed}"
+                if text.strip().startswith("dB"):
+                    message = (
+                        f"'{text}' does not say what 0 dB stands for; write unit = "
+                        f'"dB re 1 {si_unit.symbol}", or another {words(name)} in its place'
+                    )
+                raise self.description.error(message, ["columns", name, key]) from error
             factor *= number * float(scale)
             total = dimension if total is None else _sum(total, dimension)
         assert total is not None
         return factor, total
+
+    def _linear(self, name: str, column: Column, place: int) -> si.FloatArray:
+        """The column's numbers over its unit: those in decibels, 20 log10 of an amplitude over what
+        0 dB stands for, made linear. Raises `ConfigError` for what is no amplitude."""
+        values = self.table.values[:, place]
+        if _DECIBELS.fullmatch(column.unit) is None:
+            return values
+        if (
+            name not in _IN_DECIBELS
+            or self.has(f"{name}_imaginary")
+            or hasattr(self.columns, "time")
+        ):
+            raise self.description.error(
+                f"the {words(name)} is no amplitude here, and only amplitudes have decibels; "
+                "export linear values",
+                ["columns", name, "unit"],
+            )
+        if np.any(values > _MOST_DECIBELS):
+            row = int(np.argmax(values))
+            raise self.refuse(name, f"{values[row]:.6g} dB cannot be right: are these dB?", row)
+        self.facts.append((words(name), "decibels made linear, 20 dB for each factor of 10"))
+        return np.asarray(10 ** (values / 20))
 
     def _unit_words(self, column: Column) -> str:
         return column.unit if column.scale is None else f"{column.unit} times {column.scale}"
@@ -212,7 +243,11 @@ class Reading:
     def _require_own_unit(self, name: str, column: Column, place: int) -> None:
         """Refuse a unit other than the one that the file's own header has in brackets."""
         own = self.table.unit_in_name(place)
-        if own is None or si.parse_unit(own) == si.parse_unit(column.unit):
+        if own is None or column.unit == own:
+            return
+        if _DECIBELS.fullmatch(column.unit) is None and si.parse_unit(own) == si.parse_unit(
+            column.unit
+        ):
             return
         where = "" if self.table.header_line is None else f" (line {self.table.header_line})"
         raise self.description.error(

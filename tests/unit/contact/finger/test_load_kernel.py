@@ -16,8 +16,9 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import squeeze_number
-from squeezefilm.materials import Gas
+from squeezefilm.display import load_display
 
+AIR = load_display("biet2008-plate").gas
 LAWS = (AsperityLaw(), AsperityLaw(heights="gaussian"), RoughContact())
 
 
@@ -33,7 +34,7 @@ def test_a_strip_is_that_of_the_closed_form(sigma: float) -> None:
 def test_the_interface_is_film_beside_the_first_harmonic_of_the_asperities(
     law: ContactLaw, swing: float
 ) -> None:
-    gas, gap, frequency, width = Gas(), 3e-6, 31e3, 250e-6
+    gas, gap, frequency, width = AIR, 3e-6, 31e3, 250e-6
     sigma = squeeze_number(frequency, width, gap, gas.viscosity, gas.ambient_pressure)
     knudsen = gas.mean_free_path / gap
     film = (
@@ -53,7 +54,7 @@ def test_the_interface_is_film_beside_the_first_harmonic_of_the_asperities(
 
 
 def test_what_the_plate_feels_is_that_of_the_finger_behind_it() -> None:
-    gas, skin, law = Gas(), Skin(), RoughContact()
+    gas, skin, law = AIR, Skin(), RoughContact()
     finger = compiled_finger(250e-6, 31e3, gas, skin, 0.7)
     interface = interface_stiffness(3e-6, 1e-6, 250e-6, 31e3, gas, law)
     expected = finger_stiffness(interface, skin, 31e3, 0.7)

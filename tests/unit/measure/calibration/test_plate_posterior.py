@@ -13,6 +13,7 @@ from squeezefilm.measure.calibration.discrepancy import (
     ALIKE,
     BELIEVED,
     KINDS,
+    READ_ALONE,
     SHARED,
     misfit_of,
     scales_of,
@@ -22,6 +23,7 @@ from squeezefilm.measure.calibration.discrepancy import (
 from squeezefilm.measure.calibration.emulator import emulator_of
 from squeezefilm.measure.calibration.identified import identification
 from squeezefilm.measure.calibration.plate_posterior import (
+    BOUND,
     PlatePosterior,
     PlateProblem,
     best_fit,
@@ -49,7 +51,7 @@ def problem(*observations: Observation) -> PlateProblem:
     z = ndtri(drawn)
     emulator = emulator_of(scores.coordinates(z), z @ SLOPES.T)
     asked = tuple(Asked(name) for name in NAMES)
-    return PlateProblem(scores, emulator, asked, np.zeros(3), observations)
+    return PlateProblem(scores, emulator, asked, np.zeros(3), np.zeros(3), observations)
 
 
 def seen(name: str, score: tuple[float, float], error: float) -> Observation:
@@ -136,11 +138,14 @@ def test_predicted_errors_are_those_of_a_conditioned_normal() -> None:
     logs = np.log(predictive(posed, fixed, seed=1).values)
     prior = np.tensordot(scales**2, posed.discrepancies, 1) + posed.model_covariance
     precision = np.linalg.inv(prior)
-    for column, noise in zip(posed.columns, posed.noise, strict=True):
-        precision[column, column] += noise**-2
+    variances = posed.noise**2 + [
+        READ_ALONE.get(one.answer, 0.0) ** 2 for one in posed.observations
+    ]
+    for column, variance in zip(posed.columns, variances, strict=True):
+        precision[column, column] += 1 / variance
     pull = np.zeros(3)
     left = posed.residuals(np.zeros((1, 2)))[0]
-    pull[posed.columns] = left / posed.noise**2
+    pull[posed.columns] = left / variances
     covariance = np.linalg.inv(precision)
     np.testing.assert_allclose(
         logs.mean(axis=0) - posed.answers(np.zeros((1, 2)))[0],
@@ -170,3 +175,85 @@ def test_scales_and_covariances_are_those_that_are_believed() -> None:
     assert np.array([1, -1, 0]) @ mesh @ [1, -1, 0] == pytest.approx(0)
     assert mesh[2, 2] == pytest.approx(1e-6)
     assert misfit_of(0.0, [], np.zeros(0)).judgement == "fits"
+
+
+RESONANCES = tuple(Asked(name) for name in BOUND)
+
+
+def resonances(*observations: Observation, readings: tuple[float, ...] = (0, 0, 0)) -> PlateProblem:
+    """Resonance, parallel resonance (as an emulator that errs has it) and coupling, of two
+    parameters."""
+    known = problem()
+    z = np.random.default_rng(2).normal(size=(64, 2))
+    logs = np.log([3e4, 3.2e4, 0.25]) + z @ np.array([[0.02, 0.0], [0.02, 0.01], [0.0, 0.1]]).T
+    emulator = emulator_of(known.scores.coordinates(z), logs)
+    return PlateProblem(
+        known.scores, emulator, RESONANCES, np.zeros(3), np.array(readings), observations
+    )
+
+
+def fixed(scales: float = 1.0, draws: int = 4000) -> PlatePosterior:
+    """Draws at the middle of the priors."""
+    zeros = np.zeros((draws, 2))
+    of_kinds = np.full((draws, len(KINDS)), scales)
+    return PlatePosterior(zeros, of_kinds, np.zeros(2), misfit_of(0, [], of_kinds), 1)
+
+
+@pytest.mark.parametrize("left_out", range(3))
+@pytest.mark.parametrize("scale", [1.0, 3.0])
+def test_of_resonance_parallel_resonance_and_coupling_two_tell_the_third(
+    left_out: int, scale: float
+) -> None:
+    """However far the model is off, since the third is what the other two are called."""
+    true = np.array([3.03e4, 3.03e4 / np.sqrt(1 - 0.252**2), 0.252])
+    seen_ = [
+        Observation(one.name, float(value), float(1e-7 * value))
+        for k, (one, value) in enumerate(zip(RESONANCES, true, strict=True))
+        if k != left_out
+    ]
+    posed = resonances(*seen_)
+    values = predictive(posed, fixed(scale), seed=1).values
+    np.testing.assert_allclose(values[:, 2] ** 2, 1 - (values[:, 0] / values[:, 1]) ** 2)
+    # By the law of errors of k² = 1 − (fs/fp)², from what each recording may misread.
+    slope = 0.252**2 / (1 - 0.252**2)
+    own = np.array([READ_ALONE[name] for name in BOUND])
+    parts = {
+        0: (own[1], slope * own[2]),
+        1: (own[0], slope * own[2]),
+        2: (own[0] / slope, own[1] / slope),
+    }
+    expected = np.hypot(*parts[left_out])
+    logs = np.log(values[:, left_out])
+    assert logs.std() == pytest.approx(expected, rel=0.1)
+    assert logs.mean() == pytest.approx(np.log(true[left_out]), abs=0.2 * expected)
+
+
+def test_the_slopes_of_what_is_bound_are_its_differences() -> None:
+    posed = resonances()
+    logs = np.log([[3e4, 1.0, 0.25], [3e4, 1.0, 0.6]])
+    step = 1e-6
+    differences = np.stack(
+        [
+            (posed.bound(logs + step * one) - posed.bound(logs - step * one)) / (2 * step)
+            for one in np.eye(3)
+        ],
+        axis=2,
+    )
+    np.testing.assert_allclose(posed.moved(logs), differences, atol=1e-6)
+    # A coupling that a sampler strays to has a parallel resonance, too.
+    assert np.isfinite(posed.bound(np.log([[3e4, 1.0, 1.2]]))).all()
+    assert problem().bound(logs) is logs
+
+
+def test_an_error_that_all_readings_share_is_not_averaged_away() -> None:
+    """Of many sharp recordings that all misread an answer alike the interval stays so wide."""
+    shared, count = 0.01, 30
+    seen_ = [Observation("resonance_frequency", 3e4, 0.3) for _ in range(count)]
+    for readings, expected in (
+        ((shared, 0, 0), shared),
+        ((0, 0, 0), READ_ALONE["resonance_frequency"] / np.sqrt(count)),
+    ):
+        posed = resonances(*seen_, readings=readings)
+        # Of a model that is believed of little, so that only the readings tell.
+        logs = np.log(predictive(posed, fixed(20.0), seed=1).of(RESONANCES[0]))
+        assert logs.std() == pytest.approx(expected, rel=0.1)

@@ -121,7 +121,8 @@ DESCRIPTIONS = {
     "no such column": ('"theta"', '"thta"', "Did you mean 'theta'", "columns.phase.column"),
     "no such number": ('"theta"', "4", "the file has no column 4", "columns.phase.column"),
     "another dimension": ('"deg"', '"mm"', "mm is no unit of a phase", "columns.phase.unit"),
-    "decibels": ('"ohm"', '"dB"', "export linear values", "columns.magnitude.unit"),
+    "decibels": ('"ohm"', '"dB"', "does not say what 0 dB stands for", "columns.magnitude.unit"),
+    "decibels of a phase": ('"deg"', '"dB re 1 rad"', "no amplitude here", "columns.phase.unit"),
     "half a pair": ("phase = {", "# {", "magnitude with phase", "columns"),
     "a convention where none is": (
         '"ohm"', '"ohm", given_as = "rms"', "is no amplitude; delete it",

@@ -48,7 +48,7 @@ def test_a_matrix_is_its_columns(tmp_path: Path) -> None:
 def test_what_cannot_be_read_is_refused_with_what_to_do(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     path.write_bytes(b"MATLAB 7.3 MAT-file, Platform".ljust(600))
-    with pytest.raises(ConfigError, match=r"save\('file.mat', '-v7'\)"):
+    with pytest.raises(ConfigError, match=r"save\('a.mat', '-struct', 'S', '-v7'\)"):
         read_matlab(path)
     path.write_bytes(b"nothing of the kind")
     with pytest.raises(ConfigError, match="cannot be read as a MATLAB file"):

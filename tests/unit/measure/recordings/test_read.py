@@ -62,6 +62,37 @@ def test_a_frequency_response_in_peak_to_peak_micrometres(tmp_path: Path) -> Non
         check_recording(path)
 
 
+def test_decibels_say_what_0_dB_stands_for(tmp_path: Path) -> None:
+    """As network analysers export: magnitude in dB, phase in degrees."""
+    f = np.linspace(29e3, 31e3, 51)
+    h = 1e-7 / (1 - (f / 30e3) ** 2 + 1j * f / 30e3 / 60)
+    v = 2j * np.pi * f * h
+    said = described(
+        "frequency response",
+        'frequency = { column = 1, unit = "Hz" }\n'
+        'velocity = { column = 2, unit = "dB re 2 V/V", scale = "125 mm/s/V" }\n'
+        'phase = { column = 3, unit = "deg" }',
+    )
+    decibels = 20 * np.log10(np.abs(v) / 0.125 / 2)
+    data = text("f,dB,p", (f, decibels, np.degrees(np.angle(v))))
+    found = check_recording(written(tmp_path, data, said))
+    assert np.allclose(found.recording.displacement_per_volt, h, rtol=1e-6)
+    assert any("decibels made linear" in value for _, value in found.facts)
+    wrong = data.replace(data.splitlines()[5].split(",")[1], "90000")
+    with pytest.raises(ConfigError, match="are these dB"):
+        check_recording(written(tmp_path, wrong, said, "b.csv"))
+    y = 1 / (50 + 1 / (2j * np.pi * f * 5e-9))
+    said = described(
+        "impedance",
+        'frequency = { column = 1, unit = "Hz" }\n'
+        'magnitude = { column = 2, unit = "dB re 1 ohm" }\n'
+        'phase = { column = 3, unit = "deg" }',
+    )
+    columns = (f, -20 * np.log10(np.abs(y)), -np.degrees(np.angle(y)))
+    swept = read_recording(written(tmp_path, text("f,|Z| [dB],p", columns), said, "c.csv"))
+    assert np.allclose(swept.admittance, y, rtol=1e-6)
+
+
 def test_a_response_of_velocity_over_volts_by_an_instrument_s_scale(tmp_path: Path) -> None:
     f = np.linspace(29e3, 31e3, 51)
     h = 1e-7 / (1 - (f / 30e3) ** 2 + 1j * f / 30e3 / 60)
