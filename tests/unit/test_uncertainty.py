@@ -380,7 +380,7 @@ def test_an_additive_model_has_the_indices_of_its_variances(made_up: Callable[..
     assert told[0] == "friction of draw 1 of 1024"
     matters = [text for text in told if text.startswith("which value matters, by draw")]
     assert matters[0].endswith(f" 1 of {64 * columns}")
-    assert len(told) <= 3 * 22
+    assert len(told) <= 3 * 25
 
 
 def test_what_matters_only_in_company_has_a_total_and_nothing_alone(
