@@ -257,8 +257,7 @@ def _saltelli(
     was refused; NaN where an input explained too little to be followed."""
     design = _design(mixture, samples, seed)
     found = np.full(design.shape[:2], np.nan)
-    first = max(samples // 4, _FIRST_ROWS)
-    first, every = max(samples // 4, _FIRST_ROWS), np.arange(found.shape[1])
+    first, every = max(samples // 4, _FIRST_ROWS), np.arange(design.shape[1])
 
     def draw(rows: slice, columns: si.IntArray) -> Refusals:
         asked = design[rows][:, columns]

@@ -211,8 +211,8 @@ def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: si.MetreArray) -
     if mode.modal_mass is None:
         return found
     pad = _Pad.of(law)
-    for i, one in enumerate(amplitude.tolist()):
-        found[i] = _loaded(mode, mode.modal_mass, _carried(pad, one)).load_ratio
+    for i, one in enumerate(np.ravel(amplitude).tolist()):
+        found.flat[i] = _loaded(mode, mode.modal_mass, _carried(pad, one)).load_ratio
     return found
 
 

@@ -14,9 +14,9 @@ from squeezefilm.contact.finger.load import (
 from squeezefilm.contact.finger.load_kernel import felt, strip_force
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
+from squeezefilm.display import load_display
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import squeeze_number
-from squeezefilm.display import load_display
 
 AIR = load_display("biet2008-plate").gas
 LAWS = (AsperityLaw(), AsperityLaw(heights="gaussian"), RoughContact())
