@@ -55,7 +55,7 @@ class SurfaceShape(ABC):
 
     @si.checked_numbers
     def on_face(
-        self, x: si.MetreArray, y: si.MetreArray
+        self, x: si.MetreLike, y: si.MetreLike
     ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
         """Whether points (m, broadcast) lie on the face."""
         left, right, front, back = self.bounds
@@ -73,13 +73,13 @@ class SurfaceShape(ABC):
         return np.where(there, self._grid(x, y), 0.0)
 
     @si.checked_numbers
-    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
+    def at(self, x: si.MetreLike, y: si.MetreLike) -> si.DimensionlessArray:
         """|w| over the lobe's at points (m, broadcast), 0 beside the face; a solved plate's
         between knots a 24th of a half wavelength apart, by cubic splines."""
-        x, y = np.broadcast_arrays(x, y)
-        found = np.zeros(x.shape)
-        there = self.on_face(x, y)
-        found[there] = self._points(x[there], y[there])
+        X, Y = np.broadcast_arrays(x, y)
+        found = np.zeros(X.shape)
+        there = self.on_face(X, Y)
+        found[there] = self._points(X[there], Y[there])
         return found
 
     @si.checked_numbers
@@ -173,7 +173,7 @@ class DiscSurface(SurfaceShape):
 
     @si.checked_numbers
     def on_face(
-        self, x: si.MetreArray, y: si.MetreArray
+        self, x: si.MetreLike, y: si.MetreLike
     ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
         """Whether points (m, broadcast) lie on the face."""
         r, known = np.hypot(x, y), self.mode.surface_radius
@@ -197,7 +197,7 @@ class TrackSurface(SurfaceShape):
 
     @si.checked_numbers
     def on_face(
-        self, x: si.MetreArray, y: si.MetreArray
+        self, x: si.MetreLike, y: si.MetreLike
     ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
         """Whether points (m, broadcast) lie on the face: the track is closed, so every x does."""
         _, _, inner, outer = self.bounds

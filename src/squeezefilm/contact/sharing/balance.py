@@ -20,7 +20,7 @@ from squeezefilm.compiled import announce
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
 from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable
-from squeezefilm.errors import ConvergenceError, OutOfRangeError, OutOfRangeWarning
+from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError, OutOfRangeWarning
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +117,9 @@ def share_load_tied(
     shift = np.zeros_like(a) if offset is None else np.ascontiguousarray(offset, dtype=float)
     si.require("offset", shift, si.Unit("m"), at_least=-1e-4, at_most=1e-4)
     part = np.full(a.size, 1 / a.size) if shares is None else np.ascontiguousarray(shares)
+    for name, one in (("offset", shift), ("shares", part)):
+        if one.shape != a.shape:
+            raise InputError(f"{a.size} ridges need {a.size} of {name}", quantity=name)
     ridges = kernel.CompiledRidges(a, shift, part)
     row = np.zeros(kernel.COLUMNS)
     solve: Any = kernel.balance

@@ -49,6 +49,7 @@ class PadPosture:
     swings: Annotated[si.DimensionlessArray, si.AtLeast(0.0)] | None = None
     shares: Annotated[si.DimensionlessArray, si.AtLeast(0.0)] | None = None
 
+    @si.checked_numbers
     def weights(self, points: si.MetreArray) -> si.DimensionlessArray:
         """The share of the pad that each of its points stands for; they sum to 1."""
         if self.shares is None:
@@ -61,8 +62,9 @@ class PadPosture:
             )
         return self.shares / whole
 
+    @si.checked_numbers
     def over_the_antinode(
-        self, points: si.MetreArray, half_wavelength: si.Metre
+        self, points: si.MetreArray, half_wavelength: Annotated[si.Metre, si.Above(0.0)]
     ) -> si.DimensionlessArray:
         """The amplitudes that points (m from the pad's centre) meet, over the antinode's."""
         if self.swings is None:
@@ -185,6 +187,8 @@ def pad_friction(
     a |cos(πx/half_wavelength)|, unless the posture has its own swings. Without a `shear` friction
     is the asperities' share of the load. Raises as `share_load` does.
     """
+    if points.ndim != 1:
+        si.require("points", points, si.Unit("m"), axes=1)
     posture = posture or PadPosture()
     a = np.atleast_1d(np.asarray(amplitude, dtype=float))
     wave, shares = posture.over_the_antinode(points, half_wavelength), posture.weights(points)
