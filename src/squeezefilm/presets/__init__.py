@@ -13,11 +13,13 @@ from squeezefilm.errors import ConfigError
 from squeezefilm.presets import materials
 
 __all__ = [
+    "actuator_names",
     "claims_path",
     "display_names",
     "materials",
     "path",
     "resolve",
+    "resolve_actuator",
     "resolve_observer",
     "resolve_study",
     "resolve_texture",
@@ -32,6 +34,11 @@ _NOT_DISPLAYS = {"claims", "materials"}
 def display_names() -> tuple[str, ...]:
     """The names of all preset displays, sorted."""
     return tuple(name for name in _names(_FOLDER) if name not in _NOT_DISPLAYS)
+
+
+def actuator_names() -> tuple[str, ...]:
+    """The names of all preset motors and skin-stretch arrays, sorted."""
+    return _names(_FOLDER / "actuators")
 
 
 def texture_names() -> tuple[str, ...]:
@@ -69,6 +76,11 @@ def resolve(name_or_path: str | Path) -> Path:
     A text without a separator and without ``.toml`` is a preset's name unless such a file exists.
     """
     return _resolved(name_or_path, "preset", display_names(), _FOLDER)
+
+
+def resolve_actuator(name_or_path: str | Path) -> Path:
+    """The file of a preset actuator's name or of a path to a TOML file. As `resolve` does."""
+    return _resolved(name_or_path, "actuator", actuator_names(), _FOLDER / "actuators")
 
 
 def resolve_texture(name_or_path: str | Path) -> Path:
