@@ -101,7 +101,7 @@ def simulate(
     """
     stator = motor.stator(working)
     require_no_pull(motor, stator)
-    march, slider = _at_rest(motor, working, stator, speed, start_speed)
+    march, slider = resting(motor, working, stator, speed, start_speed)
     J, I = stator.mass.size, motor.feet.mu.size
     at, totals = 2 * J, 2 * J + 4 + I
     period = 2 * np.pi / stator.omega[0]
@@ -157,7 +157,7 @@ def require_no_pull(motor: AssembledMotor, stator: kernel.Stator) -> None:
         )
 
 
-def _at_rest(
+def resting(
     motor: AssembledMotor,
     working: Working,
     stator: kernel.Stator,
