@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor import average_kernel, kernel
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
 from squeezefilm.actuators.motor.averaged import averaged, no_load_speed, stall_force
@@ -16,7 +17,13 @@ from squeezefilm.actuators.motor.curves import (
     over_frequency,
     speed_force_curve,
 )
-from squeezefilm.actuators.motor.description import Cradle, Foot, FootContact, Motor
+from squeezefilm.actuators.motor.description import (
+    Cradle,
+    Foot,
+    FootContact,
+    Motor,
+    MotorDescription,
+)
 from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.stator import face_mode
 from squeezefilm.display import load_display
@@ -323,3 +330,30 @@ def test_what_cannot_work_is_refused_in_words() -> None:
         replace(there.motor, feet=())
     with pytest.raises(InputError, match="same length and width"):
         replace(there.motor, second_plate=replace(plate(), width=0.05))
+
+
+@pytest.mark.slow
+def test_the_preset_runs_and_says_what_it_does() -> None:
+    described = load_actuator("biet2008-motor")
+    assert isinstance(described, MotorDescription)
+    ready = assembled(described.motor)
+    working = Working(voltage=described.motor.voltage)
+    rest = averaged(ready, working)
+    assert 0.3 < rest.contact_share < 1
+    assert 0 < stall_force(ready, working) < ready.quiescent_force
+    assert 0.005 < no_load_speed(ready, working) < 0.2
+    moved = simulate(ready, working, periods=1500, start_speed=0.02)
+    assert moved.final_speed == pytest.approx(no_load_speed(ready, working), rel=0.1)
+
+
+@pytest.mark.slow
+def test_the_trends_that_the_paper_tells() -> None:
+    """Its conclusion: intermittent contact varies with the preload and with the wave's amplitude,
+    and the tangential results with the contact. No number is given there to compare with."""
+    there = motor()
+    by_preload = [averaged(there, replace(WORKING, preload=P)).contact_share for P in (5, 10, 20)]
+    assert by_preload == sorted(by_preload)
+    by_amplitude = [averaged(there, Working(amplitude=a)).contact_share for a in (5e-7, 1e-6, 2e-6)]
+    assert by_amplitude == sorted(by_amplitude, reverse=True)
+    speeds = [no_load_speed(there, Working(amplitude=a)) for a in (5e-7, 1e-6, 2e-6)]
+    assert speeds == sorted(speeds)

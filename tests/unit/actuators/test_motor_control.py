@@ -51,12 +51,17 @@ def test_the_graph_says_what_the_equations_say(inclination: float) -> None:
 
     def behind(name: str, through_stretch: bool) -> set[str]:
         """What is integrated and stands behind an input, through what has no memory."""
-        one = maker.get(name)
-        if one is None:
-            return set()
-        if one.causal and not (through_stretch and name.startswith("e_")):
-            return {name}
-        return {far for near in one.inputs for far in behind(near, through_stretch)}
+        found, seen, waiting = set(), {name}, [name]
+        while waiting:
+            one = maker.get(waiting.pop())
+            if one is None:
+                continue
+            if one.causal and not (through_stretch and one.output.startswith("e_")):
+                found.add(one.output)
+                continue
+            waiting += [near for near in one.inputs if near not in seen]
+            seen |= set(one.inputs)
+        return found
 
     said = {
         (far, one.output)

@@ -19,19 +19,19 @@ if TYPE_CHECKING:
 
 
 def _floors(graph: CausalGraph) -> dict[str, int]:
-    """How far each element stands from what comes from outside, by the shortest way."""
-    floors: dict[str, int] = dict.fromkeys(graph.sources, 0)
-    waiting = list(graph.elements)
+    """How far each element stands from the first quantity that comes from outside; the others
+    stand before what they go into."""
+    first, *others = graph.sources
+    floors = {first: 0}
+    waiting = [first]
     while waiting:
-        for one in waiting:
-            made = {other.output: other.name for other in graph.elements}
-            known = [floors[makes] for name in one.inputs if (makes := made.get(name, name)) in floors]
-            if known:
-                floors[one.name] = 1 + min(known)
-        left = [one for one in waiting if one.name not in floors]
-        if len(left) == len(waiting):
-            break
-        waiting = left
+        name = waiting.pop(0)
+        for source, target, _ in graph.edges:
+            if source == name and target not in floors:
+                floors[target] = floors[name] + 1
+                waiting.append(target)
+    for name in others:
+        floors[name] = min(floors[to] for source, to, _ in graph.edges if source == name) - 1
     return floors
 
 
@@ -124,6 +124,7 @@ def map_figure(found: MotorMap) -> Figure:
         drawn = axes.pcolormesh(x, y, np.ma.masked_invalid(values), shading="nearest")
         figure.colorbar(drawn, ax=axes, label=label)
         axes.set(xlabel="amplitude (µm)", yscale="log")
+        style.plain_log(axes.yaxis)
     figure.axes[0].set_ylabel("preload (N)")
     return figure
 
