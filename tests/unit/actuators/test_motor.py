@@ -213,7 +213,9 @@ def test_a_free_slider_ends_at_the_no_load_speed() -> None:
     in_time = simulate(motor(), working, periods=1500, start_speed=0.02, traced=2)
     expected = no_load_speed(motor(), working)
     assert in_time.final_speed == pytest.approx(expected, rel=0.05)
-    assert in_time.period_amplitude[-1] == pytest.approx(averaged(motor(), working).amplitude, rel=0.02)
+    assert in_time.period_amplitude[-1] == pytest.approx(
+        averaged(motor(), working).amplitude, rel=0.02
+    )
     assert in_time.time.size == 2 * 64
     assert set(np.unique(in_time.contact)) >= {kernel.OPEN, kernel.STICK}
 
@@ -312,7 +314,9 @@ def test_what_cannot_work_is_refused_in_words() -> None:
     there = motor()
     with pytest.raises(OutOfRangeError, match=r"900 V; from 333\.3 V on .* loses its poling"):
         averaged(there, Working(voltage=900.0))
-    with pytest.raises(OutOfRangeError, match="over a nodal line .* between a node and an antinode"):
+    with pytest.raises(
+        OutOfRangeError, match="over a nodal line .* between a node and an antinode"
+    ):
         motor(beside=0.5)
     with pytest.raises(OutOfRangeError, match="never leave the slider .* with less than"):
         stall_force(there, Working(amplitude=0.3e-6, preload=50.0))

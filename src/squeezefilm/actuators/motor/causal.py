@@ -59,9 +59,7 @@ class CausalGraph:
         for name in (source, output):
             if name not in known:
                 raise InputError(f"the graph has no '{name}'; it has: {', '.join(known)}")
-        ways: list[tuple[Element, ...]] = [
-            (one,) for one in self.elements if source in one.inputs
-        ]
+        ways: list[tuple[Element, ...]] = [(one,) for one in self.elements if source in one.inputs]
         seen = {way[0].name for way in ways}
         while ways:
             way = ways.pop(0)

@@ -144,9 +144,7 @@ def over_frequency(
 ) -> tuple[AveragedMotor, ...]:
     """The motor at rest under its voltage at frequencies (Hz). Raises as `averaged`."""
     si.require("frequencies", frequencies, si.Unit("Hz"), axes=1)
-    return tuple(
-        averaged(motor, replace(working, frequency=one)) for one in frequencies.tolist()
-    )
+    return tuple(averaged(motor, replace(working, frequency=one)) for one in frequencies.tolist())
 
 
 def over_foot_position(

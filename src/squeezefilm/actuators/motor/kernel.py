@@ -134,9 +134,7 @@ def rates(
             dy[at + 4 + i] = along
         else:
             sign = 1.0 if state == SLIP_UP else -1.0
-            e = depth * _slip_stretch(
-                sign, g, feet.k_nn[i], feet.k_nt[i], feet.k_tt[i], feet.mu[i]
-            )
+            e = depth * _slip_stretch(sign, g, feet.k_nn[i], feet.k_nt[i], feet.k_tt[i], feet.mu[i])
             y[at + 4 + i] = e
         elastic = feet.k_nn[i] * depth + feet.k_nt[i] * e
         N = g * elastic
@@ -151,7 +149,7 @@ def rates(
     for j in range(J):
         if stator.held:
             dy[totals + DRIVE] -= dy[J + j] * y[J + j]
-            dy[J + j] = -stator.omega[j] ** 2 * y[j]
+            dy[J + j] = -(stator.omega[j] ** 2) * y[j]
         else:
             push = stator.force[j] * math.cos(stator.omega[j] * t + stator.phase[j])
             lost = stator.damping[j] * y[J + j]
@@ -208,9 +206,7 @@ def _slips(y: si.Array, stator: Stator, feet: Feet, march: March, dy: si.Array) 
 
 
 @compiled()
-def _stepped(
-    t: float, h: float, stator: Stator, feet: Feet, slider: Slider, march: March
-) -> None:
+def _stepped(t: float, h: float, stator: Stator, feet: Feet, slider: Slider, march: March) -> None:
     """One Runge–Kutta step from `march.state` into room 5, with the events there."""
     y, room = march.state, march.room
     rates(t, y, stator, feet, slider, march, room[0])

@@ -75,7 +75,4 @@ def face_mode(plate: RectangularPlate, theory: PlateTheory = "solid") -> FaceMod
     h = beam.section.neutral_axis
     shape = beam.mode
     top = float(shape.deflection_at(mode.lobe[1 if wide else 0]))
-    return FaceMode(
-        mode, shape.position, shape.deflection / top, -h * shape.rotation / top, wide
-    )
-
+    return FaceMode(mode, shape.position, shape.deflection / top, -h * shape.rotation / top, wide)
