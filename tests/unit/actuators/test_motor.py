@@ -99,10 +99,12 @@ def test_the_march_is_of_fourth_order_through_its_contacts() -> None:
     assert 0 < fine.stick_share < fine.contact_share
     steps = np.array([16, 32, 64, 128])
     errors = [
-        abs(simulate(motor(), WORKING, speed=0.02, periods=5, steps=n, traced=0).period_height[-1]
-            - fine.period_height[-1])
+        abs(
+            simulate(motor(), WORKING, speed=0.02, periods=5, steps=n, traced=0).period_height[-1]
+            - fine.period_height[-1]
+        )
         for n in steps.tolist()
-    ]  # fmt: skip
+    ]
     orders = -np.diff(np.log(errors)) / np.log(2)
     assert np.all(orders > 3.5)
 
@@ -247,9 +249,11 @@ def test_a_guide_takes_its_friction_off_and_holds_what_is_weaker() -> None:
 def test_a_map_knows_where_the_motor_stalls() -> None:
     told: list[tuple[int, int]] = []
     found = motor_map(
-        motor(), np.array([5.0, 60.0]), np.array([0.5e-6, 2e-6]),
+        motor(),
+        np.array([5.0, 60.0]),
+        np.array([0.5e-6, 2e-6]),
         progress=lambda done, of: told.append((done, of)),
-    )  # fmt: skip
+    )
     assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
     assert np.isnan(found.stall_force).tolist() == [[False, False], [True, False]]
     assert found.contact[1, 0] == 1.0

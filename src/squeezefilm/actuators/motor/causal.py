@@ -104,38 +104,53 @@ def causal_graph(motor: AssembledMotor) -> CausalGraph:
                 f"electrodes{end}", (f"V{end}",), f"f{end}", "force on the mode, by volts", False
             ),
             Element(
-                f"mode {mode.working.label}", (f"f{end}", *forces), f"q{end}",
-                "the mode's mass, stiffness and loss", True,
+                f"mode {mode.working.label}",
+                (f"f{end}", *forces),
+                f"q{end}",
+                "the mode's mass, stiffness and loss",
+                True,
             ),
-        ]  # fmt: skip
+        ]
     for i in feet:
         ends = [""] if len(motor.modes) == 1 else ["_1", "_2"]
         moving = [f"q{end}" for j, end in enumerate(ends) if motor.feet.across[i - 1, j] != 0]
         along = [f"q{end}" for j, end in enumerate(ends) if motor.feet.along[i - 1, j] != 0]
         leans = motor.feet.k_nt[i - 1] != 0
         stretched = Element(
-            f"stretch of foot {i}", tuple(dict.fromkeys([*along, "v", f"N_{i}"])), f"e_{i}",
-            "follows the surface while friction holds, else its limit", True,
-        )  # fmt: skip
+            f"stretch of foot {i}",
+            tuple(dict.fromkeys([*along, "v", f"N_{i}"])),
+            f"e_{i}",
+            "follows the surface while friction holds, else its limit",
+            True,
+        )
         elements += [
             Element(
-                f"contact of foot {i}", (*moving, "z", *((f"e_{i}",) if leans else ())), f"N_{i}",
-                "one-sided spring and loss", False,
+                f"contact of foot {i}",
+                (*moving, "z", *((f"e_{i}",) if leans else ())),
+                f"N_{i}",
+                "one-sided spring and loss",
+                False,
             ),
             stretched,
             Element(
-                f"leg of foot {i}", (f"e_{i}", *((*moving, "z") if leans else ())), f"F_{i}",
-                "tangential spring", False,
+                f"leg of foot {i}",
+                (f"e_{i}", *((*moving, "z") if leans else ())),
+                f"F_{i}",
+                "tangential spring",
+                False,
             ),
-        ]  # fmt: skip
+        ]
     elements += [
         Element(
-            "slider across", (*(f"N_{i}" for i in feet), "P"), "z", "mass on the feet, preload",
+            "slider across",
+            (*(f"N_{i}" for i in feet), "P"),
+            "z",
+            "mass on the feet, preload",
             True,
         ),
         Element("sum of feet", tuple(f"F_{i}" for i in feet), "F", "thrust", False),
         Element("slider along", ("F", "load"), "v", "mass and the guide's friction", True),
-    ]  # fmt: skip
+    ]
     return CausalGraph(tuple(elements))
 
 

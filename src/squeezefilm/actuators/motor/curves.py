@@ -130,9 +130,7 @@ def models_compared(
             working = Working(amplitude=amplitude, preload=preload)
             mean = averaged(motor, working, speed=speed)
             there = simulate(motor, working, speed=speed, periods=periods, traced=0)
-            found[:, i, j] = (
-                mean.thrust, there.thrust, mean.contact_share, there.contact_share
-            )  # fmt: skip
+            found[:, i, j] = (mean.thrust, there.thrust, mean.contact_share, there.contact_share)
             if progress is not None:
                 progress(i * amplitudes.size + j + 1, found[0].size)
     return ModelsCompared(preloads, amplitudes, speed, *found)

@@ -129,19 +129,32 @@ def simulate(
         gained = (march.state - before) / period
         before = march.state.copy()
         rows[:, n] = (
-            gained[totals + kernel.THRUST], gained[totals + kernel.NORMAL], before[at + 3],
-            before[at], np.hypot(before[0], before[J] / stator.omega[0]),
-        )  # fmt: skip
+            gained[totals + kernel.THRUST],
+            gained[totals + kernel.NORMAL],
+            before[at + 3],
+            before[at],
+            np.hypot(before[0], before[J] / stator.omega[0]),
+        )
     counted = (march.shares - half) / ((periods - periods // 2) * period)
     return MotorMotion(
-        working, float(stator.omega[0] / 2 / np.pi), *rows,
-        contact_share=float(np.mean(counted[0])), stick_share=float(np.mean(counted[1])),
+        working,
+        float(stator.omega[0] / 2 / np.pi),
+        rows[0],
+        rows[1],
+        rows[2],
+        rows[3],
+        rows[4],
+        contact_share=float(np.mean(counted[0])),
+        stick_share=float(np.mean(counted[1])),
         works=march.state[totals : totals + 7].copy(),
         stored_energy=_energy(motor, stator, slider, march) - begun,
-        time=track[:, 0], height=track[:, 1 + at], speed=track[:, 4 + at],
-        deflection=track[:, 1 : 1 + J], stretch=track[:, 5 + at : 5 + at + I],
+        time=track[:, 0],
+        height=track[:, 1 + at],
+        speed=track[:, 4 + at],
+        deflection=track[:, 1 : 1 + J],
+        stretch=track[:, 5 + at : 5 + at + I],
         contact=track[:, 1 + march.state.size :],
-    )  # fmt: skip
+    )
 
 
 def require_no_pull(motor: AssembledMotor, stator: kernel.Stator) -> None:
@@ -181,9 +194,14 @@ def resting(
     guide = np.array([0.0 if free else np.copysign(1.0, state[at + 3] or 1.0)])
     scale = np.array([abs(state[at]), slider.preload] * I + [slider.preload])
     march = kernel.March(
-        state, contact, guide, np.zeros((2, I)), np.zeros((8, state.size)), np.ones(2 * I + 1),
+        state,
+        contact,
+        guide,
+        np.zeros((2, I)),
+        np.zeros((8, state.size)),
+        np.ones(2 * I + 1),
         1e-12 * scale,
-    )  # fmt: skip
+    )
     return march, slider
 
 

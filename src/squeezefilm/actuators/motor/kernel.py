@@ -99,14 +99,7 @@ def rates(
 ) -> None:
     """The state's derivative `dy`, and `march.events`: all positive while nothing changes."""
     J, I = stator.mass.size, feet.mu.size
-    contact, events = march.contact, march.events
-    at = 2 * J
-    totals = at + 4 + I
-    z, vz, v = y[at], y[at + 1], y[at + 3]
     dy[:] = 0.0
-    normal = 0.0
-    thrust = 0.0
-    # First the forces, which need places and speeds alone.
     for j in range(J):
         if stator.held:
             angle = stator.omega[j] * t + stator.phase[j]
@@ -114,38 +107,55 @@ def rates(
             y[J + j] = -stator.amplitude[j] * stator.omega[j] * math.sin(angle)
         dy[j] = y[J + j]
     for i in range(I):
-        events[2 * i] = _NO_EVENT
-        events[2 * i + 1] = _NO_EVENT
-        depth = -z
-        speed = -vz
-        along = -v
-        for j in range(J):
-            depth += feet.across[i, j] * y[j]
-            speed += feet.across[i, j] * y[J + j]
-            along += feet.along[i, j] * y[J + j]
-        state = contact[i]
-        if state == OPEN:
-            events[2 * i] = -depth
-            continue
-        events[2 * i] = depth
-        g = 1.0 + feet.chi[i] * speed
-        if state == STICK:
-            e = y[at + 4 + i]
-            dy[at + 4 + i] = along
-        else:
-            sign = 1.0 if state == SLIP_UP else -1.0
-            e = depth * _slip_stretch(sign, g, feet.k_nn[i], feet.k_nt[i], feet.k_tt[i], feet.mu[i])
-            y[at + 4 + i] = e
-        elastic = feet.k_nn[i] * depth + feet.k_nt[i] * e
-        N = g * elastic
-        F = feet.k_nt[i] * depth + feet.k_tt[i] * e
-        if state == STICK:
-            events[2 * i + 1] = feet.mu[i] * N - abs(F)
-        normal += N
-        thrust += F
-        dy[totals + CONTACT_LOSS] += feet.chi[i] * speed * speed * elastic
-        for j in range(J):
-            dy[J + j] -= N * feet.across[i, j] + F * feet.along[i, j]
+        march.events[2 * i] = _NO_EVENT
+        march.events[2 * i + 1] = _NO_EVENT
+        _press(i, y, stator, feet, march, dy)
+    _drive(t, y, stator, 2 * J + 4 + I, dy)
+    _push(y, stator, feet, slider, march, dy)
+    _slips(y, stator, feet, march, dy)
+
+
+@compiled()
+def _press(i: int, y: si.Array, stator: Stator, feet: Feet, march: March, dy: si.Array) -> None:
+    """A foot's forces, from places and speeds alone: on the modes, and in the impulses' rates."""
+    J, I = stator.mass.size, feet.mu.size
+    at = 2 * J
+    totals = at + 4 + I
+    depth, speed, along = -y[at], -y[at + 1], -y[at + 3]
+    for j in range(J):
+        depth += feet.across[i, j] * y[j]
+        speed += feet.across[i, j] * y[J + j]
+        along += feet.along[i, j] * y[J + j]
+    state = march.contact[i]
+    if state == OPEN:
+        march.events[2 * i] = -depth
+        return
+    march.events[2 * i] = depth
+    k_nn, k_nt, k_tt, mu = feet.k_nn[i], feet.k_nt[i], feet.k_tt[i], feet.mu[i]
+    g = 1.0 + feet.chi[i] * speed
+    e = y[at + 4 + i]
+    if state == STICK:
+        dy[at + 4 + i] = along
+    else:
+        sign = 1.0 if state == SLIP_UP else -1.0
+        e = depth * _slip_stretch(sign, g, k_nn, k_nt, k_tt, mu)
+        y[at + 4 + i] = e
+    elastic = k_nn * depth + k_nt * e
+    N = g * elastic
+    F = k_nt * depth + k_tt * e
+    if state == STICK:
+        march.events[2 * i + 1] = mu * N - abs(F)
+    dy[totals + NORMAL] += N
+    dy[totals + THRUST] += F
+    dy[totals + CONTACT_LOSS] += feet.chi[i] * speed * speed * elastic
+    for j in range(J):
+        dy[J + j] -= N * feet.across[i, j] + F * feet.along[i, j]
+
+
+@compiled()
+def _drive(t: float, y: si.Array, stator: Stator, totals: int, dy: si.Array) -> None:
+    """The modes' accelerations, from the feet's forces on them that stand in their places."""
+    J = stator.mass.size
     for j in range(J):
         if stator.held:
             dy[totals + DRIVE] -= dy[J + j] * y[J + j]
@@ -156,27 +166,36 @@ def rates(
             dy[totals + DRIVE] += push * y[J + j]
             dy[totals + MODAL_LOSS] += lost * y[J + j]
             dy[J + j] = (dy[J + j] + push - lost - stator.stiffness[j] * y[j]) / stator.mass[j]
+
+
+@compiled()
+def _push(
+    y: si.Array, stator: Stator, feet: Feet, slider: Slider, march: March, dy: si.Array
+) -> None:
+    """The slider's motion under the feet, its preload and guide."""
+    J, I = stator.mass.size, feet.mu.size
+    at = 2 * J
+    totals = at + 4 + I
+    vz, v = y[at + 1], y[at + 3]
+    thrust = dy[totals + THRUST]
     dy[at] = vz
-    dy[at + 1] = (normal - slider.preload - slider.damping * vz) / slider.mass
+    dy[at + 1] = (dy[totals + NORMAL] - slider.preload - slider.damping * vz) / slider.mass
     dy[totals + PRELOAD] = -slider.preload * vz
     dy[totals + GUIDE_LOSS] = slider.damping * vz * vz
-    dy[totals + THRUST] = thrust
-    dy[totals + NORMAL] = normal
     dy[at + 2] = v
-    events[2 * I] = _NO_EVENT
+    march.events[2 * I] = _NO_EVENT
     if slider.imposed:
         dy[totals + OUTPUT] = (thrust - slider.guide * math.copysign(1.0, v)) * v
         dy[totals + GUIDE_LOSS] += slider.guide * abs(v)
     elif march.guide[0] == 0:
-        events[2 * I] = slider.guide - abs(thrust - slider.load)
+        march.events[2 * I] = slider.guide - abs(thrust - slider.load)
     else:
         held_back = slider.guide * march.guide[0]
         dy[at + 3] = (thrust - slider.load - held_back) / slider.mass
         dy[totals + OUTPUT] = slider.load * v
         dy[totals + GUIDE_LOSS] += held_back * v
         if slider.guide > 0.0:
-            events[2 * I] = v * march.guide[0]
-    _slips(y, stator, feet, march, dy)
+            march.events[2 * I] = v * march.guide[0]
 
 
 @compiled()

@@ -64,31 +64,52 @@ def causal_figure(graph: CausalGraph) -> Figure:
         back = x1 <= x0
         bend = 0.35 if back else 0.08
         axes.annotate(
-            "", (x1, y1), (x0, y0), zorder=1,
+            "",
+            (x1, y1),
+            (x0, y0),
+            zorder=1,
             arrowprops={
-                "arrowstyle": "->", "connectionstyle": f"arc3,rad={bend}", "shrinkA": 26,
-                "shrinkB": 26, "color": style.ORANGE if back else style.BLUE, "lw": 1.0,
+                "arrowstyle": "->",
+                "connectionstyle": f"arc3,rad={bend}",
+                "shrinkA": 26,
+                "shrinkB": 26,
+                "color": style.ORANGE if back else style.BLUE,
+                "lw": 1.0,
             },
-        )  # fmt: skip
+        )
         start, end = axes.transData.transform([(x0, y0), (x1, y1)])
         across = np.array([end[1] - start[1], start[0] - end[0]])
         on_it = axes.transData.inverted().transform((start + end) / 2 + bend / 2 * across)
         axes.text(
-            *on_it, style.plain(quantity), fontsize=7, ha="center", va="center", zorder=2,
+            float(on_it[0]),
+            float(on_it[1]),
+            style.plain(quantity),
+            fontsize=7,
+            ha="center",
+            va="center",
+            zorder=2,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
-        )  # fmt: skip
+        )
     for name, (x, y) in places.items():
         kind = causal.get(name)
         boxstyle = "round,pad=0.35" if kind is None else "square,pad=0.35"
         words = style.plain(name).replace(" of ", "\nof ").replace(", ", ",\n")
         for pad in (0.0, 0.18) if kind else (0.0,):
             axes.text(
-                x, y, words, ha="center", va="center", fontsize=8, zorder=4 - pad,
+                x,
+                y,
+                words,
+                ha="center",
+                va="center",
+                fontsize=8,
+                zorder=4 - pad,
                 bbox={
-                    "boxstyle": boxstyle.replace("0.35", str(0.35 + pad)), "facecolor": "white",
-                    "edgecolor": "black" if kind is not None else "none", "lw": 0.9,
+                    "boxstyle": boxstyle.replace("0.35", str(0.35 + pad)),
+                    "facecolor": "white",
+                    "edgecolor": "black" if kind is not None else "none",
+                    "lw": 0.9,
                 },
-            )  # fmt: skip
+            )
     return figure
 
 
@@ -97,8 +118,9 @@ def speed_force_figure(curve: tuple[AveragedMotor, ...]) -> Figure:
     """Speed and efficiency over the force, from rest to no load."""
     figure = style.new_figure(
         f"Stalls at {curve[0].force:.3g} N, runs {1e3 * curve[-1].speed:.3g} mm/s without a load",
-        curve[0].model, 4.0,
-    )  # fmt: skip
+        curve[0].model,
+        4.0,
+    )
     left, right = figure.subplots(1, 2)
     force = [one.force for one in curve]
     left.plot(force, [1e3 * one.speed for one in curve], color=style.BLUE)
