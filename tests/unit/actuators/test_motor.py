@@ -1,7 +1,8 @@
-"""The standing-wave motor: in time, in the mean, and both beside what can be said in closed form."""
+"""The standing-wave motor in time and in the mean, beside what can be said in closed form."""
 
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -226,7 +227,7 @@ def test_the_speed_force_curve_falls_from_stall_to_no_load() -> None:
     curve = speed_force_curve(motor(), WORKING, 6)
     forces = [one.force for one in curve]
     assert forces[0] == stall_force(motor(), WORKING)
-    assert all(a > b for a, b in zip(forces, forces[1:], strict=False))
+    assert all(a > b for a, b in pairwise(forces))
     assert abs(forces[-1]) < 1e-4 * forces[0]
     assert all(0 <= one.efficiency < 1 for one in curve)
 
@@ -319,12 +320,12 @@ def test_what_cannot_work_is_refused_in_words() -> None:
     with pytest.raises(OutOfRangeError, match=r"900 V; from 333\.3 V on .* loses its poling"):
         averaged(there, Working(voltage=900.0))
     with pytest.raises(
-        OutOfRangeError, match="over a nodal line .* between a node and an antinode"
+        OutOfRangeError, match=r"over a nodal line .* between a node and an antinode"
     ):
         motor(beside=0.5)
-    with pytest.raises(OutOfRangeError, match="never leave the slider .* with less than"):
+    with pytest.raises(OutOfRangeError, match=r"never leave the slider .* with less than"):
         stall_force(there, Working(amplitude=0.3e-6, preload=50.0))
-    with pytest.raises(OutOfRangeError, match="their product is 1.* must stay below 1"):
+    with pytest.raises(OutOfRangeError, match=r"their product is 1.* must stay below 1"):
         simulate(motor(damping=9.0), WORKING)
     with pytest.raises(InputError, match="give one of the two"):
         Working()

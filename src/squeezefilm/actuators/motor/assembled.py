@@ -96,8 +96,8 @@ class AssembledMotor:
             raise OutOfRangeError(
                 f"voltage is {si.format_quantity(voltage, _V)}; from "
                 f"{si.format_quantity(self.highest_voltage, _V)} on the field in the ceramic is "
-                f"above {FIELD_SHARE:.2g} of its coercive field, and it loses its poling: use less, "
-                "a thicker ceramic, or state its coercive_field in [motor.thermal]",
+                f"above {FIELD_SHARE:.2g} of its coercive field, and it loses its poling: use "
+                "less, a thicker ceramic, or state its coercive_field in [motor.thermal]",
                 quantity="voltage",
             )
         shares = np.array([1.0, working.second])[: len(self.modes)]

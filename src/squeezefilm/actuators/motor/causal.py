@@ -111,35 +111,7 @@ def causal_graph(motor: AssembledMotor) -> CausalGraph:
                 True,
             ),
         ]
-    for i in feet:
-        ends = [""] if len(motor.modes) == 1 else ["_1", "_2"]
-        moving = [f"q{end}" for j, end in enumerate(ends) if motor.feet.across[i - 1, j] != 0]
-        along = [f"q{end}" for j, end in enumerate(ends) if motor.feet.along[i - 1, j] != 0]
-        leans = motor.feet.k_nt[i - 1] != 0
-        stretched = Element(
-            f"stretch of foot {i}",
-            tuple(dict.fromkeys([*along, "v", f"N_{i}"])),
-            f"e_{i}",
-            "follows the surface while friction holds, else its limit",
-            True,
-        )
-        elements += [
-            Element(
-                f"contact of foot {i}",
-                (*moving, "z", *((f"e_{i}",) if leans else ())),
-                f"N_{i}",
-                "one-sided spring and loss",
-                False,
-            ),
-            stretched,
-            Element(
-                f"leg of foot {i}",
-                (f"e_{i}", *((*moving, "z") if leans else ())),
-                f"F_{i}",
-                "tangential spring",
-                False,
-            ),
-        ]
+    elements += [one for i in feet for one in _foot(motor, i)]
     elements += [
         Element(
             "slider across",
@@ -152,6 +124,37 @@ def causal_graph(motor: AssembledMotor) -> CausalGraph:
         Element("slider along", ("F", "load"), "v", "mass and the guide's friction", True),
     ]
     return CausalGraph(tuple(elements))
+
+
+def _foot(motor: AssembledMotor, i: int) -> tuple[Element, Element, Element]:
+    """What foot number `i` (from 1) is made of."""
+    ends = [""] if len(motor.modes) == 1 else ["_1", "_2"]
+    moving = [f"q{end}" for j, end in enumerate(ends) if motor.feet.across[i - 1, j] != 0]
+    along = [f"q{end}" for j, end in enumerate(ends) if motor.feet.along[i - 1, j] != 0]
+    leans = motor.feet.k_nt[i - 1] != 0
+    return (
+        Element(
+            f"contact of foot {i}",
+            (*moving, "z", *((f"e_{i}",) if leans else ())),
+            f"N_{i}",
+            "one-sided spring and loss",
+            False,
+        ),
+        Element(
+            f"stretch of foot {i}",
+            tuple(dict.fromkeys([*along, "v", f"N_{i}"])),
+            f"e_{i}",
+            "follows the surface while friction holds, else its limit",
+            True,
+        ),
+        Element(
+            f"leg of foot {i}",
+            (f"e_{i}", *((*moving, "z") if leans else ())),
+            f"F_{i}",
+            "tangential spring",
+            False,
+        ),
+    )
 
 
 def averaged_graph(motor: AssembledMotor) -> CausalGraph:

@@ -98,7 +98,7 @@ def rates(
     t: float, y: si.Array, stator: Stator, feet: Feet, slider: Slider, march: March, dy: si.Array
 ) -> None:
     """The state's derivative `dy`, and `march.events`: all positive while nothing changes."""
-    J, I = stator.mass.size, feet.mu.size
+    J, n_feet = stator.mass.size, feet.mu.size
     dy[:] = 0.0
     for j in range(J):
         if stator.held:
@@ -106,11 +106,11 @@ def rates(
             y[j] = stator.amplitude[j] * math.cos(angle)
             y[J + j] = -stator.amplitude[j] * stator.omega[j] * math.sin(angle)
         dy[j] = y[J + j]
-    for i in range(I):
+    for i in range(n_feet):
         march.events[2 * i] = _NO_EVENT
         march.events[2 * i + 1] = _NO_EVENT
         _press(i, y, stator, feet, march, dy)
-    _drive(t, y, stator, 2 * J + 4 + I, dy)
+    _drive(t, y, stator, 2 * J + 4 + n_feet, dy)
     _push(y, stator, feet, slider, march, dy)
     _slips(y, stator, feet, march, dy)
 
@@ -118,9 +118,9 @@ def rates(
 @compiled()
 def _press(i: int, y: si.Array, stator: Stator, feet: Feet, march: March, dy: si.Array) -> None:
     """A foot's forces, from places and speeds alone: on the modes, and in the impulses' rates."""
-    J, I = stator.mass.size, feet.mu.size
+    J, n_feet = stator.mass.size, feet.mu.size
     at = 2 * J
-    totals = at + 4 + I
+    totals = at + 4 + n_feet
     depth, speed, along = -y[at], -y[at + 1], -y[at + 3]
     for j in range(J):
         depth += feet.across[i, j] * y[j]
@@ -173,9 +173,9 @@ def _push(
     y: si.Array, stator: Stator, feet: Feet, slider: Slider, march: March, dy: si.Array
 ) -> None:
     """The slider's motion under the feet, its preload and guide."""
-    J, I = stator.mass.size, feet.mu.size
+    J, n_feet = stator.mass.size, feet.mu.size
     at = 2 * J
-    totals = at + 4 + I
+    totals = at + 4 + n_feet
     vz, v = y[at + 1], y[at + 3]
     thrust = dy[totals + THRUST]
     dy[at] = vz
@@ -183,28 +183,28 @@ def _push(
     dy[totals + PRELOAD] = -slider.preload * vz
     dy[totals + GUIDE_LOSS] = slider.damping * vz * vz
     dy[at + 2] = v
-    march.events[2 * I] = _NO_EVENT
+    march.events[2 * n_feet] = _NO_EVENT
     if slider.imposed:
         dy[totals + OUTPUT] = (thrust - slider.guide * math.copysign(1.0, v)) * v
         dy[totals + GUIDE_LOSS] += slider.guide * abs(v)
     elif march.guide[0] == 0:
-        march.events[2 * I] = slider.guide - abs(thrust - slider.load)
+        march.events[2 * n_feet] = slider.guide - abs(thrust - slider.load)
     else:
         held_back = slider.guide * march.guide[0]
         dy[at + 3] = (thrust - slider.load - held_back) / slider.mass
         dy[totals + OUTPUT] = slider.load * v
         dy[totals + GUIDE_LOSS] += held_back * v
         if slider.guide > 0.0:
-            march.events[2 * I] = v * march.guide[0]
+            march.events[2 * n_feet] = v * march.guide[0]
 
 
 @compiled()
 def _slips(y: si.Array, stator: Stator, feet: Feet, march: March, dy: si.Array) -> None:
     """The slip speeds of feet that slip, which need the accelerations: events and loss."""
-    J, I = stator.mass.size, feet.mu.size
+    J, n_feet = stator.mass.size, feet.mu.size
     at = 2 * J
-    totals = at + 4 + I
-    for i in range(I):
+    totals = at + 4 + n_feet
+    for i in range(n_feet):
         if march.contact[i] < SLIP_UP:
             continue
         sign = 1.0 if march.contact[i] == SLIP_UP else -1.0
@@ -300,12 +300,12 @@ def _first_event(
 @compiled()
 def _change(which: int, stator: Stator, feet: Feet, slider: Slider, march: March) -> None:
     """What becomes of the foot, or the guide, whose event has come."""
-    J, I = stator.mass.size, feet.mu.size
+    J, n_feet = stator.mass.size, feet.mu.size
     at = 2 * J
     y, contact = march.state, march.contact
-    if which == 2 * I:
+    if which == 2 * n_feet:
         if march.guide[0] == 0:
-            pull = march.room[6][at + 4 + I + THRUST] - slider.load
+            pull = march.room[6][at + 4 + n_feet + THRUST] - slider.load
             march.guide[0] = 1.0 if pull > 0.0 else -1.0
         else:
             march.guide[0] = 0.0
@@ -348,7 +348,7 @@ def march_steps(
     get time, state and contacts after each step. Returns the steps done: fewer where one held too
     many events."""
     stator, feet, slider, march = parts
-    I = feet.mu.size
+    n_feet = feet.mu.size
     size = march.state.size
     before = np.empty_like(march.events)
     for step in range(steps):
@@ -368,7 +368,7 @@ def march_steps(
             if which >= 0:
                 which, gone = _first_event(t, left, before, stator, feet, slider, march)
             march.state[:] = march.room[5]
-            for i in range(I):
+            for i in range(n_feet):
                 if march.contact[i] != OPEN:
                     march.shares[0, i] += gone
                     if march.contact[i] == STICK:

@@ -10,6 +10,7 @@ from squeezefilm import quantities as si
 from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from squeezefilm.actuators.motor.averaged import AveragedMotor
@@ -91,26 +92,25 @@ def causal_figure(graph: CausalGraph) -> Figure:
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
         )
     for name, (x, y) in places.items():
-        kind = causal.get(name)
-        boxstyle = "round,pad=0.35" if kind is None else "square,pad=0.35"
-        words = style.plain(name).replace(" of ", "\nof ").replace(", ", ",\n")
-        for pad in (0.0, 0.18) if kind else (0.0,):
-            axes.text(
-                x,
-                y,
-                words,
-                ha="center",
-                va="center",
-                fontsize=8,
-                zorder=4 - pad,
-                bbox={
-                    "boxstyle": boxstyle.replace("0.35", str(0.35 + pad)),
-                    "facecolor": "white",
-                    "edgecolor": "black" if kind is not None else "none",
-                    "lw": 0.9,
-                },
-            )
+        _box(axes, name, (x, y), causal.get(name))
     return figure
+
+
+def _box(axes: Axes, name: str, place: tuple[float, float], causal: bool | None) -> None:
+    """An element in its frame, double where it stores energy; what is from outside (None) bare."""
+    shape = "round" if causal is None else "square"
+    words = style.plain(name).replace(" of ", "\nof ").replace(", ", ",\n")
+    frame = {"facecolor": "white", "edgecolor": "none" if causal is None else "black", "lw": 0.9}
+    for pad in (0.0, 0.18) if causal else (0.0,):
+        axes.text(
+            *place,
+            words,
+            ha="center",
+            va="center",
+            fontsize=8,
+            zorder=4 - pad,
+            bbox=frame | {"boxstyle": f"{shape},pad={0.35 + pad}"},
+        )
 
 
 @style.drawn
