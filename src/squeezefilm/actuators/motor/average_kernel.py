@@ -57,6 +57,16 @@ def _yielding(
     return limit * own / (pull - limit * k_nt * Fx / k_tt)
 
 
+@compiled()
+def _tally(means: si.Array, forces: tuple[float, float, float], push: float, angle: float) -> None:
+    """Add a foot's forces, and what it does to the first mode in phase with it and after it."""
+    means[0] += forces[0]
+    means[1] += forces[1]
+    means[2] += forces[2]
+    means[7] += 2.0 * push * math.cos(angle)
+    means[8] += 2.0 * push * math.sin(angle)
+
+
 @compiled(error_model="numpy")
 def average_contact(
     stator: Stator, feet: Feet, sideways: si.Array, height: float, swing: Swing, means: si.Array
@@ -112,20 +122,14 @@ def average_contact(
                 ex, ey = (Fx - k_nt * depth) / k_tt, Fy / k_tt
             elastic = k_nn * depth + k_nt * ex
             stretch[i, 0], stretch[i, 1] = ex, ey
-            if not counts:
-                continue
-            N = elastic * (1.0 + feet.chi[i] * speed)
-            means[0] += Fx
-            means[1] += Fy
-            means[2] += N
-            contact += 1.0
-            slipping += float(slip != 0.0)
-            means[5] += feet.chi[i] * speed * speed * elastic
-            means[6] += slip / dt
-            push = -(N * feet.across[i, 0] + Fx * feet.along[i, 0] + Fy * sideways[i, 0])
-            angle = stator.omega[0] * t + stator.phase[0]
-            means[7] += 2.0 * push * math.cos(angle)
-            means[8] += 2.0 * push * math.sin(angle)
+            if counts:
+                N = elastic * (1.0 + feet.chi[i] * speed)
+                contact += 1.0
+                slipping += 1.0 if slip != 0.0 else 0.0
+                means[5] += feet.chi[i] * speed * speed * elastic
+                means[6] += slip / dt
+                push = -(N * feet.across[i, 0] + Fx * feet.along[i, 0] + Fy * sideways[i, 0])
+                _tally(means, (Fx, Fy, N), push, stator.omega[0] * t + stator.phase[0])
     total = swing.samples * swing.periods
     means[:] /= total
     means[3] = contact / (total * n_feet)
