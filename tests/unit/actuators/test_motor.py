@@ -270,7 +270,7 @@ def test_feet_press_the_resonance_up() -> None:
 
 def test_feet_along_the_wave_thrust_both_ways() -> None:
     half = face_mode(plate(), "timoshenko").working.half_wavelength
-    shifts = [-0.5 * half, -0.25 * half, 0.25 * half]
+    shifts = np.array([-0.5, -0.25, 0.25]) * half
     found = over_foot_position(motor(0.0).motor, WORKING, shifts, "timoshenko")
     assert found[0] is None
     assert found[1] is not None

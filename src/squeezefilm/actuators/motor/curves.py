@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -145,16 +144,18 @@ def over_frequency(
     return tuple(averaged(motor, replace(working, frequency=one)) for one in frequencies.tolist())
 
 
+@si.checked_numbers
 def over_foot_position(
-    motor: Motor, working: Working, shifts: Sequence[float], theory: PlateTheory = "solid"
+    motor: Motor, working: Working, shifts: si.MetreArray, theory: PlateTheory = "solid"
 ) -> tuple[AveragedMotor | None, ...]:
     """The motor at rest with all feet moved along the wave by `shifts` (m); None over a node.
 
     Raises as `assembled` for anything else, so for feet beside the plate.
     """
+    si.require("shifts", shifts, si.Unit("m"), axes=1)
     along_width = motor.plate.lines_across == "width"
     found: list[AveragedMotor | None] = []
-    for shift in shifts:
+    for shift in shifts.tolist():
         feet = tuple(
             replace(foot, y=foot.y + shift) if along_width else replace(foot, x=foot.x + shift)
             for foot in motor.feet
