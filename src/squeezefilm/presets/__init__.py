@@ -13,11 +13,13 @@ from squeezefilm.errors import ConfigError
 from squeezefilm.presets import materials
 
 __all__ = [
+    "actuator_names",
     "claims_path",
     "display_names",
     "materials",
     "path",
     "resolve",
+    "resolve_actuator",
     "resolve_observer",
     "resolve_study",
     "resolve_texture",
@@ -32,6 +34,11 @@ _NOT_DISPLAYS = {"claims", "materials"}
 def display_names() -> tuple[str, ...]:
     """The names of all preset displays, sorted."""
     return tuple(name for name in _names(_FOLDER) if name not in _NOT_DISPLAYS)
+
+
+def actuator_names() -> tuple[str, ...]:
+    """The names of all preset motors and skin-stretch arrays, sorted."""
+    return _names(_FOLDER / "actuators")
 
 
 def texture_names() -> tuple[str, ...]:
@@ -71,6 +78,11 @@ def resolve(name_or_path: str | Path) -> Path:
     return _resolved(name_or_path, "preset", display_names(), _FOLDER)
 
 
+def resolve_actuator(name_or_path: str | Path) -> Path:
+    """The file of a preset actuator's name or of a path to a TOML file. As `resolve` does."""
+    return _resolved(name_or_path, "actuator", actuator_names(), _FOLDER / "actuators")
+
+
 def resolve_texture(name_or_path: str | Path) -> Path:
     """The file of a preset texture's name or of a path to a TOML file. As `resolve` does."""
     return _resolved(name_or_path, "texture", texture_names(), _FOLDER / "textures")
@@ -92,6 +104,12 @@ def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folde
     looks_like_name = candidate.name == text and candidate.suffix != ".toml"
     if looks_like_name and text in known:
         return folder / f"{text}.toml"
+    if looks_like_name and kind == "preset" and text in actuator_names():
+        raise ConfigError(
+            f"'{text}' is a preset of an actuator, and a display is wanted here; no command takes "
+            "it yet, squeezefilm.actuators.described.load_actuator reads it. "
+            f"Displays: {', '.join(known)}"
+        )
     if looks_like_name and not _exists(candidate):
         kinds = "Studies" if kind == "study" else f"{kind.capitalize()}s"
         raise ConfigError(

@@ -1,0 +1,68 @@
+"""An actuator as a file describes it: a motor or a skin-stretch array, told apart by its table.
+
+A kind is a dataclass with `name`, `title`, `provenance` and one field that is named as its table,
+``[motor]`` or ``[skin_stretch]``. `KINDS` is the one list of them.
+"""
+
+from __future__ import annotations
+
+import importlib
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from squeezefilm import presets
+from squeezefilm import quantities as si
+from squeezefilm.config.load import load_text
+from squeezefilm.config.scan import require_quick_toml
+from squeezefilm.errors import ConfigError
+from squeezefilm.hard_limits import DESCRIPTION_BYTES
+from squeezefilm.regular_file import read_regular_text
+from squeezefilm.results import Result
+
+KINDS: dict[str, tuple[str, str]] = {
+    "motor": ("squeezefilm.actuators.motor.description", "MotorDescription"),
+}
+"""By the table that a file has: the module and the dataclass that it is read into."""
+
+
+def load_actuator(name_or_path: str | Path) -> Result:
+    """The actuator of a preset's name or of a TOML file: the dataclass of its kind.
+
+    Raises `ConfigError`, with file, line and key, for a file that cannot be read, one that has the
+    table of no kind, or of more than one.
+    """
+    path = presets.resolve_actuator(name_or_path)
+    text = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+    module, name = KINDS[actuator_kind(text, path)]
+    described: type[Result] = getattr(importlib.import_module(module), name)
+    return load_text(described, text, file=path)
+
+
+def actuator_kind(text: str, file: str | Path | None = None) -> str:
+    """Which of `KINDS` the TOML text has a table of.
+
+    What is no TOML is left to the loader, which says where it is wrong: taken as the first kind.
+    Raises `ConfigError` where it has none, or more than one.
+    """
+    require_quick_toml(text, file)
+    try:
+        tree: dict[str, Any] = tomllib.loads(text)
+    except (ValueError, RecursionError):
+        return next(iter(KINDS))
+    found = [kind for kind in KINDS if kind in tree]
+    tables = " or ".join(f"[{kind}]" for kind in KINDS)
+    if len(found) > 1:
+        raise ConfigError(
+            f"has the tables {' and '.join(f'[{kind}]' for kind in found)}; an actuator is one of "
+            "them: write two files",
+            file=file,
+        )
+    if not found:
+        near = next((hint for key in tree if (hint := si.did_you_mean(key, list(KINDS)))), "")
+        raise ConfigError(
+            f"has no table of an actuator; one needs {tables}.{near} It has: "
+            f"{', '.join(tree) or 'nothing'}",
+            file=file,
+        )
+    return found[0]
