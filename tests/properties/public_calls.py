@@ -71,12 +71,9 @@ NOT_CALLED = {
     render.program.renderer.Counters render.program.renderer.Rendered chain.touch.Touch
     """,
     "inside a solver: meshes, matrices and indices, made by calls that are checked": """
-<<<<<<< HEAD
     contact.asperities.cubics contact.sharing.balance.require_balanced
     plate.solid.size.SolveSize.require_within
-=======
-    contact.asperities.cubics actuators.motor.in_time.resting
->>>>>>> motor
+    actuators.motor.in_time.resting
     film.periodic.batch.check_film film.periodic.batch.solve_all film.line_grid.LineGrid
     film.line_grid.edge_graded film.line_grid.edge_layer film.line_grid.gap_table
     film.line_grid.line_grid film.line_grid.mean_over film.line_grid.refined_line
