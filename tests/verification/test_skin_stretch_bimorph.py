@@ -20,7 +20,7 @@ PZT_5H = Piezoceramic(
 BRASS = ElasticMaterial("brass", 112e9, 0.31, 8530.0)
 USUAL = Bimorph(21e-3, 1.6e-3, PZT_5H, 0.35e-3, BRASS, 0.1e-3)
 BARE = Bimorph(20e-3, 1e-3, PZT_5H, 0.5e-3, BRASS)
-WIDE = Bimorph(160e-3, 5e-3, PZT_5H, 0.1e-3, BRASS, 0.05e-3)
+WIDE = Bimorph(120e-3, 4e-3, PZT_5H, 0.15e-3, BRASS, 0.1e-3)
 
 
 def narrow(beam: Bimorph, field: bool = True) -> tuple[float, float]:
