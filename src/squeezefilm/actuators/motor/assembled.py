@@ -1,0 +1,173 @@
+"""A motor ready to be computed: its plate solved, its feet on the solved shape."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.actuators.motor.description import Motor
+from squeezefilm.actuators.motor.kernel import Feet, Slider, Stator
+from squeezefilm.actuators.motor.stator import FaceMode, face_mode
+from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.plate.heat.warming import FIELD_SHARE
+from squeezefilm.plate.working_mode import PlateTheory
+
+_M, _V = si.Unit("m"), si.Unit("V")
+# A foot that moves less than this share of the lobe stands over a node.
+_NODE = 0.05
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class Working:
+    """How a motor is driven, pressed and held.
+
+    Either `voltage` (V) drives the modes, which the feet then load, or they are held at `amplitude`
+    (m, zero-to-peak at the lobe), as a loop around the amplitude does. With two modes `second` is
+    the share of that which the second gets. `frequency` (Hz) is of the first mode (at its resonance
+    without one), the second is at its own resonance. `preload` (N) stands in place of the cradle's,
+    `load` (N) is a force against the motion along.
+    """
+
+    amplitude: Annotated[si.Metre, si.Above(0.0), si.AtMost(1e-4)] | None = None
+    voltage: Annotated[si.Volt, si.AtLeast(0.0), si.AtMost(1e4)] | None = None
+    frequency: Annotated[si.Hertz, si.Above(0.0), si.AtMost(1e7)] | None = None
+    preload: Annotated[si.Newton, si.Above(0.0), si.AtMost(1e5)] | None = None
+    load: Annotated[si.Newton, si.AtLeast(-1e5), si.AtMost(1e5)] = 0.0
+    second: Annotated[si.Dimensionless, si.AtLeast(-10.0), si.AtMost(10.0)] = 0.0
+
+    def __post_init__(self) -> None:
+        if (self.amplitude is None) == (self.voltage is None):
+            raise InputError(
+                "a motor is driven by a voltage or held at an amplitude: give one of the two"
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class AssembledMotor:
+    """A described motor with its one or two modes; make one with `assembled`."""
+
+    motor: Motor
+    modes: tuple[FaceMode, ...]
+    feet: Feet
+    sideways: si.Array
+
+    @property
+    def resonance_frequency(self) -> si.Hertz:
+        """Of the first mode without the slider (Hz)."""
+        return self.modes[0].working.resonance_frequency
+
+    @property
+    def amplitude_per_volt(self) -> si.MetrePerVolt:
+        """Of the first mode at its resonance, without the slider (m/V)."""
+        return self.modes[0].working.amplitude_per_volt
+
+    @property
+    def highest_voltage(self) -> si.Volt:
+        """Where the field in the thinnest ceramic reaches the share of the coercive field that
+        ceramics bear again and again (V)."""
+        thinnest = min(patch.thickness for patch in self.motor.plate.patches)
+        return FIELD_SHARE * self.motor.thermal.coercive_field * thinnest
+
+    @property
+    def quiescent_force(self) -> si.Newton:
+        """What moves the slider at rest, unpowered (N): friction of feet and guide."""
+        cradle = self.motor.cradle
+        return self.motor.contact.friction_coefficient * cradle.preload + cradle.friction
+
+    @si.checked_numbers
+    def stator(self, working: Working, *, held: bool | None = None) -> Stator:
+        """The modes under a drive, for the kernels. With `held` an amplitude is wanted in any case.
+
+        Raises `InputError` for a voltage at which the ceramic loses its poling, or a second mode
+        where the motor has none.
+        """
+        if working.second and len(self.modes) == 1:
+            raise InputError(
+                "a share for the second mode was asked for, and the motor has no second_plate",
+                quantity="second",
+            )
+        voltage = working.voltage
+        if voltage is not None and voltage > self.highest_voltage:
+            raise OutOfRangeError(
+                f"voltage is {si.format_quantity(voltage, _V)}; from "
+                f"{si.format_quantity(self.highest_voltage, _V)} on the field in the ceramic is "
+                f"above {FIELD_SHARE:.2g} of its coercive field, and it loses its poling: use less, "
+                "a thicker ceramic, or state its coercive_field in [motor.thermal]",
+                quantity="voltage",
+            )
+        shares = np.array([1.0, working.second])[: len(self.modes)]
+        mass = np.array([mode.modal_mass for mode in self.modes])
+        own = 2 * np.pi * np.array([mode.working.resonance_frequency for mode in self.modes])
+        loss = np.array([1 / mode.working.quality_factor for mode in self.modes])
+        per_volt = np.array([mode.working.amplitude_per_volt for mode in self.modes])
+        omega = own.copy()
+        if working.frequency is not None:
+            omega[0] = 2 * np.pi * working.frequency
+        is_held = voltage is None if held is None else held
+        amplitude = shares * (working.amplitude or 0.0)
+        force = shares * (voltage or 0.0) * per_volt * mass * own**2 * loss
+        if voltage is not None:
+            amplitude = force / np.hypot(mass * (own**2 - omega**2), mass * own * omega * loss)
+        return Stator(
+            mass, mass * own**2, mass * own * loss, force, omega, np.zeros(mass.size), amplitude,
+            is_held,
+        )  # fmt: skip
+
+    def slider(self, working: Working, *, imposed: bool) -> Slider:
+        """The slider for the kernels; with `imposed` its speed along stays as it is."""
+        cradle = self.motor.cradle
+        preload = cradle.preload if working.preload is None else working.preload
+        return Slider(
+            self.motor.slider_mass, preload, cradle.damping, cradle.friction, working.load, imposed
+        )
+
+
+def assembled(motor: Motor, theory: PlateTheory = "solid") -> AssembledMotor:
+    """The motor with its plate solved (see `working_mode` for the theories) and its feet on it.
+
+    Raises `OutOfRangeError` for a foot over a node of every mode, a leg that jams, and what the
+    solvers raise.
+    """
+    plates = [motor.plate] if motor.second_plate is None else [motor.plate, motor.second_plate]
+    modes = tuple(face_mode(plate, theory) for plate in plates)
+    x, y = np.array([foot.x for foot in motor.feet]), np.array([foot.y for foot in motor.feet])
+    across, along, sideways = (np.zeros((x.size, len(modes))) for _ in range(3))
+    c, s = math.cos(motor.cradle.direction), math.sin(motor.cradle.direction)
+    for j, mode in enumerate(modes):
+        across[:, j], moved = mode.at(y if mode.along_width else x)
+        along[:, j] = moved * (s if mode.along_width else c)
+        sideways[:, j] = moved * (c if mode.along_width else -s)
+    for i in range(x.size):
+        if np.max(np.abs(across[i])) < _NODE:
+            raise _over_a_node(i, motor, modes, float(np.max(np.abs(across[i]))))
+    contact = motor.contact
+    springs = np.array([contact.stiffnesses(foot.inclination) for foot in motor.feet])
+    count = np.ones(x.size)
+    k_nn, k_nt, k_tt = (np.ascontiguousarray(one) for one in springs.T)
+    feet = Feet(
+        across, along, k_nn, k_nt, k_tt,
+        contact.damping * count, contact.friction_coefficient * count,
+    )  # fmt: skip
+    return AssembledMotor(motor, modes, feet, sideways)
+
+
+def _over_a_node(
+    i: int, motor: Motor, modes: tuple[FaceMode, ...], moves: float
+) -> OutOfRangeError:
+    mode, foot = modes[0], motor.feet[i]
+    line = mode.working.line
+    nodes = np.array([]) if line is None else line.nodal_positions
+    at = foot.y if mode.along_width else foot.x
+    near = nodes[np.argmin(np.abs(nodes - at))] if nodes.size else at
+    return OutOfRangeError(
+        f"foot {i + 1} stands at {si.format_quantity(at, _M)}, over a nodal line (at "
+        f"{si.format_quantity(float(near), _M)}): it moves {100 * moves:.2g} % of the antinode and "
+        "never leaves the slider; put it between a node and an antinode, at least "
+        f"{si.format_quantity(0.1 * mode.working.half_wavelength, _M)} from the node",
+        quantity="feet",
+    )

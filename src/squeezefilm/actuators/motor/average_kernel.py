@@ -1,0 +1,156 @@
+"""The averaged motor: inertia keeps the slider's height and speed, the feet follow at once.
+
+What is left of the time is one period of each foot: pressed in by δ(t) = w(t) − z, dragged along
+by its own motion less the slider's. The height z is where the mean of the normal forces is the
+preload; the mean of the tangential forces is the thrust. Both come out of the share of the period
+in contact and of how much of that is slip.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.actuators.motor.kernel import Feet, Stator
+from squeezefilm.compiled import compiled
+
+MEANS = 9
+"""Thrust along and sideways (N), normal force (N), share of contact, share of slip in it, contact
+loss (W), friction loss (W), and the first harmonic of what the feet do to the first mode (N),
+cosine and sine."""
+
+
+class Swing(NamedTuple):
+    """The slider's speed along and sideways (m/s), the instants of a period of the first mode, the
+    periods taken before those that count, and those that count."""
+
+    along: float
+    sideways: float
+    samples: int
+    warm: int
+    periods: int
+
+
+@compiled(error_model="numpy")
+def average_contact(
+    stator: Stator, feet: Feet, sideways: si.Array, height: float, swing: Swing, means: si.Array
+) -> None:
+    """The means over time of all feet's forces (`MEANS`), with the modes held at their amplitudes
+    and the slider at `height` (m). `sideways` is as `Feet.along`, at right angles to it.
+
+    The stretch is followed by the same law as in time, instant by instant: as it would stick, and
+    back to the limit where that is more than friction gives (in the plane: along the force).
+    """
+    J, I = stator.mass.size, feet.mu.size
+    means[:] = 0.0
+    dt = 2.0 * math.pi / stator.omega[0] / swing.samples
+    count = swing.samples * (swing.warm + swing.periods)
+    contact, slipping = 0.0, 0.0
+    stretch = np.zeros((I, 2))
+    last = np.zeros((I, 2))
+    was = np.zeros(I)
+    w = np.zeros(J)
+    dw = np.zeros(J)
+    for n in range(count):
+        t = n * dt
+        counts = n >= swing.samples * swing.warm
+        for j in range(J):
+            angle = stator.omega[j] * t + stator.phase[j]
+            w[j] = stator.amplitude[j] * math.cos(angle)
+            dw[j] = -stator.amplitude[j] * stator.omega[j] * math.sin(angle)
+        for i in range(I):
+            k_nn, k_nt, k_tt = feet.k_nn[i], feet.k_nt[i], feet.k_tt[i]
+            depth, speed = -height, 0.0
+            x, y = -swing.along * t, -swing.sideways * t
+            for j in range(J):
+                depth += feet.across[i, j] * w[j]
+                speed += feet.across[i, j] * dw[j]
+                x += feet.along[i, j] * w[j]
+                y += sideways[i, j] * w[j]
+            dx, dy = x - last[i, 0], y - last[i, 1]
+            last[i, 0], last[i, 1] = x, y
+            if was[i] < 0.0 < depth:
+                # It met the slider within this step: only what came after counts.
+                dx *= depth / (depth - was[i])
+                dy *= depth / (depth - was[i])
+            was[i] = depth
+            if depth <= 0.0:
+                stretch[i, 0] = stretch[i, 1] = 0.0
+                continue
+            limit = feet.mu[i] * (1.0 + feet.chi[i] * speed)
+            ex, ey = stretch[i, 0] + dx, stretch[i, 1] + dy
+            Fx, Fy = k_nt * depth + k_tt * ex, k_tt * ey
+            pull = math.hypot(Fx, Fy)
+            elastic = k_nn * depth + k_nt * ex
+            slip = 0.0
+            if pull > limit * elastic:
+                own = (k_nn - k_nt * k_nt / k_tt) * depth
+                back = limit * own / (pull - limit * k_nt * Fx / k_tt)
+                Fx, Fy = back * Fx, back * Fy
+                slip = Fx * (ex - (Fx - k_nt * depth) / k_tt) + Fy * (ey - Fy / k_tt)
+                ex, ey = (Fx - k_nt * depth) / k_tt, Fy / k_tt
+                elastic = k_nn * depth + k_nt * ex
+            stretch[i, 0], stretch[i, 1] = ex, ey
+            if not counts:
+                continue
+            N = elastic * (1.0 + feet.chi[i] * speed)
+            means[0] += Fx
+            means[1] += Fy
+            means[2] += N
+            contact += 1.0
+            if slip != 0.0:
+                slipping += 1.0
+            means[5] += feet.chi[i] * speed * speed * elastic
+            means[6] += slip / dt
+            push = -(N * feet.across[i, 0] + Fx * feet.along[i, 0] + Fy * sideways[i, 0])
+            angle = stator.omega[0] * t + stator.phase[0]
+            means[7] += 2.0 * push * math.cos(angle)
+            means[8] += 2.0 * push * math.sin(angle)
+    total = swing.samples * swing.periods
+    means[:] /= total
+    means[3] = contact / (total * I)
+    means[4] = slipping / contact if contact > 0.0 else 0.0
+
+
+@compiled(error_model="numpy")
+def settled_height(
+    stator: Stator, feet: Feet, sideways: si.Array, preload: float, swing: Swing, means: si.Array
+) -> float:
+    """The height (m) at which the feet carry the preload in the mean; `means` are those there."""
+    reach = 0.0
+    weakest = np.inf
+    for i in range(feet.mu.size):
+        weakest = min(weakest, feet.k_nn[i])
+        here = 0.0
+        for j in range(stator.mass.size):
+            here += abs(feet.across[i, j]) * stator.amplitude[j]
+        reach = max(reach, here)
+    high = reach
+    low = -reach - 4.0 * preload / weakest
+    f_high = -preload
+    f_low = preload
+    side = 0
+    z = 0.5 * (low + high)
+    for number in range(80):
+        if number % 3 == 2:
+            z = 0.5 * (low + high)
+        else:
+            z = (low * f_high - high * f_low) / (f_high - f_low)
+        average_contact(stator, feet, sideways, z, swing, means)
+        f = means[2] - preload
+        if abs(f) <= 1e-9 * preload or high - low <= 1e-14 * (reach + 1e-12):
+            break
+        if f > 0.0:
+            low, f_low = z, f
+            if side == 1:
+                f_high *= 0.5
+            side = 1
+        else:
+            high, f_high = z, f
+            if side == -1:
+                f_low *= 0.5
+            side = -1
+    return z

@@ -1,0 +1,233 @@
+"""The averaged motor: thrust at a speed, from the share of contact and of slip in a period.
+
+The slider's inertia keeps its height and its speed over a period. For legs that stand upright and
+stick throughout every contact, and χ = 0, the mean thrust at rest is
+
+    F = P (k_t/k_n) Σ a_i / Σ b_i   with feet alike,  a = motion along, b = motion across the face,
+
+whatever the amplitude, as long as (k_t/k_n) |a/b| ≤ µ and the feet leave the slider in each period.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+from scipy.optimize import brentq
+
+from squeezefilm import quantities as si
+from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
+from squeezefilm.actuators.motor.average_kernel import MEANS, Swing, settled_height
+from squeezefilm.actuators.motor.in_time import require_no_pull
+from squeezefilm.actuators.motor.kernel import Stator
+from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
+
+SAMPLES: int = 256
+"""Instants of a period: thrust within some 0.5 % of the preload times µ."""
+# Two modes beat: so many periods of the first are averaged.
+_BEATING = 64
+_SCAN = 40
+_N, _M = si.Unit("N"), si.Unit("m")
+
+
+@dataclass(frozen=True)
+class AveragedMotor:
+    """A motor's means over time at one speed of its slider.
+
+    Attributes:
+        working: how it was driven.
+        speed, sideways_speed: of the slider along the guide and across it in the plane (m/s).
+        thrust, sideways_thrust: of the feet on the slider (N), the guide's friction not taken off.
+        force: what is left for a load along the guide (N), against the motion.
+        amplitude: of the first mode (m).
+        height: of the slider over the resting face (m).
+        contact_share: of the time, mean of the feet (1).
+        slip_share: of the contact (1).
+        plate_loss, contact_loss, friction_loss, output: mean powers (W).
+        efficiency: output over all that (1); 0 where the load drives the motor.
+    """
+
+    working: Working
+    speed: si.MetrePerSecond
+    sideways_speed: si.MetrePerSecond
+    thrust: si.Newton
+    sideways_thrust: si.Newton
+    force: si.Newton
+    amplitude: si.Metre
+    height: si.Metre
+    contact_share: si.Dimensionless
+    slip_share: si.Dimensionless
+    plate_loss: si.Watt
+    contact_loss: si.Watt
+    friction_loss: si.Watt
+    output: si.Watt
+    model: str = "averaged: height and speed constant over a period, feet without mass"
+
+    @property
+    def efficiency(self) -> si.Dimensionless:
+        """Output over input, 0 where the load drives the motor (1)."""
+        lost = self.plate_loss + self.contact_loss + self.friction_loss
+        guide = (self.thrust - self.force) * self.speed
+        return max(0.0, self.output / (lost + guide + self.output)) if self.output > 0 else 0.0
+
+
+@si.checked_numbers
+def averaged(
+    motor: AssembledMotor,
+    working: Working,
+    *,
+    speed: si.MetrePerSecond = 0.0,
+    sideways_speed: si.MetrePerSecond = 0.0,
+    samples: Annotated[int, si.AtLeast(16), si.AtMost(100_000)] = SAMPLES,
+) -> AveragedMotor:
+    """A motor in the mean over a period, its slider at a speed along and sideways (m/s).
+
+    Valid while the slider's own resonance on its feet lies far below the vibration, and the slider
+    does not jump for more than one period: `simulate` does not assume that. With a voltage the
+    first mode's amplitude is where the drive's force balances mode and feet at the first harmonic,
+    the largest one where there are several; that takes some hundred times as long.
+
+    Raises `InputError` for a voltage with a second mode, and what `AssembledMotor.stator` and
+    `require_no_pull` raise.
+    """
+    stator = motor.stator(working, held=True)
+    if working.voltage is not None:
+        if working.second:
+            raise InputError(
+                "two modes driven by voltages are not averaged; hold them at an amplitude",
+                quantity="voltage",
+            )
+        stator = _balanced(motor, working, stator, speed)
+    require_no_pull(motor, stator)
+    height, means = _means(motor, working, stator, (speed, sideways_speed), samples)
+    guide = motor.motor.cradle.friction
+    thrust = float(means[0])
+    force = thrust - guide * np.sign(speed if speed != 0 else thrust)
+    if speed == 0 and abs(thrust) <= guide:
+        force = 0.0
+    loss = float(np.sum(0.5 * stator.damping * (stator.omega * stator.amplitude) ** 2))
+    return AveragedMotor(
+        working, speed, sideways_speed, thrust, float(means[1]), float(force),
+        float(stator.amplitude[0]), height, float(means[3]), float(means[4]), loss,
+        float(means[5]), float(means[6]), float(force * speed + means[1] * sideways_speed),
+    )  # fmt: skip
+
+
+def _means(
+    motor: AssembledMotor,
+    working: Working,
+    stator: Stator,
+    speeds: tuple[float, float],
+    samples: int,
+) -> tuple[float, si.FloatArray]:
+    means = np.zeros(MEANS)
+    beats = stator.mass.size > 1 and stator.amplitude[1] != 0
+    swing = Swing(*speeds, samples, 2, _BEATING if beats else 1)
+    preload = motor.slider(working, imposed=True).preload
+    height = settled_height(stator, motor.feet, motor.sideways, preload, swing, means)
+    return float(height), means
+
+
+def _balanced(
+    motor: AssembledMotor, working: Working, stator: Stator, speed: si.MetrePerSecond
+) -> Stator:
+    """The stator held at the amplitude at which drive, mode and feet are in balance."""
+    M, K, C, w = (one[0] for one in (stator.mass, stator.stiffness, stator.damping, stator.omega))
+    force = float(stator.force[0])
+    if force == 0:
+        raise InputError(
+            "voltage is 0 V: nothing vibrates, and the slider is held by up to "
+            f"{si.format_quantity(motor.quiescent_force, _N)}; give a voltage or an amplitude",
+            quantity="voltage",
+        )
+
+    def held(amplitude: float) -> Stator:
+        return stator._replace(amplitude=np.array([amplitude, *np.zeros(M_count - 1)]))
+
+    M_count = stator.mass.size
+
+    def excess(amplitude: float) -> float:
+        _, means = _means(motor, working, held(amplitude), (speed, 0.0), 128)
+        real = (K - M * w**2) * amplitude - means[7]
+        lossy = C * w * amplitude + means[8]
+        return float(np.hypot(real, lossy) - force)
+
+    most = force / (C * w)
+    tried = np.linspace(most, most / _SCAN, _SCAN)
+    above = most
+    for amplitude in tried:
+        if excess(amplitude) < 0:
+            root = amplitude if above == amplitude else brentq(excess, amplitude, above, rtol=1e-6)
+            return held(float(root))
+        above = amplitude
+    raise UnreachableError(
+        f"{si.format_quantity(float(working.voltage or 0.0), si.Unit('V'))} moves the plate less "
+        f"than {si.format_quantity(most / _SCAN, _M)} under this preload at this frequency; drive "
+        "it nearer to its resonance, harder, or press it less",
+        quantity="voltage",
+    )
+
+
+@si.checked_numbers
+def stall_force(motor: AssembledMotor, working: Working) -> si.Newton:
+    """The force (N) that just stops the slider, along the guide, its friction taken off.
+
+    Raises `OutOfRangeError` for a preload under which no foot leaves the slider, or a guide that
+    holds it: it stalls without any load.
+    """
+    rest = averaged(motor, working)
+    require_moving(motor, rest)
+    return rest.force
+
+
+def require_moving(motor: AssembledMotor, rest: AveragedMotor) -> None:
+    """Refuse a motor that stalls without a load. Raises `OutOfRangeError`."""
+    preload = motor.slider(rest.working, imposed=True).preload
+    reach = float(np.sum(motor.feet.k_nn * np.max(np.abs(motor.feet.across), axis=1)))
+    if rest.contact_share >= 1:
+        raise OutOfRangeError(
+            f"preload is {si.format_quantity(preload, _N)}: the feet never leave the slider at an "
+            f"amplitude of {si.format_quantity(rest.amplitude, _M)}, stick to it, and the motor "
+            f"stalls; press it with less than {si.format_quantity(reach * rest.amplitude, _N)}, or "
+            "vibrate more",
+            quantity="preload",
+        )
+    if rest.force == 0.0 and motor.motor.cradle.friction > 0:
+        raise OutOfRangeError(
+            f"the thrust at rest, {si.format_quantity(rest.thrust, _N)}, is not above the guide's "
+            f"friction, {si.format_quantity(motor.motor.cradle.friction, _N)}: the motor stalls "
+            "without a load; vibrate more, put the feet further from the antinode, or ease the "
+            "guide",
+            quantity="friction",
+        )
+
+
+@si.checked_numbers
+def no_load_speed(motor: AssembledMotor, working: Working) -> si.MetrePerSecond:
+    """The speed (m/s) at which nothing is left for a load; negative against the guide's direction.
+
+    0 for a motor without asymmetry. Raises as `stall_force`.
+    """
+    rest = averaged(motor, working)
+    require_moving(motor, rest)
+    if abs(rest.thrust) < 1e-9 * motor.slider(working, imposed=True).preload:
+        return 0.0
+    stator = motor.stator(working, held=True)
+    held = working
+    if working.voltage is not None:
+        # The loaded amplitude hardly depends on the speed: it is kept at that of rest.
+        held = replace(working, voltage=None, amplitude=rest.amplitude)
+    fastest = float(np.max(np.abs(motor.feet.along) @ (stator.omega * rest.amplitude)))
+    way = float(np.sign(rest.thrust))
+
+    def left(speed: float) -> float:
+        return way * averaged(motor, held, speed=way * speed).force
+
+    far = fastest if fastest > 0 else float(stator.omega[0] * rest.amplitude)
+    while left(far) > 0:
+        far *= 2
+    tiny = 1e-6 * far
+    if left(tiny) <= 0:
+        return 0.0
+    return way * float(brentq(left, tiny, far, xtol=1e-7 * far))

@@ -1,0 +1,173 @@
+"""What a motor does against speed, preload, amplitude, frequency and the place of its feet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
+from squeezefilm.actuators.motor.averaged import (
+    AveragedMotor,
+    averaged,
+    no_load_speed,
+    require_moving,
+)
+from squeezefilm.actuators.motor.description import Motor
+from squeezefilm.actuators.motor.in_time import simulate
+from squeezefilm.errors import OutOfRangeError
+from squeezefilm.plate.working_mode import PlateTheory
+from squeezefilm.progress import CountProgress
+
+# Between rest and no load.
+_SPEEDS = np.array([0.2, 0.35, 0.5, 0.65, 0.8])
+
+
+@si.checked_numbers
+def speed_force_curve(
+    motor: AssembledMotor, working: Working, points: Annotated[int, si.AtLeast(2)] = 15
+) -> tuple[AveragedMotor, ...]:
+    """The motor from rest to no load, at speeds alike far apart. Raises as `no_load_speed`."""
+    top = no_load_speed(motor, working)
+    return tuple(averaged(motor, working, speed=v) for v in np.linspace(0.0, top, points).tolist())
+
+
+@dataclass(frozen=True, eq=False)
+class MotorMap:
+    """A motor over preload (N) × amplitude (m); arrays (preloads, amplitudes).
+
+    `stall_force` (N), `no_load_speed` (m/s), `efficiency` at the best of five loads and `contact`
+    at rest (1). NaN where the motor stalls without a load.
+    """
+
+    preload: si.NewtonArray
+    amplitude: si.MetreArray
+    stall_force: si.NewtonArray
+    no_load_speed: si.MetrePerSecondArray
+    efficiency: si.FloatArray
+    contact: si.FloatArray
+
+
+@si.checked_numbers
+def motor_map(
+    motor: AssembledMotor,
+    preloads: Annotated[si.NewtonArray, si.Above(0.0)],
+    amplitudes: Annotated[si.MetreArray, si.Above(0.0)],
+    *,
+    progress: CountProgress | None = None,
+) -> MotorMap:
+    """The averaged motor over preloads (N) and amplitudes (m) at which its mode is held.
+
+    `progress` is told how many points of how many are done. Raises `InputError` for what are no
+    lists, and what `averaged` raises but for stalling.
+    """
+    si.require("preloads", preloads, si.Unit("N"), axes=1)
+    si.require("amplitudes", amplitudes, si.Unit("m"), axes=1)
+    found = np.full((4, preloads.size, amplitudes.size), np.nan)
+    for i, preload in enumerate(preloads.tolist()):
+        for j, amplitude in enumerate(amplitudes.tolist()):
+            working = Working(amplitude=amplitude, preload=preload)
+            rest = averaged(motor, working)
+            found[3, i, j] = rest.contact_share
+            try:
+                require_moving(motor, rest)
+                top = no_load_speed(motor, working)
+            except OutOfRangeError:
+                top = None
+            if top is not None:
+                loaded = [averaged(motor, working, speed=top * part) for part in _SPEEDS.tolist()]
+                found[:3, i, j] = rest.force, top, max(one.efficiency for one in loaded)
+            if progress is not None:
+                progress(i * amplitudes.size + j + 1, found[0].size)
+    return MotorMap(preloads, amplitudes, *found)
+
+
+@dataclass(frozen=True, eq=False)
+class ModelsCompared:
+    """The averaged motor beside the one resolved in time, over preload × amplitude.
+
+    Arrays (preloads, amplitudes): both thrusts at one speed (N), both shares of contact.
+    """
+
+    preload: si.NewtonArray
+    amplitude: si.MetreArray
+    speed: si.MetrePerSecond
+    averaged_thrust: si.NewtonArray
+    resolved_thrust: si.NewtonArray
+    averaged_contact: si.FloatArray
+    resolved_contact: si.FloatArray
+
+    def difference(self, friction_coefficient: si.Dimensionless) -> si.FloatArray:
+        """Averaged less resolved thrust, over µ times the preload (1)."""
+        return np.asarray(
+            (self.averaged_thrust - self.resolved_thrust)
+            / (friction_coefficient * self.preload[:, None])
+        )
+
+
+@si.checked_numbers
+def models_compared(
+    motor: AssembledMotor,
+    preloads: Annotated[si.NewtonArray, si.Above(0.0)],
+    amplitudes: Annotated[si.MetreArray, si.Above(0.0)],
+    *,
+    speed: si.MetrePerSecond = 0.0,
+    periods: Annotated[int, si.AtLeast(10)] = 600,
+    progress: CountProgress | None = None,
+) -> ModelsCompared:
+    """Both models at each preload (N) and held amplitude (m), at one speed of the slider (m/s).
+
+    Raises as `simulate`.
+    """
+    si.require("preloads", preloads, si.Unit("N"), axes=1)
+    si.require("amplitudes", amplitudes, si.Unit("m"), axes=1)
+    found = np.zeros((4, preloads.size, amplitudes.size))
+    for i, preload in enumerate(preloads.tolist()):
+        for j, amplitude in enumerate(amplitudes.tolist()):
+            working = Working(amplitude=amplitude, preload=preload)
+            mean = averaged(motor, working, speed=speed)
+            there = simulate(motor, working, speed=speed, periods=periods, traced=0)
+            found[:, i, j] = (
+                mean.thrust, there.thrust, mean.contact_share, there.contact_share
+            )  # fmt: skip
+            if progress is not None:
+                progress(i * amplitudes.size + j + 1, found[0].size)
+    return ModelsCompared(preloads, amplitudes, speed, *found)
+
+
+@si.checked_numbers
+def over_frequency(
+    motor: AssembledMotor, working: Working, frequencies: Annotated[si.HertzArray, si.Above(0.0)]
+) -> tuple[AveragedMotor, ...]:
+    """The motor at rest under its voltage at frequencies (Hz). Raises as `averaged`."""
+    si.require("frequencies", frequencies, si.Unit("Hz"), axes=1)
+    return tuple(
+        averaged(motor, replace(working, frequency=one)) for one in frequencies.tolist()
+    )
+
+
+def over_foot_position(
+    motor: Motor, working: Working, shifts: Sequence[float], theory: PlateTheory = "solid"
+) -> tuple[AveragedMotor | None, ...]:
+    """The motor at rest with all feet moved along the wave by `shifts` (m); None over a node.
+
+    Raises as `assembled` for anything else, so for feet beside the plate.
+    """
+    along_width = motor.plate.lines_across == "width"
+    found: list[AveragedMotor | None] = []
+    for shift in shifts:
+        feet = tuple(
+            replace(foot, y=foot.y + shift) if along_width else replace(foot, x=foot.x + shift)
+            for foot in motor.feet
+        )
+        moved = replace(motor, feet=feet)
+        try:
+            found.append(averaged(assembled(moved, theory), working))
+        except OutOfRangeError as error:
+            if error.quantity != "feet":
+                raise
+            found.append(None)
+    return tuple(found)

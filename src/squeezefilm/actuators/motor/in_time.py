@@ -1,0 +1,204 @@
+"""A motor's motion resolved in time, with its balance of energy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.actuators.motor import kernel
+from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
+from squeezefilm.errors import ConvergenceError, OutOfRangeError
+
+STEPS: int = 64
+"""Steps of a period of the first mode: the forces' error is then some 1e-6 of them."""
+
+
+@dataclass(frozen=True, eq=False)
+class MotorMotion:
+    """A slider over a vibrating plate in time; arrays over periods, and over the steps traced.
+
+    Attributes:
+        working: how it was driven.
+        frequency: of the drive (Hz).
+        period_thrust, period_normal: mean forces on the slider over each period (N).
+        period_speed, period_height: the slider's at the end of each period (m/s, m).
+        period_amplitude: of the first mode over each period (m).
+        contact_share, stick_share: of the time, over the periods of the second half (1).
+        works: since the start (J), by the names in `kernel`: what drive and preload put in, what
+            the load got, what modes, contacts, friction and guide lost.
+        stored_energy: kinetic and elastic energy at the end less that at the start (J).
+        time: of the traced steps (s).
+        height, speed: of the slider there (m, m/s).
+        deflection: of the modes (m), (steps, modes).
+        stretch: of the feet along (m), (steps, feet).
+        contact: of the feet there, 0 open, 1 sticks, 2 and 3 slip forwards and back.
+    """
+
+    working: Working
+    frequency: si.Hertz
+    period_thrust: si.NewtonArray
+    period_normal: si.NewtonArray
+    period_speed: si.MetrePerSecondArray
+    period_height: si.MetreArray
+    period_amplitude: si.MetreArray
+    contact_share: si.Dimensionless
+    stick_share: si.Dimensionless
+    works: si.FloatArray
+    stored_energy: si.Joule
+    time: si.SecondArray
+    height: si.MetreArray
+    speed: si.MetrePerSecondArray
+    deflection: si.FloatArray
+    stretch: si.FloatArray
+    contact: si.FloatArray
+    model: str = "modes, unilateral contact with Coulomb friction, event-driven Runge–Kutta"
+
+    @property
+    def thrust(self) -> si.Newton:
+        """Mean over the periods of the second half (N)."""
+        return float(np.mean(self.period_thrust[self.period_thrust.size // 2 :]))
+
+    @property
+    def final_speed(self) -> si.MetrePerSecond:
+        """Mean over the last tenth of the periods (m/s)."""
+        return float(np.mean(self.period_speed[-max(1, self.period_speed.size // 10) :]))
+
+    @property
+    def energy_residual(self) -> si.Dimensionless:
+        """What the balance of energy lacks, over all that was put in and lost: of the march."""
+        w = self.works
+        lost = w[kernel.OUTPUT] + w[kernel.MODAL_LOSS : kernel.GUIDE_LOSS + 1].sum()
+        gap = w[kernel.DRIVE] + w[kernel.PRELOAD] - lost - self.stored_energy
+        return float(abs(gap) / np.sum(np.abs(w)))
+
+
+@si.checked_numbers
+def simulate(
+    motor: AssembledMotor,
+    working: Working,
+    *,
+    speed: si.MetrePerSecond | None = None,
+    periods: Annotated[int, si.AtLeast(2), si.AtMost(1_000_000)] = 400,
+    steps: Annotated[int, si.AtLeast(8), si.AtMost(10_000)] = STEPS,
+    traced: Annotated[int, si.AtLeast(0), si.AtMost(1_000)] = 2,
+    start_speed: si.MetrePerSecond = 0.0,
+) -> MotorMotion:
+    """A motor in time, from rest (or `start_speed`) on.
+
+    With `speed` (m/s) the slider is moved so fast along, whatever drives it: its `thrust` is then a
+    point of the speed–force curve. Without it moves by itself. The last `traced` periods are kept
+    step by step. A slider is rigid and does not tilt; feet have no mass; Coulomb's law and one χ
+    hold at every speed.
+
+    Raises:
+        InputError: as `AssembledMotor.stator`.
+        OutOfRangeError: contact damping so strong that it would pull (χ times the speed of the
+            face above 1).
+        ConvergenceError: more contacts than can be told apart in one step.
+    """
+    stator = motor.stator(working)
+    require_no_pull(motor, stator)
+    march, slider = resting(motor, working, stator, speed, start_speed)
+    J, I = stator.mass.size, motor.feet.mu.size
+    at, totals = 2 * J, 2 * J + 4 + I
+    period = 2 * np.pi / stator.omega[0]
+    h = period / steps
+    begun = _energy(motor, stator, slider, march)
+    rows = np.zeros((5, periods))
+    nothing = np.empty((0, 0))
+    track = np.zeros((min(traced, periods) * steps, 1 + march.state.size + I))
+    before = march.state.copy()
+    half = np.zeros_like(march.shares)
+    for n in range(periods):
+        if n == periods // 2:
+            half = march.shares.copy()
+        place = n - (periods - traced)
+        target = track[place * steps : (place + 1) * steps] if place >= 0 else nothing
+        parts = (stator, motor.feet, slider, march)
+        done = kernel.march_steps(n * period, h, steps, parts, target)
+        if done < steps:
+            raise ConvergenceError(
+                f"more than {kernel.MOST_EVENTS} contacts began and ended within one step of "
+                f"{h:.3g} s in period {n + 1}; use more steps",
+                partial=rows[:, :n],
+                iterations=n,
+            )
+        gained = (march.state - before) / period
+        before = march.state.copy()
+        rows[:, n] = (
+            gained[totals + kernel.THRUST], gained[totals + kernel.NORMAL], before[at + 3],
+            before[at], np.hypot(before[0], before[J] / stator.omega[0]),
+        )  # fmt: skip
+    counted = (march.shares - half) / ((periods - periods // 2) * period)
+    return MotorMotion(
+        working, float(stator.omega[0] / 2 / np.pi), *rows,
+        contact_share=float(np.mean(counted[0])), stick_share=float(np.mean(counted[1])),
+        works=march.state[totals : totals + 7].copy(),
+        stored_energy=_energy(motor, stator, slider, march) - begun,
+        time=track[:, 0], height=track[:, 1 + at], speed=track[:, 4 + at],
+        deflection=track[:, 1 : 1 + J], stretch=track[:, 5 + at : 5 + at + I],
+        contact=track[:, 1 + march.state.size :],
+    )  # fmt: skip
+
+
+def require_no_pull(motor: AssembledMotor, stator: kernel.Stator) -> None:
+    """Refuse contact damping under which a foot would pull. Raises `OutOfRangeError`."""
+    fastest = np.max(np.abs(motor.feet.across) @ (stator.amplitude * stator.omega))
+    pull = float(np.max(motor.feet.chi) * fastest)
+    if pull >= 1:
+        raise OutOfRangeError(
+            f"contact damping of {np.max(motor.feet.chi):.3g} s/m is too strong for a face that "
+            f"moves at {fastest:.3g} m/s: their product is {pull:.3g} and must stay below 1, or "
+            "feet would pull the slider; use less damping or amplitude",
+            quantity="damping",
+        )
+
+
+def resting(
+    motor: AssembledMotor,
+    working: Working,
+    stator: kernel.Stator,
+    speed: float | None,
+    start_speed: float,
+) -> tuple[kernel.March, kernel.Slider]:
+    """The state before the march: a slider that rests on the feet, in its place."""
+    slider = motor.slider(working, imposed=speed is not None)
+    J, I = stator.mass.size, motor.feet.mu.size
+    at = 2 * J
+    state = np.zeros(at + 4 + I + kernel.TOTALS)
+    state[at] = -slider.preload / float(np.sum(motor.feet.k_nn))
+    state[at + 3] = start_speed if speed is None else speed
+    if stator.held:
+        state[:J] = stator.amplitude * np.cos(stator.phase)
+        state[J:at] = -stator.amplitude * stator.omega * np.sin(stator.phase)
+    # A held plate may stand so that a foot is open at first.
+    depth = motor.feet.across @ state[:J] - state[at]
+    contact = np.where(depth > 0, kernel.STICK, kernel.OPEN).astype(float)
+    free = speed is None and start_speed == 0.0 and slider.guide > 0
+    guide = np.array([0.0 if free else np.copysign(1.0, state[at + 3] or 1.0)])
+    scale = np.array([abs(state[at]), slider.preload] * I + [slider.preload])
+    march = kernel.March(
+        state, contact, guide, np.zeros((2, I)), np.zeros((8, state.size)), np.ones(2 * I + 1),
+        1e-12 * scale,
+    )  # fmt: skip
+    return march, slider
+
+
+def _energy(
+    motor: AssembledMotor, stator: kernel.Stator, slider: kernel.Slider, march: kernel.March
+) -> si.Joule:
+    """Kinetic and elastic energy (J) of slider and feet, and of modes that are not held."""
+    J, I = stator.mass.size, motor.feet.mu.size
+    at, y, feet = 2 * J, march.state, motor.feet
+    depth = np.where(march.contact != kernel.OPEN, feet.across @ y[:J] - y[at], 0.0)
+    e = y[at + 4 : at + 4 + I]
+    feet_hold = 0.5 * feet.k_nn * depth**2 + feet.k_nt * depth * e + 0.5 * feet.k_tt * e**2
+    own = float(np.sum(feet_hold)) + 0.5 * slider.mass * float(y[at + 1] ** 2)
+    if not slider.imposed:
+        own += 0.5 * slider.mass * float(y[at + 3] ** 2)
+    if not stator.held:
+        own += float(np.sum(0.5 * stator.mass * y[J:at] ** 2 + 0.5 * stator.stiffness * y[:J] ** 2))
+    return own

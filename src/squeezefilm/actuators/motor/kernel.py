@@ -1,0 +1,372 @@
+"""The compiled march of a slider over the feet of a vibrating plate, event by event.
+
+Every foot is open, sticks, or slips one way or the other; the guide holds the slider or lets it
+go. While nothing of that changes the motion is smooth and is stepped by the classical Runge–Kutta
+method of fourth order; the instants at which something changes are found inside the steps.
+
+A foot that is pressed in by δ and stretched along by e has, on the slider,
+
+    N = g (k_nn δ + k_nt e),   F = k_nt δ + k_tt e,   g = 1 + χ δ'   (Hunt and Crossley 1975),
+
+sticks with e' = the plate's speed less the slider's while |F| ≤ µ N, and slips with F = ±µ N.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.compiled import compiled
+
+OPEN, STICK, SLIP_UP, SLIP_DOWN = 0, 1, 2, 3
+DRIVE, PRELOAD, OUTPUT, MODAL_LOSS, CONTACT_LOSS, FRICTION, GUIDE_LOSS = range(7)
+THRUST, NORMAL = 7, 8
+TOTALS = 9
+"""Works (J) in the order above, then the impulses along and across the slider (N·s)."""
+# Events that one step may hold before the march gives up.
+MOST_EVENTS = 400
+_NO_EVENT = 1.0
+_LATER = 1e-3
+
+
+class Stator(NamedTuple):
+    """Per mode: modal mass (kg), stiffness (N/m), damping (N·s/m), amplitude of the drive's force
+    (N), angular frequency (rad/s), phase (rad), and the amplitude (m) at which it is held where
+    `held` is 1."""
+
+    mass: si.Array
+    stiffness: si.Array
+    damping: si.Array
+    force: si.Array
+    omega: si.Array
+    phase: si.Array
+    amplitude: si.Array
+    held: bool
+
+
+class Feet(NamedTuple):
+    """Per foot and mode the motion across and along the face for 1 m of the mode, (feet, modes);
+    per foot the stiffnesses (N/m), χ (s/m) and µ."""
+
+    across: si.Array
+    along: si.Array
+    k_nn: si.Array
+    k_nt: si.Array
+    k_tt: si.Array
+    chi: si.Array
+    mu: si.Array
+
+
+class Slider(NamedTuple):
+    """Mass (kg), preload (N), damping of the guide across (N·s/m), its dry friction along (N), the
+    load against +x (N), and whether the speed along is imposed."""
+
+    mass: float
+    preload: float
+    damping: float
+    guide: float
+    load: float
+    imposed: bool
+
+
+class March(NamedTuple):
+    """The state (see `layout`), each foot's contact, the guide's (0 holds, ±1 slides), time (s) in
+    contact and sticking of each foot, room to work in (8, state), the events as the last rates left
+    them, and how far each must be below 0 to be more than rounding."""
+
+    state: si.Array
+    contact: si.Array
+    guide: si.Array
+    shares: si.Array
+    room: si.Array
+    events: si.Array
+    rounding: si.Array
+
+
+@compiled()
+def _slip_stretch(sign: float, g: float, k_nn: float, k_nt: float, k_tt: float, mu: float) -> float:
+    """e/δ of a foot that slips."""
+    limit = sign * mu * g
+    return (limit * k_nn - k_nt) / (k_tt - limit * k_nt)
+
+
+@compiled()
+def rates(
+    t: float, y: si.Array, stator: Stator, feet: Feet, slider: Slider, march: March, dy: si.Array
+) -> None:
+    """The state's derivative `dy`, and `march.events`: all positive while nothing changes."""
+    J, I = stator.mass.size, feet.mu.size
+    contact, events = march.contact, march.events
+    at = 2 * J
+    totals = at + 4 + I
+    z, vz, v = y[at], y[at + 1], y[at + 3]
+    dy[:] = 0.0
+    normal = 0.0
+    thrust = 0.0
+    # First the forces, which need places and speeds alone.
+    for j in range(J):
+        if stator.held:
+            angle = stator.omega[j] * t + stator.phase[j]
+            y[j] = stator.amplitude[j] * math.cos(angle)
+            y[J + j] = -stator.amplitude[j] * stator.omega[j] * math.sin(angle)
+        dy[j] = y[J + j]
+    for i in range(I):
+        events[2 * i] = _NO_EVENT
+        events[2 * i + 1] = _NO_EVENT
+        depth = -z
+        speed = -vz
+        along = -v
+        for j in range(J):
+            depth += feet.across[i, j] * y[j]
+            speed += feet.across[i, j] * y[J + j]
+            along += feet.along[i, j] * y[J + j]
+        state = contact[i]
+        if state == OPEN:
+            events[2 * i] = -depth
+            continue
+        events[2 * i] = depth
+        g = 1.0 + feet.chi[i] * speed
+        if state == STICK:
+            e = y[at + 4 + i]
+            dy[at + 4 + i] = along
+        else:
+            sign = 1.0 if state == SLIP_UP else -1.0
+            e = depth * _slip_stretch(
+                sign, g, feet.k_nn[i], feet.k_nt[i], feet.k_tt[i], feet.mu[i]
+            )
+            y[at + 4 + i] = e
+        elastic = feet.k_nn[i] * depth + feet.k_nt[i] * e
+        N = g * elastic
+        F = feet.k_nt[i] * depth + feet.k_tt[i] * e
+        if state == STICK:
+            events[2 * i + 1] = feet.mu[i] * N - abs(F)
+        normal += N
+        thrust += F
+        dy[totals + CONTACT_LOSS] += feet.chi[i] * speed * speed * elastic
+        for j in range(J):
+            dy[J + j] -= N * feet.across[i, j] + F * feet.along[i, j]
+    for j in range(J):
+        if stator.held:
+            dy[totals + DRIVE] -= dy[J + j] * y[J + j]
+            dy[J + j] = -stator.omega[j] ** 2 * y[j]
+        else:
+            push = stator.force[j] * math.cos(stator.omega[j] * t + stator.phase[j])
+            lost = stator.damping[j] * y[J + j]
+            dy[totals + DRIVE] += push * y[J + j]
+            dy[totals + MODAL_LOSS] += lost * y[J + j]
+            dy[J + j] = (dy[J + j] + push - lost - stator.stiffness[j] * y[j]) / stator.mass[j]
+    dy[at] = vz
+    dy[at + 1] = (normal - slider.preload - slider.damping * vz) / slider.mass
+    dy[totals + PRELOAD] = -slider.preload * vz
+    dy[totals + GUIDE_LOSS] = slider.damping * vz * vz
+    dy[totals + THRUST] = thrust
+    dy[totals + NORMAL] = normal
+    dy[at + 2] = v
+    events[2 * I] = _NO_EVENT
+    if slider.imposed:
+        dy[totals + OUTPUT] = (thrust - slider.guide * math.copysign(1.0, v)) * v
+        dy[totals + GUIDE_LOSS] += slider.guide * abs(v)
+    elif march.guide[0] == 0:
+        events[2 * I] = slider.guide - abs(thrust - slider.load)
+    else:
+        held_back = slider.guide * march.guide[0]
+        dy[at + 3] = (thrust - slider.load - held_back) / slider.mass
+        dy[totals + OUTPUT] = slider.load * v
+        dy[totals + GUIDE_LOSS] += held_back * v
+        if slider.guide > 0.0:
+            events[2 * I] = v * march.guide[0]
+    _slips(y, stator, feet, march, dy)
+
+
+@compiled()
+def _slips(y: si.Array, stator: Stator, feet: Feet, march: March, dy: si.Array) -> None:
+    """The slip speeds of feet that slip, which need the accelerations: events and loss."""
+    J, I = stator.mass.size, feet.mu.size
+    at = 2 * J
+    totals = at + 4 + I
+    for i in range(I):
+        if march.contact[i] < SLIP_UP:
+            continue
+        sign = 1.0 if march.contact[i] == SLIP_UP else -1.0
+        depth, speed, rise, along = -y[at], -y[at + 1], -dy[at + 1], -y[at + 3]
+        for j in range(J):
+            depth += feet.across[i, j] * y[j]
+            speed += feet.across[i, j] * y[J + j]
+            rise += feet.across[i, j] * dy[J + j]
+            along += feet.along[i, j] * y[J + j]
+        k_nn, k_nt, k_tt, mu = feet.k_nn[i], feet.k_nt[i], feet.k_tt[i], feet.mu[i]
+        g = 1.0 + feet.chi[i] * speed
+        part = _slip_stretch(sign, g, k_nn, k_nt, k_tt, mu)
+        bend = sign * mu * (k_nn * k_tt - k_nt * k_nt) / (k_tt - sign * mu * g * k_nt) ** 2
+        slip = along - part * speed - depth * bend * feet.chi[i] * rise
+        march.events[2 * i + 1] = sign * slip
+        F = depth * (k_nt + k_tt * part)
+        dy[totals + FRICTION] += F * slip
+
+
+@compiled()
+def _stepped(
+    t: float, h: float, stator: Stator, feet: Feet, slider: Slider, march: March
+) -> None:
+    """One Runge–Kutta step from `march.state` into room 5, with the events there."""
+    y, room = march.state, march.room
+    rates(t, y, stator, feet, slider, march, room[0])
+    room[4, :] = y + 0.5 * h * room[0]
+    rates(t + 0.5 * h, room[4], stator, feet, slider, march, room[1])
+    room[4, :] = y + 0.5 * h * room[1]
+    rates(t + 0.5 * h, room[4], stator, feet, slider, march, room[2])
+    room[4, :] = y + h * room[2]
+    rates(t + h, room[4], stator, feet, slider, march, room[3])
+    room[5, :] = y + h / 6.0 * (room[0] + 2.0 * (room[1] + room[2]) + room[3])
+    rates(t + h, room[5], stator, feet, slider, march, room[6])
+
+
+@compiled()
+def _first_event(
+    t: float, h: float, before: si.Array, stator: Stator, feet: Feet, slider: Slider, march: March
+) -> tuple[int, float]:
+    """Which event comes first within a step that ends past one, and when; the state just past it
+    stands in room 5. By the Illinois method, on steps from the same start."""
+    events = march.events
+    high = h
+    while True:
+        which = -1
+        soonest = 2.0
+        for k in range(events.size):
+            if events[k] < -march.rounding[k]:
+                part = before[k] / (before[k] - events[k]) if before[k] > 0.0 else 0.0
+                if part < soonest:
+                    which, soonest = k, part
+        low, f_low, f_high = 0.0, before[which], events[which]
+        if f_low <= 0.0:
+            # A foot that has just begun to stick is at its limit, and leaves it slowly.
+            low = _LATER * high
+            _stepped(t, low, stator, feet, slider, march)
+            f_low = events[which]
+            if f_low <= 0.0:
+                # It has come already: nothing moves before it.
+                _stepped(t, 0.0, stator, feet, slider, march)
+                return which, 0.0
+        side = 0
+        for _ in range(60):
+            if high - low <= 1e-13 * h:
+                break
+            middle = (low * f_high - high * f_low) / (f_high - f_low)
+            if not low < middle < high:
+                middle = 0.5 * (low + high)
+            _stepped(t, middle, stator, feet, slider, march)
+            f = events[which]
+            if f < 0.0:
+                high, f_high = middle, f
+                if side == -1:
+                    f_low *= 0.5
+                side = -1
+            else:
+                low, f_low = middle, f
+                if side == 1:
+                    f_high *= 0.5
+                side = 1
+                if f == 0.0:
+                    high = middle
+        _stepped(t, low, stator, feet, slider, march)
+        again = False
+        for k in range(events.size):
+            if k != which and events[k] < -march.rounding[k]:
+                again = True
+        if not again or low == 0.0:
+            _stepped(t, high, stator, feet, slider, march)
+            return which, high
+        high = low
+
+
+@compiled()
+def _change(which: int, stator: Stator, feet: Feet, slider: Slider, march: March) -> None:
+    """What becomes of the foot, or the guide, whose event has come."""
+    J, I = stator.mass.size, feet.mu.size
+    at = 2 * J
+    y, contact = march.state, march.contact
+    if which == 2 * I:
+        if march.guide[0] == 0:
+            pull = march.room[6][at + 4 + I + THRUST] - slider.load
+            march.guide[0] = 1.0 if pull > 0.0 else -1.0
+        else:
+            march.guide[0] = 0.0
+            y[at + 3] = 0.0
+        return
+    i = which // 2
+    if which % 2 == 1:
+        if contact[i] == STICK:
+            depth = -y[at]
+            for j in range(J):
+                depth += feet.across[i, j] * y[j]
+            pull = feet.k_nt[i] * depth + feet.k_tt[i] * y[at + 4 + i]
+            contact[i] = SLIP_UP if pull > 0.0 else SLIP_DOWN
+        else:
+            contact[i] = STICK
+        return
+    if contact[i] != OPEN:
+        contact[i] = OPEN
+        y[at + 4 + i] = 0.0
+        return
+    speed, along = -y[at + 1], -y[at + 3]
+    for j in range(J):
+        speed += feet.across[i, j] * y[J + j]
+        along += feet.along[i, j] * y[J + j]
+    # What sticking would need, per time, against what friction gives.
+    needed = feet.k_nt[i] * speed + feet.k_tt[i] * along
+    g = 1.0 + feet.chi[i] * speed
+    given = feet.mu[i] * g * (feet.k_nn[i] * speed + feet.k_nt[i] * along)
+    y[at + 4 + i] = 0.0
+    contact[i] = STICK
+    if abs(needed) > given:
+        contact[i] = SLIP_UP if needed > 0.0 else SLIP_DOWN
+
+
+@compiled()
+def march_steps(
+    start: float, h: float, steps: int, parts: tuple[Stator, Feet, Slider, March], track: si.Array
+) -> int:
+    """March `steps` steps of `h` (s) from the time `start`; the rows of `track`, where it has any,
+    get time, state and contacts after each step. Returns the steps done: fewer where one held too
+    many events."""
+    stator, feet, slider, march = parts
+    I = feet.mu.size
+    size = march.state.size
+    before = np.empty_like(march.events)
+    for step in range(steps):
+        t = start + step * h
+        end = start + (step + 1) * h
+        found = 0
+        while t < end:
+            left = end - t
+            rates(t, march.state, stator, feet, slider, march, march.room[7])
+            before[:] = march.events
+            _stepped(t, left, stator, feet, slider, march)
+            gone = left
+            which = -1
+            for k in range(march.events.size):
+                if march.events[k] < -march.rounding[k]:
+                    which = k
+            if which >= 0:
+                which, gone = _first_event(t, left, before, stator, feet, slider, march)
+            march.state[:] = march.room[5]
+            for i in range(I):
+                if march.contact[i] != OPEN:
+                    march.shares[0, i] += gone
+                    if march.contact[i] == STICK:
+                        march.shares[1, i] += gone
+            if which < 0:
+                break
+            _change(which, stator, feet, slider, march)
+            t += gone
+            found += 1
+            if found > MOST_EVENTS:
+                return step
+        if track.shape[0] > step:
+            track[step, 0] = end
+            track[step, 1 : 1 + size] = march.state
+            track[step, 1 + size :] = march.contact
+    return steps

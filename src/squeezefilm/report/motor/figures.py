@@ -1,0 +1,150 @@
+"""Figures of a standing-wave motor: its causal ordering graph, its curves and how a foot moves."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.report.kit import style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.actuators.motor.averaged import AveragedMotor
+    from squeezefilm.actuators.motor.causal import CausalGraph
+    from squeezefilm.actuators.motor.curves import MotorMap
+    from squeezefilm.actuators.motor.in_time import MotorMotion
+
+
+def _floors(graph: CausalGraph) -> dict[str, int]:
+    """How far each element stands from the first quantity that comes from outside; the others
+    stand before what they go into."""
+    first, *others = graph.sources
+    floors = {first: 0}
+    waiting = [first]
+    while waiting:
+        name = waiting.pop(0)
+        for source, target, _ in graph.edges:
+            if source == name and target not in floors:
+                floors[target] = floors[name] + 1
+                waiting.append(target)
+    for name in others:
+        floors[name] = min(floors[to] for source, to, _ in graph.edges if source == name) - 1
+    return floors
+
+
+@style.drawn
+def causal_figure(graph: CausalGraph) -> Figure:
+    """The elements of a motor and what goes from one to the next, drawn from the graph's data."""
+    floors = _floors(graph)
+    rows: dict[int, list[str]] = {}
+    for name, floor in floors.items():
+        rows.setdefault(floor, []).append(name)
+    tallest = max(len(names) for names in rows.values())
+    figure = style.new_figure(
+        "What makes what in this motor",
+        "double frame: stores energy, is inverted by a loop; single: a function, inverted at once",
+        1.6 + 0.75 * tallest,
+    )
+    axes = figure.subplots()
+    axes.set_axis_off()
+    places = {
+        name: (float(floor), (len(names) - 1) / 2 - number + (0.25 if floor % 2 else 0.0))
+        for floor, names in rows.items()
+        for number, name in enumerate(names)
+    }
+    causal = {one.name: one.causal for one in graph.elements}
+    for source, target, quantity in graph.edges:
+        (x0, y0), (x1, y1) = places[source], places[target]
+        back = x1 <= x0
+        bend = f"arc3,rad={0.35 if back else 0.08}"
+        axes.annotate(
+            "", (x1, y1), (x0, y0), zorder=1,
+            arrowprops={
+                "arrowstyle": "->", "connectionstyle": bend, "shrinkA": 26, "shrinkB": 26,
+                "color": style.ORANGE if back else style.BLUE, "lw": 1.0,
+            },
+        )  # fmt: skip
+        share = 0.5 if not back else 0.4
+        lift = 0.0 if not back else 0.35 * (x0 - x1 + 0.4) / 2
+        axes.text(
+            x0 + share * (x1 - x0), y0 + share * (y1 - y0) + lift, style.plain(quantity),
+            fontsize=7, ha="center", va="center",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6}, zorder=2,
+        )  # fmt: skip
+    for name, (x, y) in places.items():
+        kind = causal.get(name)
+        boxstyle = "round,pad=0.35" if kind is None else "square,pad=0.35"
+        words = style.plain(name).replace(" of ", "\nof ").replace(", ", ",\n")
+        for pad in (0.0, 0.18) if kind else (0.0,):
+            axes.text(
+                x, y, words, ha="center", va="center", fontsize=8, zorder=4 - pad,
+                bbox={
+                    "boxstyle": boxstyle.replace("0.35", str(0.35 + pad)), "facecolor": "white",
+                    "edgecolor": "black" if kind is not None else "none", "lw": 0.9,
+                },
+            )  # fmt: skip
+    xs, ys = np.array(list(places.values())).T
+    axes.set(xlim=(xs.min() - 0.6, xs.max() + 0.6), ylim=(ys.min() - 0.8, ys.max() + 0.8))
+    return figure
+
+
+@style.drawn
+def speed_force_figure(curve: tuple[AveragedMotor, ...]) -> Figure:
+    """Speed and efficiency over the force, from rest to no load."""
+    figure = style.new_figure(
+        f"Stalls at {curve[0].force:.3g} N, runs {1e3 * curve[-1].speed:.3g} mm/s without a load",
+        curve[0].model, 4.0,
+    )  # fmt: skip
+    left, right = figure.subplots(1, 2)
+    force = [one.force for one in curve]
+    left.plot(force, [1e3 * one.speed for one in curve], color=style.BLUE)
+    left.set(xlabel="force on the load (N)", ylabel="speed (mm/s)")
+    right.plot(force, [100 * one.efficiency for one in curve], color=style.ORANGE)
+    right.set(xlabel="force on the load (N)", ylabel="efficiency (%)")
+    return figure
+
+
+@style.drawn
+def map_figure(found: MotorMap) -> Figure:
+    """Stall force, no-load speed and efficiency over preload and amplitude; white where it
+    stalls."""
+    figure = style.new_figure(
+        "Preload and amplitude", "averaged model; white: the feet never leave, the motor stalls", 3.6
+    )
+    x, y = 1e6 * found.amplitude, found.preload
+    for axes, values, label in zip(
+        figure.subplots(1, 3, sharey=True),
+        (found.stall_force, 1e3 * found.no_load_speed, 100 * found.efficiency),
+        ("stall force (N)", "no-load speed (mm/s)", "best efficiency (%)"),
+        strict=True,
+    ):
+        drawn = axes.pcolormesh(x, y, np.ma.masked_invalid(values), shading="nearest")
+        figure.colorbar(drawn, ax=axes, label=label)
+        axes.set(xlabel="amplitude (µm)", yscale="log")
+        style.plain_log(axes.yaxis)
+    figure.axes[0].set_ylabel("preload (N)")
+    return figure
+
+
+@style.drawn
+def foot_figure(motion: tuple[MotorMotion, si.FloatArray, si.FloatArray]) -> Figure:
+    """The way of the first foot's tip over a few periods, across against along, and when it is in
+    contact: a motion, and what a foot moves across and along for 1 m of each mode."""
+    moved, across, along = motion
+    w, u = moved.deflection @ across, moved.deflection @ along
+    figure = style.new_figure("The way of a foot", moved.model, 4.0)
+    left, right = figure.subplots(1, 2)
+    touching = moved.contact[:, 0] > 0
+    left.plot(1e6 * u, 1e6 * w, color=style.BLUE, lw=0.8)
+    left.plot(1e6 * u[touching], 1e6 * w[touching], ".", ms=3, color=style.ORANGE, label="in contact")
+    left.set(xlabel="along the face (µm)", ylabel="across it (µm)")
+    time = 1e6 * (moved.time - moved.time[0])
+    right.plot(time, 1e6 * w, color=style.BLUE, label="foot")
+    right.plot(time, 1e6 * moved.height, color="black", label="slider")
+    right.plot(time[touching], 1e6 * w[touching], ".", ms=3, color=style.ORANGE)
+    right.set(xlabel="time (µs)", ylabel="height (µm)")
+    style.legend_below(right, columns=2)
+    return figure

@@ -1,0 +1,40 @@
+"""Figures of a motor: the graph has every element and quantity, the curves their ends."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from tests.unit.actuators.test_motor import WORKING, motor
+from tests.unit.report import drawn
+
+from squeezefilm.actuators.motor.causal import averaged_graph, causal_graph
+from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
+from squeezefilm.actuators.motor.in_time import simulate
+from squeezefilm.report.motor.figures import (
+    causal_figure,
+    foot_figure,
+    map_figure,
+    speed_force_figure,
+)
+
+
+def words(figure: Figure) -> str:
+    return " ".join(drawn.words(one.get_text()) for one in figure.findobj(Text))
+
+
+def test_the_graph_draws_every_element_and_what_goes_between() -> None:
+    for graph in (averaged_graph(motor()), causal_graph(motor())):
+        said = words(causal_figure(graph))
+        for one in graph.elements:
+            assert one.name in said
+        for name in graph.sources:
+            assert name in said
+
+
+def test_curves_map_and_foot_are_drawn() -> None:
+    curve = speed_force_curve(motor(), WORKING, 4)
+    assert f"Stalls at {curve[0].force:.3g} N" in words(speed_force_figure(curve))
+    found = motor_map(motor(), np.array([5.0, 60.0]), np.array([0.5e-6, 2e-6]))
+    assert "no-load speed (mm/s)" in words(map_figure(found))
+    feet = motor().feet
+    moved = simulate(motor(), WORKING, periods=20, traced=2)
+    assert "across it (µm)" in words(foot_figure((moved, feet.across[0], feet.along[0])))
