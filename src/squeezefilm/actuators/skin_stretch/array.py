@@ -23,6 +23,8 @@ from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, 
 from squeezefilm.errors import GeometryError, InputError
 
 _M = si.Unit("m")
+# Frozen, so that every array may share them.
+_TISSUE, _PULP, _FINGERTIP = Tissue(), Tissue(shear_modulus=20e3), Fingertip()
 ForceMatrix = Annotated[si.FloatArray, si.Unit("N/V")]
 
 
@@ -31,15 +33,18 @@ ForceMatrix = Annotated[si.FloatArray, si.Unit("N/V")]
 class SkinStretchArray:
     """Bending actuators on a cradle under a fingertip: what `[skin_stretch]` of a file describes.
 
-    `normal_force` is that of the finger; `friction_coefficient` that of contactors on skin, which
+    `tissue` is what is pulled sideways, `pulp` what gives way when the finger is pressed on: a stiff
+    skin on soft pulp is softer to a broad push than to a local pull, and one modulus will not do for
+    both (20 kPa assumed, an order of magnitude). `normal_force` is that of the finger; `friction_coefficient` that of contactors on skin, which
     decides whether they stick (assumed). `theory` of the actuators: "solid" or "strip". Raises
     `GeometryError` for actuators thicker or wider than the pitch leaves room for.
     """
 
     actuator: Bimorph
     cradle: Cradle
-    tissue: Tissue = Tissue()
-    finger: Fingertip = Fingertip()
+    tissue: Tissue = _TISSUE
+    pulp: Tissue = _PULP
+    finger: Fingertip = _FINGERTIP
     normal_force: Annotated[si.Newton, hard.FORCE] = 2.0
     friction_coefficient: Annotated[si.Dimensionless, si.Above(0), si.AtMost(20)] = 1.0
     theory: Literal["solid", "strip"] = "solid"
@@ -108,7 +113,7 @@ class SkinStretchArray:
     @functools.cached_property
     def _held(self) -> si.FloatArray:
         """The friction that may hold each contactor (N)."""
-        seated = seat(self.cradle, self.finger, self.tissue, self.normal_force)
+        seated = seat(self.cradle, self.finger, self.pulp, self.normal_force)
         return np.asarray(self.friction_coefficient * seated.forces)
 
     @property
