@@ -65,6 +65,7 @@ def test_for_usual_sections_the_strip_is_nearer_than_the_narrow_beam(beam: Bimor
     assert strip.stiffness == pytest.approx(solid.stiffness, rel=0.01)
 
 
+@pytest.mark.slow
 def test_the_solid_has_converged() -> None:
     once, again = solid_bender(USUAL), solid_bender(USUAL, 2)
     for name in ("deflection_per_volt", "stiffness", "resonance_frequency", "capacitance"):

@@ -22,7 +22,7 @@ class SkinStretchDescription(Result):
     """
 
     references: ClassVar[References] = References(
-        original=None,
+        original=lambda name: _preset(name),
         parts={
             "skin_stretch.actuator.ceramic": functools.partial(
                 presets.materials.table, kind="ceramic"
@@ -43,3 +43,9 @@ class SkinStretchDescription(Result):
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )
     _shown: ClassVar[str] = "name title skin_stretch.cradle.count skin_stretch.normal_force"
+
+
+def _preset(name: str) -> SkinStretchDescription:
+    from squeezefilm import config
+
+    return config.load(SkinStretchDescription, presets.resolve_actuator(name))
