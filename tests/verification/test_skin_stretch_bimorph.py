@@ -74,7 +74,9 @@ def test_the_solid_has_converged() -> None:
 
 @pytest.mark.parametrize("solved", [lambda one: one.as_strip, solid_bender])
 def test_series_is_half_the_deflection_and_a_quarter_of_the_charge(solved: object) -> None:
-    parallel, series = (solved(dataclasses.replace(USUAL, wiring=w)) for w in ("parallel", "series"))  # type: ignore[operator]
+    parallel, series = (
+        solved(dataclasses.replace(USUAL, wiring=w)) for w in ("parallel", "series")
+    )  # type: ignore[operator]
     assert series.deflection_per_volt == pytest.approx(parallel.deflection_per_volt / 2, rel=1e-9)
     assert series.capacitance == pytest.approx(parallel.capacitance / 4, rel=1e-9)
     assert series.stiffness == pytest.approx(parallel.stiffness, rel=1e-9)

@@ -130,8 +130,8 @@ def test_what_cannot_be_is_refused_in_words(array: SkinStretchArray) -> None:
         dataclasses.replace(array.cradle, contactor_length=1.3e-3)
     with pytest.raises(GeometryError, match="half around"):
         dataclasses.replace(array.cradle, radius_across=3e-3)
+    thick = dataclasses.replace(array.actuator, ceramic_thickness=0.6e-3)
     with pytest.raises(GeometryError, match="would touch"):
-        thick = dataclasses.replace(array.actuator, ceramic_thickness=0.6e-3)
         dataclasses.replace(array, actuator=thick)
     with pytest.raises(GeometryError, match="at least 4 times as long"):
         dataclasses.replace(array.actuator, length=5e-3)

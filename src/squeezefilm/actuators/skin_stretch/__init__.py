@@ -1,1 +1,1 @@
-"""The skin-stretch array: bending actuators on a cradle that pull the skin of a fingertip sideways."""
+"""The skin-stretch array: bending actuators that pull the skin of a fingertip sideways."""

@@ -33,11 +33,12 @@ ForceMatrix = Annotated[si.FloatArray, si.Unit("N/V")]
 class SkinStretchArray:
     """Bending actuators on a cradle under a fingertip: what `[skin_stretch]` of a file describes.
 
-    `tissue` is what is pulled sideways, `pulp` what gives way when the finger is pressed on: a stiff
-    skin on soft pulp is softer to a broad push than to a local pull, and one modulus will not do for
-    both (20 kPa assumed, an order of magnitude). `normal_force` is that of the finger; `friction_coefficient` that of contactors on skin, which
-    decides whether they stick (assumed). `theory` of the actuators: "solid" or "strip". Raises
-    `GeometryError` for actuators thicker or wider than the pitch leaves room for.
+    `tissue` is what is pulled sideways, `pulp` what gives way when the finger is pressed on: a
+    stiff skin on soft pulp is softer to a broad push than to a local pull, and one modulus will not
+    do for both (20 kPa assumed, an order of magnitude). `normal_force` is that of the finger;
+    `friction_coefficient` that of contactors on skin, which decides whether they stick (assumed).
+    `theory` of the actuators: "solid" or "strip". Raises `GeometryError` for actuators thicker or
+    wider than the pitch leaves room for.
     """
 
     actuator: Bimorph
@@ -135,8 +136,8 @@ class SkinStretchArray:
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class Pull:
-    """What an array does at some `voltages`: `forces` on the skin, `displacements` of the contactors
-    and `held`, the friction that may hold each."""
+    """What an array does at some `voltages`: `forces` on the skin, `displacements` of the
+    contactors, and `held`, the friction that may hold each."""
 
     voltages: Annotated[si.FloatArray, si.Unit("V")]
     forces: si.NewtonArray

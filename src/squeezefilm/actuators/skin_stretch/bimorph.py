@@ -3,9 +3,9 @@
 Layers thin against the width, sides free: the bending moment across the width vanishes in the mean,
 but not in each layer, where one ceramic widens and the other narrows. A narrow beam (plane stress
 in every layer, `triple_layer`) has none of that and is what is published; the three-dimensional
-solid (`solid_bender`) says which to take. Measured on PZT-5H of 1 mm in all: at a width of twice the
-thickness the narrow beam deflects 7 to 11 % too much, the strip 2 % too little; only at a fifth of
-the thickness is the narrow beam the better (3 % too much).
+solid (`solid_bender`) says which to take. Measured on PZT-5H: at a width of twice the thickness the
+narrow beam deflects 7 to 11 % too much, the strip 2 % too little; only at a fifth of the thickness
+is the narrow beam the better (3 % too much).
 """
 
 from __future__ import annotations
@@ -223,7 +223,7 @@ class Bimorph:
 
     @si.checked_numbers
     def require_voltage(self, voltage: si.Volt) -> None:
-        """Refuse a voltage (V, either sign) that would undo the poling. Raises `OutOfRangeError`."""
+        """Refuse a voltage (V, either sign) that undoes the poling. Raises `OutOfRangeError`."""
         if abs(voltage) > self.largest_voltage:
             field = abs(voltage) * self.ceramic_share / self.ceramic_thickness
             raise OutOfRangeError(
@@ -234,4 +234,3 @@ class Bimorph:
                 "ceramics",
                 quantity="voltage",
             )
-

@@ -1,8 +1,8 @@
 """A soft layer on rigid bone: what its surface gives way by, under tractions on it, against a
 half-space.
 
-In the Fourier plane of the surface a traction of wave number k moves it along the wave vector, across
-it in the plane, and up: three compliances in closed form. Those of a half-space (k h → ∞) are what
+In the Fourier plane of the surface a traction of wave number k moves it along the wave vector,
+across it in the plane, and up: three compliances in closed form. Those of a half-space (k h → ∞) are what
 `half_space` integrates exactly; the difference dies out as e^(−2kh), is smooth in place, and is
 brought back by Hankel transforms of order 0 and 2.
 
@@ -33,8 +33,8 @@ _FARTHEST = 12.0
 def layer_compliances(
     depth: Annotated[si.DimensionlessArray, si.Above(0)], poisson_ratio: Ratio
 ) -> tuple[si.DimensionlessArray, si.DimensionlessArray, si.DimensionlessArray]:
-    """G u/(q h) of a bonded layer for tractions of wave number k = `depth`/h: along the wave vector,
-    across it, and normal to the surface.
+    """G u/(q h) of a bonded layer for tractions of wave number k = `depth`/h: along the wave
+    vector, across it, and normal to the surface.
 
     For the first two the surface is free of normal traction, for the third of shear. Raises
     `InputError` for a depth not above 0 or a Poisson ratio outside 0 to 0.5.
@@ -75,6 +75,11 @@ def _tabled(table: CubicSpline, r: si.FloatArray, half_space: float) -> si.Float
     """A table's value, and beyond it what takes away the half-space's `half_space`/(2πr)."""
     near = table(np.minimum(r, _FARTHEST))
     return np.where(r <= _FARTHEST, near, -half_space / (2 * np.pi * np.maximum(r, _FARTHEST)))
+
+
+def _alike(x: si.FloatArray, y: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
+    a, b = np.broadcast_arrays(x, y)
+    return a, b
 
 
 def _over_patch(
@@ -118,7 +123,7 @@ def tangential_correction(
         second = _tabled(turning, r, poisson_ratio / 2)
         return (first + second * cos) / thickness, second * sin / thickness
 
-    u, v = _over_patch(*np.broadcast_arrays(x, y), length, width, kernel)
+    u, v = _over_patch(*_alike(x, y), length, width, kernel)
     return u, v
 
 
@@ -138,4 +143,4 @@ def normal_correction(
         r = np.hypot(dx, dy) / thickness
         return (_tabled(_tables(float(poisson_ratio))[2], r, 1 - poisson_ratio) / thickness,)
 
-    return _over_patch(*np.broadcast_arrays(x, y), length, width, kernel)[0]
+    return _over_patch(*_alike(x, y), length, width, kernel)[0]

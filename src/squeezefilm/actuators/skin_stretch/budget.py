@@ -110,6 +110,4 @@ def budget(
     """The mass and volume of `count` actuators and the `area` (m²) that they serve, against limits
     (kg, m³; those of the published array) and about 1 cm²."""
     volume = count * actuator.length * actuator.width * actuator.thickness
-    return Budget(
-        count * actuator.mass, most_mass, volume, most_volume, area, PUBLISHED_AREA
-    )
+    return Budget(count * actuator.mass, most_mass, volume, most_volume, area, PUBLISHED_AREA)

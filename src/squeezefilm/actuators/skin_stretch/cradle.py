@@ -1,7 +1,7 @@
-"""Where the contactors stand, and the curvature of the cradle at which a fingertip touches them all.
+"""Where the contactors stand, and the curvature of a cradle at which a fingertip touches all.
 
-x runs along the finger and is the way of pulling, y across it. Cradle and fingertip are described by
-their radii of curvature along x and y. The finger is pressed on: every contactor under it carries a
+x runs along the finger and is the way of pulling, y across it. Cradle and fingertip are described
+by their radii of curvature along x and y. The finger is pressed on: every contactor under it carries a
 force that is not negative, with the tissue's own influence from one to the other
 (`tissue.influence_matrix`, normal), or stands free.
 """
@@ -124,7 +124,7 @@ def _sag(place: si.FloatArray, radius: float | None) -> si.FloatArray:
     """How far a circle has fallen at an arc length."""
     if radius is None:
         return np.zeros(place.shape)
-    return radius * (1 - np.cos(np.minimum(np.abs(place) / radius, np.pi)))
+    return np.asarray(radius * (1 - np.cos(np.minimum(np.abs(place) / radius, np.pi))))
 
 
 def gaps(cradle: Cradle, finger: Fingertip) -> si.MetreArray:
@@ -221,7 +221,5 @@ def radii_that_touch_all(
         )
     first, last = int(good[0]), int(good[-1])
     flat = curvatures[0] if first == 0 else brentq(over, curvatures[first - 1], curvatures[first])
-    steep = (
-        curvatures[-1] if last == 80 else brentq(over, curvatures[last], curvatures[last + 1])
-    )
+    steep = curvatures[-1] if last == 80 else brentq(over, curvatures[last], curvatures[last + 1])
     return 1 / float(steep), 1 / float(flat)

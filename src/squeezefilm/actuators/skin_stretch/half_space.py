@@ -1,4 +1,4 @@
-"""An elastic half-space under a rectangle of uniform traction: Cerruti's and Boussinesq's solutions.
+"""An elastic half-space under a rectangle of even traction: Cerruti's and Boussinesq's solution.
 
 A force Q along x at the origin moves the surface by u_x = Q/(2πG) [(1 − ν)/r + ν x²/r³] and
 u_y = Q/(2πG) ν xy/r³; a force across it by u_z = Q (1 − ν)/(2πG r) (Johnson 1985, Contact

@@ -50,5 +50,5 @@ def pattern_voltages(
 @si.checked_numbers
 def finest_period(cradle: Cradle, along: bool = True) -> si.Metre:
     """The shortest period (m) of a grating along (or across) the finger that contactors still tell
-    from a longer one: two pitches (Nyquist). At the period itself the phase decides what is felt."""
+    from a longer one: two pitches (Nyquist). At the period itself the phase decides what comes."""
     return 2 * (cradle.pitch_along if along else cradle.pitch_across)

@@ -27,8 +27,8 @@ from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.elements.slabs import Slabs
 
 _GRADED = (0.1, 0.5, 2.0)
-"""Element edges near the clamp, in thicknesses and in widths; with the orders below the deflection of the preset
-changes by less than 1e-3 if every order is raised by one (a test checks it)."""
+"""Element edges near the clamp, in thicknesses and in widths; with the orders below the deflection
+of a usual section changes by less than 1e-3 if every order is raised by two (a test checks it)."""
 
 MOST_SLENDER = 320.0
 """Length over thickness up to which digits are kept: at 300 raising all orders by four moves the
@@ -46,8 +46,8 @@ def solid_bender(actuator: Bimorph, more: int = 0) -> Bender:
     if actuator.length > MOST_SLENDER * actuator.thickness:
         raise OutOfRangeError(
             f"an actuator {actuator.length / actuator.thickness:.0f} times as long as thick was "
-            f"asked for as a solid, whose elements lose their digits above {MOST_SLENDER:.0f}; take "
-            "the strip (as_strip)",
+            f"asked for as a solid, whose elements lose their digits above {MOST_SLENDER:.0f}; "
+            "take the strip (as_strip)",
             quantity="length",
         )
     slabs = Slabs(_boxes(actuator, more))

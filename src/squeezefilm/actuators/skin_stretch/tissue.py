@@ -92,9 +92,7 @@ class Tissue:
         return FingerpadDynamics(stiffness, stiffness * self.relaxation_time, hard.PAD_MASS.least)
 
 
-def _mean_under(
-    function: object, x: si.FloatArray, y: si.FloatArray, size: Sizes
-) -> si.FloatArray:
+def _mean_under(function: object, x: si.FloatArray, y: si.FloatArray, size: Sizes) -> si.FloatArray:
     """The mean of u_x, or of u_z, over contactors at `x`, `y` from the one that is loaded."""
     points, weights = np.polynomial.legendre.leggauss(8)
     a, b = np.meshgrid(points * size[0] / 2, points * size[1] / 2, indexing="ij")
