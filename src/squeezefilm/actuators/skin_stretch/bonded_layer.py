@@ -2,9 +2,9 @@
 half-space.
 
 In the Fourier plane of the surface a traction of wave number k moves it along the wave vector,
-across it in the plane, and up: three compliances in closed form. Those of a half-space (k h → ∞) are what
-`half_space` integrates exactly; the difference dies out as e^(−2kh), is smooth in place, and is
-brought back by Hankel transforms of order 0 and 2.
+across it in the plane, and up: three compliances in closed form. Those of a half-space (k h → ∞)
+are what `half_space` integrates exactly; the difference dies out as e^(−2kh), is smooth in place,
+and is brought back by Hankel transforms of order 0 and 2.
 
 Sources: plane strain of a layer bonded to a rigid base, for example Johnson 1985, section 5.8
 (10.1017/CBO9781139171731); the tests derive it anew by integrating Navier's equations in depth.

@@ -1,8 +1,8 @@
 """Where the contactors stand, and the curvature of a cradle at which a fingertip touches all.
 
 x runs along the finger and is the way of pulling, y across it. Cradle and fingertip are described
-by their radii of curvature along x and y. The finger is pressed on: every contactor under it carries a
-force that is not negative, with the tissue's own influence from one to the other
+by their radii of curvature along x and y. The finger is pressed on: every contactor under it
+carries a force that is not negative, with the tissue's own influence from one to the other
 (`tissue.influence_matrix`, normal), or stands free.
 """
 
@@ -136,7 +136,7 @@ def gaps(cradle: Cradle, finger: Fingertip) -> si.MetreArray:
     x, y = cradle.places
     gap = _sag(x, finger.radius_along) - _sag(x, cradle.radius_along)
     gap = gap + _sag(y, finger.radius_across) - _sag(y, cradle.radius_across)
-    return gap - gap.min()
+    return np.asarray(gap - gap.min())
 
 
 @si.checked_numbers
