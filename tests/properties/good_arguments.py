@@ -13,6 +13,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squeezefilm.actuators.motor.assembled import Working
+from squeezefilm.actuators.motor.description import Motor
+from squeezefilm.control.force_law import ForceLaw
 from squeezefilm.plate.shear.section import ShearLayout, ShearSection
 from squeezefilm.plate.solid.modes import PlateModes
 from squeezefilm.plate.sound import RadiatingSurface
@@ -94,6 +97,36 @@ _WAVE = np.linspace(0.0, 8e-3, 8, endpoint=False)
 _SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
 
 FOR_ONE_CALL: dict[str, dict[str, Any]] = {
+    "actuators.motor.assembled.Working": {"amplitude": 1e-6},
+    "actuators.motor.description.FootContact.stiffnesses": {"inclination": 0.1},
+    "actuators.motor.description.Foot": {"x": 0.03, "y": 0.02},
+    "actuators.motor.stator.FaceMode.at": {"place": np.linspace(0.01, 0.07, 5)},
+    "actuators.motor.averaged.averaged": {"samples": 64},
+    "actuators.motor.in_time.simulate": {"periods": 4, "traced": 1},
+    "actuators.motor.curves.motor_map": {
+        "preloads": np.array([5.0]),
+        "amplitudes": np.array([1e-6]),
+    },
+    "actuators.motor.curves.models_compared": {
+        "preloads": np.array([5.0]),
+        "amplitudes": np.array([1e-6]),
+        "periods": 10,
+    },
+    "actuators.motor.curves.over_frequency": {
+        "working": Working(voltage=5.0),
+        "frequencies": np.array([34.6e3]),
+    },
+    "actuators.motor.curves.over_foot_position": {
+        "shifts": np.array([0.0]),
+        "theory": "timoshenko",
+    },
+    "actuators.motor.closed_loop.inverted_law": {
+        "speeds": np.array([0.01]),
+        "amplitudes": np.array([0.2e-6, 0.5e-6]),
+    },
+    "actuators.motor.closed_loop.track_force": {"wanted": np.array([0.5, 0.5]), "speed": 0.01},
+    "actuators.motor.description.Motor": Later(lambda: fields_of(made(Motor))),
+    "control.force_law.ForceLaw": Later(lambda: fields_of(made(ForceLaw))),
     "plate.electronics.amplifier_check": {"slew_rate": 1e6, "current": 0.01},
     "contact.finger.load.finger_stiffness": {"interface": 1e5 + 1e3j},
     "contact.finger.load.finger_impedance": {"stiffness_per_area": 1e10 + 1e9j},

@@ -10,6 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
+from squeezefilm.actuators.motor.description import Cradle, Foot, FootContact, Motor
+from squeezefilm.actuators.motor.stator import FaceMode
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.pad_place import PadPlace
 from squeezefilm.contact.asperities import AsperityLaw
@@ -28,6 +31,7 @@ from squeezefilm.contact.sliding.dry_friction import (
     SpeedFriction,
 )
 from squeezefilm.contact.sliding.march import Sliding, slide
+from squeezefilm.control.force_law import ForceLaw, ForceState
 from squeezefilm.display import Display, Surface, load_display
 from squeezefilm.distributions import Normal, Uniform
 from squeezefilm.film.gap import PaperGap
@@ -144,12 +148,34 @@ def _capacitor() -> DrivenResponse:
     return response
 
 
+@functools.cache
+def some_motor() -> AssembledMotor:
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    feet = (Foot(32.4e-3, 24.5e-3), Foot(56e-3, 24.5e-3))
+    contact = FootContact(2e7, 1.6e7, 0.3, 0.3)
+    return assembled(Motor(plate, feet, contact, Cradle(10.0), 0.05, 15.0), "timoshenko")
+
+
+def some_force_law() -> ForceLaw:
+    thrust = np.array([[-1.0, 2.0, 3.0], [-2.0, 1.0, 2.0]])
+    speed, amplitude = np.array([0.0, 0.1]), np.array([0.0, 1e-6, 2e-6])
+    return ForceLaw(speed, amplitude, thrust, 1e7, 5e-4, 5e-4, 4e-3, 5e-4, 30.0)
+
+
 def fields_of(value: Any) -> dict[str, Any]:
     return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
 
 
 # By their type, made when first asked for.
 MADE: dict[Any, Callable[[], Any]] = {
+    AssembledMotor: some_motor,
+    Motor: lambda: some_motor().motor,
+    Working: lambda: Working(amplitude=1e-6),
+    FaceMode: lambda: some_motor().modes[0],
+    FootContact: lambda: some_motor().motor.contact,
+    ForceLaw: some_force_law,
+    ForceState: ForceState,
     AsperityLaw: AsperityLaw,
     DryFriction: lambda: DryFriction(1.2, 0.01),
     FrictionProfile: lambda: FrictionProfile(0.0, 1e-3, np.ones(4)),

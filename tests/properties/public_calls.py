@@ -22,7 +22,7 @@ from squeezefilm.quantities import unit_of
 
 ROOMS = {
     "film", "plate", "contact", "render", "chain.friction", "chain.prediction", "chain.touch",
-    "chain.pad_place",
+    "chain.pad_place", "actuators.skin_stretch", "actuators.motor", "control",
     "materials",
     "quantities", "distributions", "formats", "calibration_record",
 }  # fmt: skip
@@ -34,6 +34,11 @@ _ROOMS = tuple(f"{room}." for room in ROOMS)
 
 NOT_CALLED = {
     "a record of what was computed, which only the package makes": """
+    actuators.motor.averaged.AveragedMotor actuators.motor.in_time.MotorMotion
+    actuators.motor.curves.MotorMap actuators.motor.curves.ModelsCompared
+    actuators.motor.curves.ModelsCompared.difference
+    actuators.motor.closed_loop.TrackedForce actuators.motor.closed_loop.TrackedForce.mean_error
+    actuators.motor.stator.FaceMode
     plate.circuit.DrivenResponse.current plate.circuit.DrivenResponse.apparent_power
     plate.circuit.DrivenResponse.input_power plate.electronics.Amplifier
     plate.electronics.ElectricalLoad plate.electronics.RingAdmittance
@@ -66,7 +71,7 @@ NOT_CALLED = {
     render.program.renderer.Counters render.program.renderer.Rendered chain.touch.Touch
     """,
     "inside a solver: meshes, matrices and indices, made by calls that are checked": """
-    contact.asperities.cubics
+    contact.asperities.cubics actuators.motor.in_time.resting
     film.periodic.batch.check_film film.periodic.batch.solve_all film.line_grid.LineGrid
     film.line_grid.edge_graded film.line_grid.edge_layer film.line_grid.gap_table
     film.line_grid.line_grid film.line_grid.mean_over film.line_grid.refined_line

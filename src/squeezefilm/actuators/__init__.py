@@ -1,1 +1,1 @@
-"""What vibrating plates and bent ceramics also make: a standing-wave motor, a skin-stretch array."""
+"""What plates and bent ceramics also make: a standing-wave motor, a skin-stretch array."""

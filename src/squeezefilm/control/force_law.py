@@ -1,10 +1,11 @@
 """The force law of a motor: a wanted force in, a voltage out, by inverting what makes the force.
 
 Three elements stand between voltage and force, and each is inverted in turn: the force over the
-amplitude, which has no memory, by its table at the slider's speed; what the table is wrong by (friction is never known
-well) is observed, as what it says at the measured amplitude less the measured force, and added to
-what is wanted; the amplitude over the voltage, which has a memory, by a proportional loop around it
-with the resonance's gain fed forward. Nothing is integrated that could wind up.
+amplitude, which has no memory, by its table at the slider's speed; what the table is wrong by
+(friction is never known well) is observed, as what it says at the measured amplitude less the
+measured force, and added to what is wanted; the amplitude over the voltage, which has a memory, by
+a proportional loop around it with the resonance's gain fed forward. Nothing is integrated that
+could wind up.
 
 One step is a pure function: state and measurements in, state and command out.
 """

@@ -1,7 +1,8 @@
-"""The standing-wave motor: in time, in the mean, and both beside what can be said in closed form."""
+"""The standing-wave motor in time and in the mean, beside what can be said in closed form."""
 
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -99,10 +100,12 @@ def test_the_march_is_of_fourth_order_through_its_contacts() -> None:
     assert 0 < fine.stick_share < fine.contact_share
     steps = np.array([16, 32, 64, 128])
     errors = [
-        abs(simulate(motor(), WORKING, speed=0.02, periods=5, steps=n, traced=0).period_height[-1]
-            - fine.period_height[-1])
+        abs(
+            simulate(motor(), WORKING, speed=0.02, periods=5, steps=n, traced=0).period_height[-1]
+            - fine.period_height[-1]
+        )
         for n in steps.tolist()
-    ]  # fmt: skip
+    ]
     orders = -np.diff(np.log(errors)) / np.log(2)
     assert np.all(orders > 3.5)
 
@@ -213,7 +216,9 @@ def test_a_free_slider_ends_at_the_no_load_speed() -> None:
     in_time = simulate(motor(), working, periods=1500, start_speed=0.02, traced=2)
     expected = no_load_speed(motor(), working)
     assert in_time.final_speed == pytest.approx(expected, rel=0.05)
-    assert in_time.period_amplitude[-1] == pytest.approx(averaged(motor(), working).amplitude, rel=0.02)
+    assert in_time.period_amplitude[-1] == pytest.approx(
+        averaged(motor(), working).amplitude, rel=0.02
+    )
     assert in_time.time.size == 2 * 64
     assert set(np.unique(in_time.contact)) >= {kernel.OPEN, kernel.STICK}
 
@@ -222,7 +227,7 @@ def test_the_speed_force_curve_falls_from_stall_to_no_load() -> None:
     curve = speed_force_curve(motor(), WORKING, 6)
     forces = [one.force for one in curve]
     assert forces[0] == stall_force(motor(), WORKING)
-    assert all(a > b for a, b in zip(forces, forces[1:], strict=False))
+    assert all(a > b for a, b in pairwise(forces))
     assert abs(forces[-1]) < 1e-4 * forces[0]
     assert all(0 <= one.efficiency < 1 for one in curve)
 
@@ -245,9 +250,11 @@ def test_a_guide_takes_its_friction_off_and_holds_what_is_weaker() -> None:
 def test_a_map_knows_where_the_motor_stalls() -> None:
     told: list[tuple[int, int]] = []
     found = motor_map(
-        motor(), np.array([5.0, 60.0]), np.array([0.5e-6, 2e-6]),
+        motor(),
+        np.array([5.0, 60.0]),
+        np.array([0.5e-6, 2e-6]),
         progress=lambda done, of: told.append((done, of)),
-    )  # fmt: skip
+    )
     assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
     assert np.isnan(found.stall_force).tolist() == [[False, False], [True, False]]
     assert found.contact[1, 0] == 1.0
@@ -263,7 +270,7 @@ def test_feet_press_the_resonance_up() -> None:
 
 def test_feet_along_the_wave_thrust_both_ways() -> None:
     half = face_mode(plate(), "timoshenko").working.half_wavelength
-    shifts = [-0.5 * half, -0.25 * half, 0.25 * half]
+    shifts = np.array([-0.5, -0.25, 0.25]) * half
     found = over_foot_position(motor(0.0).motor, WORKING, shifts, "timoshenko")
     assert found[0] is None
     assert found[1] is not None
@@ -312,11 +319,13 @@ def test_what_cannot_work_is_refused_in_words() -> None:
     there = motor()
     with pytest.raises(OutOfRangeError, match=r"900 V; from 333\.3 V on .* loses its poling"):
         averaged(there, Working(voltage=900.0))
-    with pytest.raises(OutOfRangeError, match="over a nodal line .* between a node and an antinode"):
+    with pytest.raises(
+        OutOfRangeError, match=r"over a nodal line .* between a node and an antinode"
+    ):
         motor(beside=0.5)
-    with pytest.raises(OutOfRangeError, match="never leave the slider .* with less than"):
+    with pytest.raises(OutOfRangeError, match=r"never leave the slider .* with less than"):
         stall_force(there, Working(amplitude=0.3e-6, preload=50.0))
-    with pytest.raises(OutOfRangeError, match="their product is 1.* must stay below 1"):
+    with pytest.raises(OutOfRangeError, match=r"their product is 1.* must stay below 1"):
         simulate(motor(damping=9.0), WORKING)
     with pytest.raises(InputError, match="give one of the two"):
         Working()

@@ -72,9 +72,7 @@ def test_the_graph_says_what_the_equations_say(inclination: float) -> None:
         if far != one.output
     }
     # Friction holds: the stretch does not ask how hard the foot is pressed.
-    without_limit = {
-        pair for pair in said if not (pair[1].startswith("e_") and pair[0] in ("z",))
-    }
+    without_limit = {pair for pair in said if not (pair[1].startswith("e_") and pair[0] in ("z",))}
     assert depends(there, kernel.STICK) == without_limit
     slips = {
         (far, one.output)

@@ -1,4 +1,4 @@
-"""The force law: a table turned around, what it is wrong by observed, a voltage that is cut once."""
+"""The force law: a table turned around, its error observed, a voltage that is cut once."""
 
 from dataclasses import replace
 

@@ -1,1 +1,1 @@
-"""A planar standing-wave ultrasonic motor: a slider on feet that touch a vibrating plate now and then."""
+"""A standing-wave ultrasonic motor: a slider on feet of a plate, which it meets now and then."""

@@ -96,8 +96,8 @@ class AssembledMotor:
             raise OutOfRangeError(
                 f"voltage is {si.format_quantity(voltage, _V)}; from "
                 f"{si.format_quantity(self.highest_voltage, _V)} on the field in the ceramic is "
-                f"above {FIELD_SHARE:.2g} of its coercive field, and it loses its poling: use less, "
-                "a thicker ceramic, or state its coercive_field in [motor.thermal]",
+                f"above {FIELD_SHARE:.2g} of its coercive field, and it loses its poling: use "
+                "less, a thicker ceramic, or state its coercive_field in [motor.thermal]",
                 quantity="voltage",
             )
         shares = np.array([1.0, working.second])[: len(self.modes)]
@@ -114,9 +114,15 @@ class AssembledMotor:
         if voltage is not None:
             amplitude = force / np.hypot(mass * (own**2 - omega**2), mass * own * omega * loss)
         return Stator(
-            mass, mass * own**2, mass * own * loss, force, omega, np.zeros(mass.size), amplitude,
+            mass,
+            mass * own**2,
+            mass * own * loss,
+            force,
+            omega,
+            np.zeros(mass.size),
+            amplitude,
             is_held,
-        )  # fmt: skip
+        )
 
     def slider(self, working: Working, *, imposed: bool) -> Slider:
         """The slider for the kernels; with `imposed` its speed along stays as it is."""
@@ -150,9 +156,14 @@ def assembled(motor: Motor, theory: PlateTheory = "solid") -> AssembledMotor:
     count = np.ones(x.size)
     k_nn, k_nt, k_tt = (np.ascontiguousarray(one) for one in springs.T)
     feet = Feet(
-        across, along, k_nn, k_nt, k_tt,
-        contact.damping * count, contact.friction_coefficient * count,
-    )  # fmt: skip
+        across,
+        along,
+        k_nn,
+        k_nt,
+        k_tt,
+        contact.damping * count,
+        contact.friction_coefficient * count,
+    )
     return AssembledMotor(motor, modes, feet, sideways)
 
 

@@ -34,6 +34,39 @@ class Swing(NamedTuple):
     periods: int
 
 
+@compiled()
+def _swinging(t: float, stator: Stator, w: si.Array, dw: si.Array) -> None:
+    """The held modes' deflections (m) and speeds (m/s) at a time (s)."""
+    for j in range(w.size):
+        angle = stator.omega[j] * t + stator.phase[j]
+        w[j] = stator.amplitude[j] * math.cos(angle)
+        dw[j] = -stator.amplitude[j] * stator.omega[j] * math.sin(angle)
+
+
+@compiled(error_model="numpy")
+def _yielding(
+    depth: float, pull: float, Fx: float, limit: float, springs: tuple[float, float, float]
+) -> float:
+    """The share that friction leaves of a tangential force that is too large.
+
+    In its own direction, back to where it is `limit` times the elastic normal force, which a
+    leaning leg loses or gains as it yields.
+    """
+    k_nn, k_nt, k_tt = springs
+    own = (k_nn - k_nt * k_nt / k_tt) * depth
+    return limit * own / (pull - limit * k_nt * Fx / k_tt)
+
+
+@compiled()
+def _tally(means: si.Array, forces: tuple[float, float, float], push: float, angle: float) -> None:
+    """Add a foot's forces, and what it does to the first mode in phase with it and after it."""
+    means[0] += forces[0]
+    means[1] += forces[1]
+    means[2] += forces[2]
+    means[7] += 2.0 * push * math.cos(angle)
+    means[8] += 2.0 * push * math.sin(angle)
+
+
 @compiled(error_model="numpy")
 def average_contact(
     stator: Stator, feet: Feet, sideways: si.Array, height: float, swing: Swing, means: si.Array
@@ -44,24 +77,21 @@ def average_contact(
     The stretch is followed by the same law as in time, instant by instant: as it would stick, and
     back to the limit where that is more than friction gives (in the plane: along the force).
     """
-    J, I = stator.mass.size, feet.mu.size
+    J, n_feet = stator.mass.size, feet.mu.size
     means[:] = 0.0
     dt = 2.0 * math.pi / stator.omega[0] / swing.samples
     count = swing.samples * (swing.warm + swing.periods)
     contact, slipping = 0.0, 0.0
-    stretch = np.zeros((I, 2))
-    last = np.zeros((I, 2))
-    was = np.zeros(I)
+    stretch = np.zeros((n_feet, 2))
+    last = np.zeros((n_feet, 2))
+    was = np.zeros(n_feet)
     w = np.zeros(J)
     dw = np.zeros(J)
     for n in range(count):
         t = n * dt
         counts = n >= swing.samples * swing.warm
-        for j in range(J):
-            angle = stator.omega[j] * t + stator.phase[j]
-            w[j] = stator.amplitude[j] * math.cos(angle)
-            dw[j] = -stator.amplitude[j] * stator.omega[j] * math.sin(angle)
-        for i in range(I):
+        _swinging(t, stator, w, dw)
+        for i in range(n_feet):
             k_nn, k_nt, k_tt = feet.k_nn[i], feet.k_nt[i], feet.k_tt[i]
             depth, speed = -height, 0.0
             x, y = -swing.along * t, -swing.sideways * t
@@ -84,34 +114,25 @@ def average_contact(
             ex, ey = stretch[i, 0] + dx, stretch[i, 1] + dy
             Fx, Fy = k_nt * depth + k_tt * ex, k_tt * ey
             pull = math.hypot(Fx, Fy)
-            elastic = k_nn * depth + k_nt * ex
             slip = 0.0
-            if pull > limit * elastic:
-                own = (k_nn - k_nt * k_nt / k_tt) * depth
-                back = limit * own / (pull - limit * k_nt * Fx / k_tt)
+            if pull > limit * (k_nn * depth + k_nt * ex):
+                back = _yielding(depth, pull, Fx, limit, (k_nn, k_nt, k_tt))
                 Fx, Fy = back * Fx, back * Fy
                 slip = Fx * (ex - (Fx - k_nt * depth) / k_tt) + Fy * (ey - Fy / k_tt)
                 ex, ey = (Fx - k_nt * depth) / k_tt, Fy / k_tt
-                elastic = k_nn * depth + k_nt * ex
+            elastic = k_nn * depth + k_nt * ex
             stretch[i, 0], stretch[i, 1] = ex, ey
-            if not counts:
-                continue
-            N = elastic * (1.0 + feet.chi[i] * speed)
-            means[0] += Fx
-            means[1] += Fy
-            means[2] += N
-            contact += 1.0
-            if slip != 0.0:
-                slipping += 1.0
-            means[5] += feet.chi[i] * speed * speed * elastic
-            means[6] += slip / dt
-            push = -(N * feet.across[i, 0] + Fx * feet.along[i, 0] + Fy * sideways[i, 0])
-            angle = stator.omega[0] * t + stator.phase[0]
-            means[7] += 2.0 * push * math.cos(angle)
-            means[8] += 2.0 * push * math.sin(angle)
+            if counts:
+                N = elastic * (1.0 + feet.chi[i] * speed)
+                contact += 1.0
+                slipping += 1.0 if slip != 0.0 else 0.0
+                means[5] += feet.chi[i] * speed * speed * elastic
+                means[6] += slip / dt
+                push = -(N * feet.across[i, 0] + Fx * feet.along[i, 0] + Fy * sideways[i, 0])
+                _tally(means, (Fx, Fy, N), push, stator.omega[0] * t + stator.phase[0])
     total = swing.samples * swing.periods
     means[:] /= total
-    means[3] = contact / (total * I)
+    means[3] = contact / (total * n_feet)
     means[4] = slipping / contact if contact > 0.0 else 0.0
 
 

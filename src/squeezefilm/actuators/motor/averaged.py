@@ -108,10 +108,21 @@ def averaged(
         force = 0.0
     loss = float(np.sum(0.5 * stator.damping * (stator.omega * stator.amplitude) ** 2))
     return AveragedMotor(
-        working, speed, sideways_speed, thrust, float(means[1]), float(force),
-        float(stator.amplitude[0]), height, float(means[3]), float(means[4]), loss,
-        float(means[5]), float(means[6]), float(force * speed + means[1] * sideways_speed),
-    )  # fmt: skip
+        working,
+        speed,
+        sideways_speed,
+        thrust,
+        float(means[1]),
+        float(force),
+        float(stator.amplitude[0]),
+        height,
+        float(means[3]),
+        float(means[4]),
+        loss,
+        float(means[5]),
+        float(means[6]),
+        float(force * speed + means[1] * sideways_speed),
+    )
 
 
 def _means(

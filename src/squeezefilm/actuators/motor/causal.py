@@ -59,9 +59,7 @@ class CausalGraph:
         for name in (source, output):
             if name not in known:
                 raise InputError(f"the graph has no '{name}'; it has: {', '.join(known)}")
-        ways: list[tuple[Element, ...]] = [
-            (one,) for one in self.elements if source in one.inputs
-        ]
+        ways: list[tuple[Element, ...]] = [(one,) for one in self.elements if source in one.inputs]
         seen = {way[0].name for way in ways}
         while ways:
             way = ways.pop(0)
@@ -106,39 +104,57 @@ def causal_graph(motor: AssembledMotor) -> CausalGraph:
                 f"electrodes{end}", (f"V{end}",), f"f{end}", "force on the mode, by volts", False
             ),
             Element(
-                f"mode {mode.working.label}", (f"f{end}", *forces), f"q{end}",
-                "the mode's mass, stiffness and loss", True,
+                f"mode {mode.working.label}",
+                (f"f{end}", *forces),
+                f"q{end}",
+                "the mode's mass, stiffness and loss",
+                True,
             ),
-        ]  # fmt: skip
-    for i in feet:
-        ends = [""] if len(motor.modes) == 1 else ["_1", "_2"]
-        moving = [f"q{end}" for j, end in enumerate(ends) if motor.feet.across[i - 1, j] != 0]
-        along = [f"q{end}" for j, end in enumerate(ends) if motor.feet.along[i - 1, j] != 0]
-        leans = motor.feet.k_nt[i - 1] != 0
-        stretched = Element(
-            f"stretch of foot {i}", tuple(dict.fromkeys([*along, "v", f"N_{i}"])), f"e_{i}",
-            "follows the surface while friction holds, else its limit", True,
-        )  # fmt: skip
-        elements += [
-            Element(
-                f"contact of foot {i}", (*moving, "z", *((f"e_{i}",) if leans else ())), f"N_{i}",
-                "one-sided spring and loss", False,
-            ),
-            stretched,
-            Element(
-                f"leg of foot {i}", (f"e_{i}", *((*moving, "z") if leans else ())), f"F_{i}",
-                "tangential spring", False,
-            ),
-        ]  # fmt: skip
+        ]
+    elements += [one for i in feet for one in _foot(motor, i)]
     elements += [
         Element(
-            "slider across", (*(f"N_{i}" for i in feet), "P"), "z", "mass on the feet, preload",
+            "slider across",
+            (*(f"N_{i}" for i in feet), "P"),
+            "z",
+            "mass on the feet, preload",
             True,
         ),
         Element("sum of feet", tuple(f"F_{i}" for i in feet), "F", "thrust", False),
         Element("slider along", ("F", "load"), "v", "mass and the guide's friction", True),
-    ]  # fmt: skip
+    ]
     return CausalGraph(tuple(elements))
+
+
+def _foot(motor: AssembledMotor, i: int) -> tuple[Element, Element, Element]:
+    """What foot number `i` (from 1) is made of."""
+    ends = [""] if len(motor.modes) == 1 else ["_1", "_2"]
+    moving = [f"q{end}" for j, end in enumerate(ends) if motor.feet.across[i - 1, j] != 0]
+    along = [f"q{end}" for j, end in enumerate(ends) if motor.feet.along[i - 1, j] != 0]
+    leans = motor.feet.k_nt[i - 1] != 0
+    return (
+        Element(
+            f"contact of foot {i}",
+            (*moving, "z", *((f"e_{i}",) if leans else ())),
+            f"N_{i}",
+            "one-sided spring and loss",
+            False,
+        ),
+        Element(
+            f"stretch of foot {i}",
+            tuple(dict.fromkeys([*along, "v", f"N_{i}"])),
+            f"e_{i}",
+            "follows the surface while friction holds, else its limit",
+            True,
+        ),
+        Element(
+            f"leg of foot {i}",
+            (f"e_{i}", *((*moving, "z") if leans else ())),
+            f"F_{i}",
+            "tangential spring",
+            False,
+        ),
+    )
 
 
 def averaged_graph(motor: AssembledMotor) -> CausalGraph:

@@ -11,7 +11,7 @@ from squeezefilm import quantities as si
 from squeezefilm.actuators.motor import kernel
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.averaged import averaged
-from squeezefilm.actuators.motor.in_time import STEPS, resting, require_no_pull
+from squeezefilm.actuators.motor.in_time import STEPS, require_no_pull, resting
 from squeezefilm.control.force_law import ForceLaw, ForceState, force_step
 from squeezefilm.errors import ConvergenceError, InputError
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -130,9 +129,7 @@ def models_compared(
             working = Working(amplitude=amplitude, preload=preload)
             mean = averaged(motor, working, speed=speed)
             there = simulate(motor, working, speed=speed, periods=periods, traced=0)
-            found[:, i, j] = (
-                mean.thrust, there.thrust, mean.contact_share, there.contact_share
-            )  # fmt: skip
+            found[:, i, j] = (mean.thrust, there.thrust, mean.contact_share, there.contact_share)
             if progress is not None:
                 progress(i * amplitudes.size + j + 1, found[0].size)
     return ModelsCompared(preloads, amplitudes, speed, *found)
@@ -144,21 +141,21 @@ def over_frequency(
 ) -> tuple[AveragedMotor, ...]:
     """The motor at rest under its voltage at frequencies (Hz). Raises as `averaged`."""
     si.require("frequencies", frequencies, si.Unit("Hz"), axes=1)
-    return tuple(
-        averaged(motor, replace(working, frequency=one)) for one in frequencies.tolist()
-    )
+    return tuple(averaged(motor, replace(working, frequency=one)) for one in frequencies.tolist())
 
 
+@si.checked_numbers
 def over_foot_position(
-    motor: Motor, working: Working, shifts: Sequence[float], theory: PlateTheory = "solid"
+    motor: Motor, working: Working, shifts: si.MetreArray, theory: PlateTheory = "solid"
 ) -> tuple[AveragedMotor | None, ...]:
     """The motor at rest with all feet moved along the wave by `shifts` (m); None over a node.
 
     Raises as `assembled` for anything else, so for feet beside the plate.
     """
+    si.require("shifts", shifts, si.Unit("m"), axes=1)
     along_width = motor.plate.lines_across == "width"
     found: list[AveragedMotor | None] = []
-    for shift in shifts:
+    for shift in shifts.tolist():
         feet = tuple(
             replace(foot, y=foot.y + shift) if along_width else replace(foot, x=foot.x + shift)
             for foot in motor.feet

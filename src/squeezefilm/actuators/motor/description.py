@@ -11,6 +11,7 @@ from typing import Annotated, ClassVar
 from squeezefilm import hard_limits as hard
 from squeezefilm import presets
 from squeezefilm import quantities as si
+from squeezefilm.config.load import load
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.config.references import References
 from squeezefilm.errors import GeometryError, InputError, OutOfRangeError
@@ -146,7 +147,7 @@ class MotorDescription(Result):
     """
 
     references: ClassVar[References] = References(
-        original=lambda name: _preset(name),
+        original=lambda name: preset_motor(name),
         parts={
             f"motor.{plate}.{part}": functools.partial(presets.materials.table, kind=part)
             for plate in ("plate", "second_plate")
@@ -163,8 +164,6 @@ class MotorDescription(Result):
     _shown: ClassVar[str] = "name title motor.voltage motor.cradle.preload"
 
 
-@functools.cache
-def _preset(name: str) -> MotorDescription:
-    from squeezefilm import config
-
-    return config.load(MotorDescription, presets.resolve_actuator(name))
+def preset_motor(name: str) -> MotorDescription:
+    """The motor of a preset's name. Raises `ConfigError` for a name that is not known."""
+    return load(MotorDescription, presets.resolve_actuator(name))

@@ -102,46 +102,71 @@ def simulate(
     stator = motor.stator(working)
     require_no_pull(motor, stator)
     march, slider = resting(motor, working, stator, speed, start_speed)
-    J, I = stator.mass.size, motor.feet.mu.size
-    at, totals = 2 * J, 2 * J + 4 + I
     period = 2 * np.pi / stator.omega[0]
-    h = period / steps
     begun = _energy(motor, stator, slider, march)
-    rows = np.zeros((5, periods))
-    nothing = np.empty((0, 0))
-    track = np.zeros((min(traced, periods) * steps, 1 + march.state.size + I))
-    before = march.state.copy()
-    half = np.zeros_like(march.shares)
+    J, n_feet = stator.mass.size, motor.feet.mu.size
+    at, totals = 2 * J, 2 * J + 4 + n_feet
+    track = np.zeros((min(traced, periods) * steps, 1 + march.state.size + n_feet))
+    rows, half = _periods((stator, motor.feet, slider, march), periods, steps, track)
+    counted = (march.shares - half) / ((periods - periods // 2) * period)
+    return MotorMotion(
+        working,
+        float(stator.omega[0] / 2 / np.pi),
+        rows[0],
+        rows[1],
+        rows[2],
+        rows[3],
+        rows[4],
+        contact_share=float(np.mean(counted[0])),
+        stick_share=float(np.mean(counted[1])),
+        works=march.state[totals : totals + 7].copy(),
+        stored_energy=_energy(motor, stator, slider, march) - begun,
+        time=track[:, 0],
+        height=track[:, 1 + at],
+        speed=track[:, 4 + at],
+        deflection=track[:, 1 : 1 + J],
+        stretch=track[:, 5 + at : 5 + at + n_feet],
+        contact=track[:, 1 + march.state.size :],
+    )
+
+
+def _periods(
+    parts: tuple[kernel.Stator, kernel.Feet, kernel.Slider, kernel.March],
+    periods: int,
+    steps: int,
+    track: si.FloatArray,
+) -> tuple[si.FloatArray, si.FloatArray]:
+    """March the periods, the last ones into `track`; what each came to, and the shares halfway."""
+    stator, feet, _, march = parts
+    J = stator.mass.size
+    at, totals = 2 * J, 2 * J + 4 + feet.mu.size
+    period = 2 * np.pi / stator.omega[0]
+    rows, half = np.zeros((5, periods)), np.zeros_like(march.shares)
+    before, nothing = march.state.copy(), np.empty((0, 0))
+    untraced = periods - track.shape[0] // steps
     for n in range(periods):
         if n == periods // 2:
             half = march.shares.copy()
-        place = n - (periods - traced)
-        target = track[place * steps : (place + 1) * steps] if place >= 0 else nothing
-        parts = (stator, motor.feet, slider, march)
-        done = kernel.march_steps(n * period, h, steps, parts, target)
+        place = (n - untraced) * steps
+        target = track[place : place + steps] if place >= 0 else nothing
+        done = kernel.march_steps(n * period, period / steps, steps, parts, target)
         if done < steps:
             raise ConvergenceError(
                 f"more than {kernel.MOST_EVENTS} contacts began and ended within one step of "
-                f"{h:.3g} s in period {n + 1}; use more steps",
+                f"{period / steps:.3g} s in period {n + 1}; use more steps",
                 partial=rows[:, :n],
                 iterations=n,
             )
         gained = (march.state - before) / period
         before = march.state.copy()
         rows[:, n] = (
-            gained[totals + kernel.THRUST], gained[totals + kernel.NORMAL], before[at + 3],
-            before[at], np.hypot(before[0], before[J] / stator.omega[0]),
-        )  # fmt: skip
-    counted = (march.shares - half) / ((periods - periods // 2) * period)
-    return MotorMotion(
-        working, float(stator.omega[0] / 2 / np.pi), *rows,
-        contact_share=float(np.mean(counted[0])), stick_share=float(np.mean(counted[1])),
-        works=march.state[totals : totals + 7].copy(),
-        stored_energy=_energy(motor, stator, slider, march) - begun,
-        time=track[:, 0], height=track[:, 1 + at], speed=track[:, 4 + at],
-        deflection=track[:, 1 : 1 + J], stretch=track[:, 5 + at : 5 + at + I],
-        contact=track[:, 1 + march.state.size :],
-    )  # fmt: skip
+            gained[totals + kernel.THRUST],
+            gained[totals + kernel.NORMAL],
+            before[at + 3],
+            before[at],
+            np.hypot(before[0], before[J] / stator.omega[0]),
+        )
+    return rows, half
 
 
 def require_no_pull(motor: AssembledMotor, stator: kernel.Stator) -> None:
@@ -166,9 +191,9 @@ def resting(
 ) -> tuple[kernel.March, kernel.Slider]:
     """The state before the march: a slider that rests on the feet, in its place."""
     slider = motor.slider(working, imposed=speed is not None)
-    J, I = stator.mass.size, motor.feet.mu.size
+    J, n_feet = stator.mass.size, motor.feet.mu.size
     at = 2 * J
-    state = np.zeros(at + 4 + I + kernel.TOTALS)
+    state = np.zeros(at + 4 + n_feet + kernel.TOTALS)
     state[at] = -slider.preload / float(np.sum(motor.feet.k_nn))
     state[at + 3] = start_speed if speed is None else speed
     if stator.held:
@@ -179,11 +204,16 @@ def resting(
     contact = np.where(depth > 0, kernel.STICK, kernel.OPEN).astype(float)
     free = speed is None and start_speed == 0.0 and slider.guide > 0
     guide = np.array([0.0 if free else np.copysign(1.0, state[at + 3] or 1.0)])
-    scale = np.array([abs(state[at]), slider.preload] * I + [slider.preload])
+    scale = np.array([abs(state[at]), slider.preload] * n_feet + [slider.preload])
     march = kernel.March(
-        state, contact, guide, np.zeros((2, I)), np.zeros((8, state.size)), np.ones(2 * I + 1),
+        state,
+        contact,
+        guide,
+        np.zeros((2, n_feet)),
+        np.zeros((8, state.size)),
+        np.ones(2 * n_feet + 1),
         1e-12 * scale,
-    )  # fmt: skip
+    )
     return march, slider
 
 
@@ -191,10 +221,10 @@ def _energy(
     motor: AssembledMotor, stator: kernel.Stator, slider: kernel.Slider, march: kernel.March
 ) -> si.Joule:
     """Kinetic and elastic energy (J) of slider and feet, and of modes that are not held."""
-    J, I = stator.mass.size, motor.feet.mu.size
+    J, n_feet = stator.mass.size, motor.feet.mu.size
     at, y, feet = 2 * J, march.state, motor.feet
     depth = np.where(march.contact != kernel.OPEN, feet.across @ y[:J] - y[at], 0.0)
-    e = y[at + 4 : at + 4 + I]
+    e = y[at + 4 : at + 4 + n_feet]
     feet_hold = 0.5 * feet.k_nn * depth**2 + feet.k_nt * depth * e + 0.5 * feet.k_tt * e**2
     own = float(np.sum(feet_hold)) + 0.5 * slider.mass * float(y[at + 1] ** 2)
     if not slider.imposed:

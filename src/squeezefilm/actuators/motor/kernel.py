@@ -98,96 +98,113 @@ def rates(
     t: float, y: si.Array, stator: Stator, feet: Feet, slider: Slider, march: March, dy: si.Array
 ) -> None:
     """The state's derivative `dy`, and `march.events`: all positive while nothing changes."""
-    J, I = stator.mass.size, feet.mu.size
-    contact, events = march.contact, march.events
-    at = 2 * J
-    totals = at + 4 + I
-    z, vz, v = y[at], y[at + 1], y[at + 3]
+    J, n_feet = stator.mass.size, feet.mu.size
     dy[:] = 0.0
-    normal = 0.0
-    thrust = 0.0
-    # First the forces, which need places and speeds alone.
     for j in range(J):
         if stator.held:
             angle = stator.omega[j] * t + stator.phase[j]
             y[j] = stator.amplitude[j] * math.cos(angle)
             y[J + j] = -stator.amplitude[j] * stator.omega[j] * math.sin(angle)
         dy[j] = y[J + j]
-    for i in range(I):
-        events[2 * i] = _NO_EVENT
-        events[2 * i + 1] = _NO_EVENT
-        depth = -z
-        speed = -vz
-        along = -v
-        for j in range(J):
-            depth += feet.across[i, j] * y[j]
-            speed += feet.across[i, j] * y[J + j]
-            along += feet.along[i, j] * y[J + j]
-        state = contact[i]
-        if state == OPEN:
-            events[2 * i] = -depth
-            continue
-        events[2 * i] = depth
-        g = 1.0 + feet.chi[i] * speed
-        if state == STICK:
-            e = y[at + 4 + i]
-            dy[at + 4 + i] = along
-        else:
-            sign = 1.0 if state == SLIP_UP else -1.0
-            e = depth * _slip_stretch(
-                sign, g, feet.k_nn[i], feet.k_nt[i], feet.k_tt[i], feet.mu[i]
-            )
-            y[at + 4 + i] = e
-        elastic = feet.k_nn[i] * depth + feet.k_nt[i] * e
-        N = g * elastic
-        F = feet.k_nt[i] * depth + feet.k_tt[i] * e
-        if state == STICK:
-            events[2 * i + 1] = feet.mu[i] * N - abs(F)
-        normal += N
-        thrust += F
-        dy[totals + CONTACT_LOSS] += feet.chi[i] * speed * speed * elastic
-        for j in range(J):
-            dy[J + j] -= N * feet.across[i, j] + F * feet.along[i, j]
+    for i in range(n_feet):
+        march.events[2 * i] = _NO_EVENT
+        march.events[2 * i + 1] = _NO_EVENT
+        _press(i, y, stator, feet, march, dy)
+    _drive(t, y, stator, 2 * J + 4 + n_feet, dy)
+    _push(y, stator, feet, slider, march, dy)
+    _slips(y, stator, feet, march, dy)
+
+
+@compiled()
+def _press(i: int, y: si.Array, stator: Stator, feet: Feet, march: March, dy: si.Array) -> None:
+    """A foot's forces, from places and speeds alone: on the modes, and in the impulses' rates."""
+    J, n_feet = stator.mass.size, feet.mu.size
+    at = 2 * J
+    totals = at + 4 + n_feet
+    depth, speed, along = -y[at], -y[at + 1], -y[at + 3]
+    for j in range(J):
+        depth += feet.across[i, j] * y[j]
+        speed += feet.across[i, j] * y[J + j]
+        along += feet.along[i, j] * y[J + j]
+    state = march.contact[i]
+    if state == OPEN:
+        march.events[2 * i] = -depth
+        return
+    march.events[2 * i] = depth
+    k_nn, k_nt, k_tt, mu = feet.k_nn[i], feet.k_nt[i], feet.k_tt[i], feet.mu[i]
+    g = 1.0 + feet.chi[i] * speed
+    e = y[at + 4 + i]
+    if state == STICK:
+        dy[at + 4 + i] = along
+    else:
+        sign = 1.0 if state == SLIP_UP else -1.0
+        e = depth * _slip_stretch(sign, g, k_nn, k_nt, k_tt, mu)
+        y[at + 4 + i] = e
+    elastic = k_nn * depth + k_nt * e
+    N = g * elastic
+    F = k_nt * depth + k_tt * e
+    if state == STICK:
+        march.events[2 * i + 1] = mu * N - abs(F)
+    dy[totals + NORMAL] += N
+    dy[totals + THRUST] += F
+    dy[totals + CONTACT_LOSS] += feet.chi[i] * speed * speed * elastic
+    for j in range(J):
+        dy[J + j] -= N * feet.across[i, j] + F * feet.along[i, j]
+
+
+@compiled()
+def _drive(t: float, y: si.Array, stator: Stator, totals: int, dy: si.Array) -> None:
+    """The modes' accelerations, from the feet's forces on them that stand in their places."""
+    J = stator.mass.size
     for j in range(J):
         if stator.held:
             dy[totals + DRIVE] -= dy[J + j] * y[J + j]
-            dy[J + j] = -stator.omega[j] ** 2 * y[j]
+            dy[J + j] = -(stator.omega[j] ** 2) * y[j]
         else:
             push = stator.force[j] * math.cos(stator.omega[j] * t + stator.phase[j])
             lost = stator.damping[j] * y[J + j]
             dy[totals + DRIVE] += push * y[J + j]
             dy[totals + MODAL_LOSS] += lost * y[J + j]
             dy[J + j] = (dy[J + j] + push - lost - stator.stiffness[j] * y[j]) / stator.mass[j]
+
+
+@compiled()
+def _push(
+    y: si.Array, stator: Stator, feet: Feet, slider: Slider, march: March, dy: si.Array
+) -> None:
+    """The slider's motion under the feet, its preload and guide."""
+    J, n_feet = stator.mass.size, feet.mu.size
+    at = 2 * J
+    totals = at + 4 + n_feet
+    vz, v = y[at + 1], y[at + 3]
+    thrust = dy[totals + THRUST]
     dy[at] = vz
-    dy[at + 1] = (normal - slider.preload - slider.damping * vz) / slider.mass
+    dy[at + 1] = (dy[totals + NORMAL] - slider.preload - slider.damping * vz) / slider.mass
     dy[totals + PRELOAD] = -slider.preload * vz
     dy[totals + GUIDE_LOSS] = slider.damping * vz * vz
-    dy[totals + THRUST] = thrust
-    dy[totals + NORMAL] = normal
     dy[at + 2] = v
-    events[2 * I] = _NO_EVENT
+    march.events[2 * n_feet] = _NO_EVENT
     if slider.imposed:
         dy[totals + OUTPUT] = (thrust - slider.guide * math.copysign(1.0, v)) * v
         dy[totals + GUIDE_LOSS] += slider.guide * abs(v)
     elif march.guide[0] == 0:
-        events[2 * I] = slider.guide - abs(thrust - slider.load)
+        march.events[2 * n_feet] = slider.guide - abs(thrust - slider.load)
     else:
         held_back = slider.guide * march.guide[0]
         dy[at + 3] = (thrust - slider.load - held_back) / slider.mass
         dy[totals + OUTPUT] = slider.load * v
         dy[totals + GUIDE_LOSS] += held_back * v
         if slider.guide > 0.0:
-            events[2 * I] = v * march.guide[0]
-    _slips(y, stator, feet, march, dy)
+            march.events[2 * n_feet] = v * march.guide[0]
 
 
 @compiled()
 def _slips(y: si.Array, stator: Stator, feet: Feet, march: March, dy: si.Array) -> None:
     """The slip speeds of feet that slip, which need the accelerations: events and loss."""
-    J, I = stator.mass.size, feet.mu.size
+    J, n_feet = stator.mass.size, feet.mu.size
     at = 2 * J
-    totals = at + 4 + I
-    for i in range(I):
+    totals = at + 4 + n_feet
+    for i in range(n_feet):
         if march.contact[i] < SLIP_UP:
             continue
         sign = 1.0 if march.contact[i] == SLIP_UP else -1.0
@@ -208,9 +225,7 @@ def _slips(y: si.Array, stator: Stator, feet: Feet, march: March, dy: si.Array) 
 
 
 @compiled()
-def _stepped(
-    t: float, h: float, stator: Stator, feet: Feet, slider: Slider, march: March
-) -> None:
+def _stepped(t: float, h: float, stator: Stator, feet: Feet, slider: Slider, march: March) -> None:
     """One Runge–Kutta step from `march.state` into room 5, with the events there."""
     y, room = march.state, march.room
     rates(t, y, stator, feet, slider, march, room[0])
@@ -285,12 +300,12 @@ def _first_event(
 @compiled()
 def _change(which: int, stator: Stator, feet: Feet, slider: Slider, march: March) -> None:
     """What becomes of the foot, or the guide, whose event has come."""
-    J, I = stator.mass.size, feet.mu.size
+    J, n_feet = stator.mass.size, feet.mu.size
     at = 2 * J
     y, contact = march.state, march.contact
-    if which == 2 * I:
+    if which == 2 * n_feet:
         if march.guide[0] == 0:
-            pull = march.room[6][at + 4 + I + THRUST] - slider.load
+            pull = march.room[6][at + 4 + n_feet + THRUST] - slider.load
             march.guide[0] = 1.0 if pull > 0.0 else -1.0
         else:
             march.guide[0] = 0.0
@@ -333,7 +348,7 @@ def march_steps(
     get time, state and contacts after each step. Returns the steps done: fewer where one held too
     many events."""
     stator, feet, slider, march = parts
-    I = feet.mu.size
+    n_feet = feet.mu.size
     size = march.state.size
     before = np.empty_like(march.events)
     for step in range(steps):
@@ -353,7 +368,7 @@ def march_steps(
             if which >= 0:
                 which, gone = _first_event(t, left, before, stator, feet, slider, march)
             march.state[:] = march.room[5]
-            for i in range(I):
+            for i in range(n_feet):
                 if march.contact[i] != OPEN:
                     march.shares[0, i] += gone
                     if march.contact[i] == STICK:

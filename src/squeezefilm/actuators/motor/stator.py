@@ -63,8 +63,8 @@ def face_mode(plate: RectangularPlate, theory: PlateTheory = "solid") -> FaceMod
     if mode.solid is not None:
         solid = mode.solid
         x, middle = solid.position, np.array([(plate.length if wide else plate.width) / 2])
-        where = (middle, x) if wide else (x, middle)
-        field = solid.modes.field(solid.index, *where, plate.thickness)
+        lengths, widths = (middle, x) if wide else (x, middle)
+        field = solid.modes.field(solid.index, lengths, widths, plate.thickness)
         line = field[0] if wide else field[:, 0]
         scale = line[int(np.argmin(np.abs(x - mode.lobe[1 if wide else 0]))), 2]
         along = np.real(line[:, 1 if wide else 0] / scale)
@@ -75,7 +75,4 @@ def face_mode(plate: RectangularPlate, theory: PlateTheory = "solid") -> FaceMod
     h = beam.section.neutral_axis
     shape = beam.mode
     top = float(shape.deflection_at(mode.lobe[1 if wide else 0]))
-    return FaceMode(
-        mode, shape.position, shape.deflection / top, -h * shape.rotation / top, wide
-    )
-
+    return FaceMode(mode, shape.position, shape.deflection / top, -h * shape.rotation / top, wide)

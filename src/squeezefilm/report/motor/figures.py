@@ -10,6 +10,7 @@ from squeezefilm import quantities as si
 from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from squeezefilm.actuators.motor.averaged import AveragedMotor
@@ -56,39 +57,60 @@ def causal_figure(graph: CausalGraph) -> Figure:
         for number, name in enumerate(names)
     }
     causal = {one.name: one.causal for one in graph.elements}
+    xs, ys = np.array(list(places.values())).T
+    axes.set(xlim=(xs.min() - 0.6, xs.max() + 0.6), ylim=(ys.min() - 0.8, ys.max() + 0.8))
+    figure.draw_without_rendering()
     for source, target, quantity in graph.edges:
         (x0, y0), (x1, y1) = places[source], places[target]
         back = x1 <= x0
-        bend = f"arc3,rad={0.35 if back else 0.08}"
+        bend = 0.35 if back else 0.08
         axes.annotate(
-            "", (x1, y1), (x0, y0), zorder=1,
+            "",
+            (x1, y1),
+            (x0, y0),
+            zorder=1,
             arrowprops={
-                "arrowstyle": "->", "connectionstyle": bend, "shrinkA": 26, "shrinkB": 26,
-                "color": style.ORANGE if back else style.BLUE, "lw": 1.0,
+                "arrowstyle": "->",
+                "connectionstyle": f"arc3,rad={bend}",
+                "shrinkA": 26,
+                "shrinkB": 26,
+                "color": style.ORANGE if back else style.BLUE,
+                "lw": 1.0,
             },
-        )  # fmt: skip
-        share = 0.5 if not back else 0.4
-        lift = 0.0 if not back else 0.35 * (x0 - x1 + 0.4) / 2
+        )
+        start, end = axes.transData.transform([(x0, y0), (x1, y1)])
+        across = np.array([end[1] - start[1], start[0] - end[0]])
+        on_it = axes.transData.inverted().transform((start + end) / 2 + bend / 2 * across)
         axes.text(
-            x0 + share * (x1 - x0), y0 + share * (y1 - y0) + lift, style.plain(quantity),
-            fontsize=7, ha="center", va="center",
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6}, zorder=2,
-        )  # fmt: skip
+            float(on_it[0]),
+            float(on_it[1]),
+            style.plain(quantity),
+            fontsize=7,
+            ha="center",
+            va="center",
+            zorder=2,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
+        )
     for name, (x, y) in places.items():
-        kind = causal.get(name)
-        boxstyle = "round,pad=0.35" if kind is None else "square,pad=0.35"
-        words = style.plain(name).replace(" of ", "\nof ").replace(", ", ",\n")
-        for pad in (0.0, 0.18) if kind else (0.0,):
-            axes.text(
-                x, y, words, ha="center", va="center", fontsize=8, zorder=4 - pad,
-                bbox={
-                    "boxstyle": boxstyle.replace("0.35", str(0.35 + pad)), "facecolor": "white",
-                    "edgecolor": "black" if kind is not None else "none", "lw": 0.9,
-                },
-            )  # fmt: skip
-    xs, ys = np.array(list(places.values())).T
-    axes.set(xlim=(xs.min() - 0.6, xs.max() + 0.6), ylim=(ys.min() - 0.8, ys.max() + 0.8))
+        _box(axes, name, (x, y), causal.get(name))
     return figure
+
+
+def _box(axes: Axes, name: str, place: tuple[float, float], causal: bool | None) -> None:
+    """An element in its frame, double where it stores energy; what is from outside (None) bare."""
+    shape = "round" if causal is None else "square"
+    words = style.plain(name).replace(" of ", "\nof ").replace(", ", ",\n")
+    frame = {"facecolor": "white", "edgecolor": "none" if causal is None else "black", "lw": 0.9}
+    for pad in (0.0, 0.18) if causal else (0.0,):
+        axes.text(
+            *place,
+            words,
+            ha="center",
+            va="center",
+            fontsize=8,
+            zorder=4 - pad,
+            bbox=frame | {"boxstyle": f"{shape},pad={0.35 + pad}"},
+        )
 
 
 @style.drawn
@@ -96,8 +118,9 @@ def speed_force_figure(curve: tuple[AveragedMotor, ...]) -> Figure:
     """Speed and efficiency over the force, from rest to no load."""
     figure = style.new_figure(
         f"Stalls at {curve[0].force:.3g} N, runs {1e3 * curve[-1].speed:.3g} mm/s without a load",
-        curve[0].model, 4.0,
-    )  # fmt: skip
+        curve[0].model,
+        4.0,
+    )
     left, right = figure.subplots(1, 2)
     force = [one.force for one in curve]
     left.plot(force, [1e3 * one.speed for one in curve], color=style.BLUE)
@@ -112,7 +135,9 @@ def map_figure(found: MotorMap) -> Figure:
     """Stall force, no-load speed and efficiency over preload and amplitude; white where it
     stalls."""
     figure = style.new_figure(
-        "Preload and amplitude", "averaged model; white: the feet never leave, the motor stalls", 3.6
+        "Preload and amplitude",
+        "averaged model; white: the feet never leave, the motor stalls",
+        3.6,
     )
     x, y = 1e6 * found.amplitude, found.preload
     for axes, values, label in zip(
@@ -139,7 +164,9 @@ def foot_figure(motion: tuple[MotorMotion, si.FloatArray, si.FloatArray]) -> Fig
     left, right = figure.subplots(1, 2)
     touching = moved.contact[:, 0] > 0
     left.plot(1e6 * u, 1e6 * w, color=style.BLUE, lw=0.8)
-    left.plot(1e6 * u[touching], 1e6 * w[touching], ".", ms=3, color=style.ORANGE, label="in contact")
+    left.plot(
+        1e6 * u[touching], 1e6 * w[touching], ".", ms=3, color=style.ORANGE, label="in contact"
+    )
     left.set(xlabel="along the face (µm)", ylabel="across it (µm)")
     time = 1e6 * (moved.time - moved.time[0])
     right.plot(time, 1e6 * w, color=style.BLUE, label="foot")
