@@ -119,8 +119,8 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "size": (1e-3, 1.6e-3),
     },
     "actuators.skin_stretch.tissue.strain_matrices": {
-        "x": (0.0, 3e-3),
-        "y": (0.0, 0.0),
+        "x": np.array([0.0, 3e-3]),
+        "y": np.array([0.0, 0.0]),
         "size": (1e-3, 1.6e-3),
         "cell": 0.5e-3,
     },

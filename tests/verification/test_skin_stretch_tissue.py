@@ -140,7 +140,7 @@ def test_influence_is_symmetric_positive_and_its_quadrature_settled() -> None:
 
 
 def test_strains_are_those_of_displacements_and_of_opposite_sign_before_and_behind() -> None:
-    ex, ey, S = strain_matrices(Tissue(), (0.0,), (0.0,), SIZE, 0.25e-3)
+    ex, ey, S = strain_matrices(Tissue(), np.zeros(1), np.zeros(1), SIZE, 0.25e-3)
     assert S.shape == (3, ex.size - 1, ey.size - 1, 1)
     assert S[0, ::-1, :, 0] == pytest.approx(-S[0, :, :, 0], abs=1e-9)
     # Ahead of a contactor the skin is pressed together, behind it stretched.

@@ -83,13 +83,13 @@ class SkinStretchArray:
 
     @si.checked_numbers
     def strain_per_volt(
-        self, cell: Annotated[si.Metre, si.Above(0)] = 0.3e-3
+        self, cell: Annotated[si.Metre, hard.SIDE] = 0.3e-3
     ) -> tuple[si.MetreArray, si.MetreArray, si.FloatArray]:
         """Edges of square cells along x and y (m), and the mean strains ε_xx, ε_yy, γ_xy in each
         per volt on each actuator, shape (3, cells x, cells y, actuators)."""
         x, y = self.cradle.places
         edges_x, edges_y, per_force = strain_matrices(
-            self.tissue, tuple(x.tolist()), tuple(y.tolist()), self.cradle.size, cell
+            self.tissue, x, y, self.cradle.size, cell
         )
         return edges_x, edges_y, per_force @ self.force_per_volt
 

@@ -20,7 +20,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.special import jv
 
+from squeezefilm import hard_limits as hard
 from squeezefilm import quantities as si
+from squeezefilm.actuators.skin_stretch.half_space import Places
 
 Ratio = Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)]
 _NODES, _REACH = 400, 18.0
@@ -100,12 +102,12 @@ def _over_patch(
 
 @si.checked_numbers
 def tangential_correction(
-    x: si.MetreArray,
-    y: si.MetreArray,
-    length: Annotated[si.Metre, si.Above(0)],
-    width: Annotated[si.Metre, si.Above(0)],
+    x: Places,
+    y: Places,
+    length: Annotated[si.Metre, hard.SIDE],
+    width: Annotated[si.Metre, hard.SIDE],
     poisson_ratio: Ratio,
-    thickness: Annotated[si.Metre, si.Above(0)],
+    thickness: Annotated[si.Metre, hard.SIDE],
 ) -> tuple[si.MetreArray, si.MetreArray]:
     """What bone at a depth `thickness` adds to `half_space.tangential_patch` (m; negative near).
 
@@ -129,12 +131,12 @@ def tangential_correction(
 
 @si.checked_numbers
 def normal_correction(
-    x: si.MetreArray,
-    y: si.MetreArray,
-    length: Annotated[si.Metre, si.Above(0)],
-    width: Annotated[si.Metre, si.Above(0)],
+    x: Places,
+    y: Places,
+    length: Annotated[si.Metre, hard.SIDE],
+    width: Annotated[si.Metre, hard.SIDE],
     poisson_ratio: Ratio,
-    thickness: Annotated[si.Metre, si.Above(0)],
+    thickness: Annotated[si.Metre, hard.SIDE],
 ) -> si.MetreArray:
     """What bone at a depth `thickness` adds to `half_space.normal_patch` (m). As
     `tangential_correction`."""

@@ -13,7 +13,13 @@ from typing import Annotated
 
 import numpy as np
 
+from squeezefilm import hard_limits as hard
 from squeezefilm import quantities as si
+
+Places = Annotated[
+    si.MetreArray, si.AtLeast(-hard.STROKE_START.most), si.AtMost(hard.STROKE_START.most)
+]
+"""Places on a surface, at most 10 m from its middle."""
 
 
 def _log(along: si.FloatArray, across: si.FloatArray, r: si.FloatArray) -> si.FloatArray:
@@ -42,10 +48,10 @@ def _corners(
 
 @si.checked_numbers
 def tangential_patch(
-    x: si.MetreArray,
-    y: si.MetreArray,
-    length: Annotated[si.Metre, si.Above(0)],
-    width: Annotated[si.Metre, si.Above(0)],
+    x: Places,
+    y: Places,
+    length: Annotated[si.Metre, hard.SIDE],
+    width: Annotated[si.Metre, hard.SIDE],
     poisson_ratio: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)],
 ) -> tuple[si.MetreArray, si.MetreArray]:
     """u_x and u_y at places of the surface (m), times the shear modulus and per traction along x
@@ -64,10 +70,10 @@ def tangential_patch(
 
 @si.checked_numbers
 def normal_patch(
-    x: si.MetreArray,
-    y: si.MetreArray,
-    length: Annotated[si.Metre, si.Above(0)],
-    width: Annotated[si.Metre, si.Above(0)],
+    x: Places,
+    y: Places,
+    length: Annotated[si.Metre, hard.SIDE],
+    width: Annotated[si.Metre, hard.SIDE],
     poisson_ratio: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)],
 ) -> si.MetreArray:
     """u_z at places of the surface, times the shear modulus and per pressure (so in metres), of a

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+from typing import Annotated
 
 import numpy as np
 
@@ -35,8 +36,10 @@ MOST_SLENDER = 320.0
 deflection by 2e-3, at 640 by 8 %."""
 
 
-@functools.lru_cache(maxsize=8)
-def solid_bender(actuator: Bimorph, more: int = 0) -> Bender:
+@si.checked_numbers
+def solid_bender(
+    actuator: Bimorph, more: Annotated[int, si.AtLeast(0), si.AtMost(6)] = 0
+) -> Bender:
     """Deflection, stiffness, resonance and capacitance of a bending actuator in three dimensions.
 
     `more` raises the order of every element, to see what is left of their error. Electrodes' own
@@ -50,6 +53,11 @@ def solid_bender(actuator: Bimorph, more: int = 0) -> Bender:
             "take the strip (as_strip)",
             quantity="length",
         )
+    return _solved(actuator, more)
+
+
+@functools.lru_cache(maxsize=8)
+def _solved(actuator: Bimorph, more: int) -> Bender:
     slabs = Slabs(_boxes(actuator, more))
     solve = SlabFactor(slabs, 0.0).solve
     G, C = slabs.electrode_columns

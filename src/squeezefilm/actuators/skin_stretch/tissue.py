@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -14,10 +13,15 @@ from squeezefilm.actuators.skin_stretch.bonded_layer import (
     normal_correction,
     tangential_correction,
 )
-from squeezefilm.actuators.skin_stretch.half_space import normal_patch, tangential_patch
+from squeezefilm.actuators.skin_stretch.half_space import (
+    Places,
+    normal_patch,
+    tangential_patch,
+)
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.errors import InputError
 
-Sizes = tuple[si.Metre, si.Metre]
+Sizes = Annotated[tuple[si.Metre, si.Metre], hard.SIDE]
 
 
 @si.checked_numbers
@@ -40,10 +44,10 @@ class Tissue:
     @si.checked_numbers
     def shifts(
         self,
-        x: si.MetreArray,
-        y: si.MetreArray,
-        length: Annotated[si.Metre, si.Above(0)],
-        width: Annotated[si.Metre, si.Above(0)],
+        x: Places,
+        y: Places,
+        length: Annotated[si.Metre, hard.SIDE],
+        width: Annotated[si.Metre, hard.SIDE],
     ) -> tuple[si.FloatArray, si.FloatArray]:
         """u_x and u_y of the surface at places (m), per newton along x spread evenly over a
         rectangle about the origin (m/N). `x` and `y` broadcast."""
@@ -57,10 +61,10 @@ class Tissue:
     @si.checked_numbers
     def sinking(
         self,
-        x: si.MetreArray,
-        y: si.MetreArray,
-        length: Annotated[si.Metre, si.Above(0)],
-        width: Annotated[si.Metre, si.Above(0)],
+        x: Places,
+        y: Places,
+        length: Annotated[si.Metre, hard.SIDE],
+        width: Annotated[si.Metre, hard.SIDE],
     ) -> si.FloatArray:
         """u_z of the surface at places (m), per newton of pressure on a rectangle (m/N)."""
         u = normal_patch(x, y, length, width, self.poisson_ratio)
@@ -71,8 +75,8 @@ class Tissue:
     @si.checked_numbers
     def contactor_stiffness(
         self,
-        length: Annotated[si.Metre, si.Above(0)],
-        width: Annotated[si.Metre, si.Above(0)],
+        length: Annotated[si.Metre, hard.SIDE],
+        width: Annotated[si.Metre, hard.SIDE],
     ) -> si.NewtonPerMetre:
         """What one contactor alone, pulling along its `length`, meets (N/m): force over the mean
         displacement under it, for an even traction (a rigid one is some percent stiffer)."""
@@ -82,14 +86,26 @@ class Tissue:
     @si.checked_numbers
     def under_contactor(
         self,
-        length: Annotated[si.Metre, si.Above(0)],
-        width: Annotated[si.Metre, si.Above(0)],
+        length: Annotated[si.Metre, hard.SIDE],
+        width: Annotated[si.Metre, hard.SIDE],
     ) -> FingerpadDynamics:
         """The lumped skin under one contactor: its stiffness, and damping k τ. Its mass is taken as
         nothing: 1100 kg/m³ over a cube of the contactor's side weighs 2 mg, against some 50
         mg of a bending actuator."""
         stiffness = self.contactor_stiffness(length, width)
         return FingerpadDynamics(stiffness, stiffness * self.relaxation_time, hard.PAD_MASS.least)
+
+
+def _rows(x: si.FloatArray, y: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
+    si.require("x", x, si.Unit("m"), axes=1)
+    si.require("y", y, si.Unit("m"), axes=1)
+    if x.shape != y.shape or not x.size:
+        raise InputError(
+            f"x and y of contactors have the shapes {x.shape} and {y.shape}; give as many of one "
+            "as of the other, at least one",
+            quantity="x",
+        )
+    return x, y
 
 
 def _mean_under(function: object, x: si.FloatArray, y: si.FloatArray, size: Sizes) -> si.FloatArray:
@@ -103,7 +119,7 @@ def _mean_under(function: object, x: si.FloatArray, y: si.FloatArray, size: Size
 
 @si.checked_numbers
 def influence_matrix(
-    tissue: Tissue, x: si.MetreArray, y: si.MetreArray, size: Sizes, normal: bool = False
+    tissue: Tissue, x: Places, y: Places, size: Sizes, normal: bool = False
 ) -> si.FloatArray:
     """How much a newton on one contactor moves the skin under every other (m/N): shape (contactors,
     contactors), row by row what is moved.
@@ -113,8 +129,7 @@ def influence_matrix(
     Even tractions, mean displacements. Raises `InputError` for places that are no rows of one
     length.
     """
-    si.require("x", x, si.Unit("m"), axes=1)
-    si.require("y", y, si.Unit("m"), axes=1, at_least=-np.inf)
+    x, y = _rows(x, y)
     # Contactors at the same distance from each other answer alike: only distances are computed.
     apart = np.stack([np.abs(np.subtract.outer(one, one)).ravel() for one in (x, y)], axis=1)
     unique, place = np.unique(np.round(apart, 12), axis=0, return_inverse=True)
@@ -123,20 +138,19 @@ def influence_matrix(
     return means[place.ravel()].reshape(x.size, x.size)
 
 
-@functools.lru_cache(maxsize=8)
+@si.checked_numbers
 def strain_matrices(
-    tissue: Tissue, x: tuple[float, ...], y: tuple[float, ...], size: Sizes, cell: si.Metre
+    tissue: Tissue, x: Places, y: Places, size: Sizes, cell: Annotated[si.Metre, hard.SIDE]
 ) -> tuple[si.MetreArray, si.MetreArray, si.FloatArray]:
     """The edges along x and y (m) of square cells of the surface over and around contactors, and
     the mean strains in each per newton on each contactor: shape (3, cells x, cells y, contactors),
     ε_xx, ε_yy and γ_xy.
 
     Means over cells, made of displacements at their corners: these are finite where the strain at
-    the edge of a contactor is not. Raises `InputError` for a cell not above 0 or so small that
-    there are more than 40 000.
+    the edge of a contactor is not. Raises `InputError` for a cell so small that there are more than
+    40 000, or places that are no rows of one length.
     """
-    si.require("cell", cell, si.Unit("m"), above=0)
-    px, py = np.array(x), np.array(y)
+    px, py = _rows(x, y)
     margins = [(np.ptp(one) + 2 * side) / cell for one, side in ((px, size[0]), (py, size[1]))]
     si.require("number of cells", float(np.prod(np.ceil(margins))), at_most=40_000)
     edges = [
