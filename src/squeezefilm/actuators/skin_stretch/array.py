@@ -88,9 +88,7 @@ class SkinStretchArray:
         """Edges of square cells along x and y (m), and the mean strains ε_xx, ε_yy, γ_xy in each
         per volt on each actuator, shape (3, cells x, cells y, actuators)."""
         x, y = self.cradle.places
-        edges_x, edges_y, per_force = strain_matrices(
-            self.tissue, x, y, self.cradle.size, cell
-        )
+        edges_x, edges_y, per_force = strain_matrices(self.tissue, x, y, self.cradle.size, cell)
         return edges_x, edges_y, per_force @ self.force_per_volt
 
     @si.checked_numbers

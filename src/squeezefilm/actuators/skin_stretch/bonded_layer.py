@@ -22,7 +22,7 @@ from scipy.special import jv
 
 from squeezefilm import hard_limits as hard
 from squeezefilm import quantities as si
-from squeezefilm.actuators.skin_stretch.half_space import Places
+from squeezefilm.actuators.skin_stretch.half_space import Places, together
 
 Ratio = Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)]
 _NODES, _REACH = 400, 18.0
@@ -79,11 +79,6 @@ def _tabled(table: CubicSpline, r: si.FloatArray, half_space: float) -> si.Float
     return np.where(r <= _FARTHEST, near, -half_space / (2 * np.pi * np.maximum(r, _FARTHEST)))
 
 
-def _alike(x: si.FloatArray, y: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
-    a, b = np.broadcast_arrays(x, y)
-    return a, b
-
-
 def _over_patch(
     x: si.FloatArray,
     y: si.FloatArray,
@@ -125,7 +120,7 @@ def tangential_correction(
         second = _tabled(turning, r, poisson_ratio / 2)
         return (first + second * cos) / thickness, second * sin / thickness
 
-    u, v = _over_patch(*_alike(x, y), length, width, kernel)
+    u, v = _over_patch(*together(x, y), length, width, kernel)
     return u, v
 
 
@@ -145,4 +140,4 @@ def normal_correction(
         r = np.hypot(dx, dy) / thickness
         return (_tabled(_tables(float(poisson_ratio))[2], r, 1 - poisson_ratio) / thickness,)
 
-    return _over_patch(*_alike(x, y), length, width, kernel)[0]
+    return _over_patch(*together(x, y), length, width, kernel)[0]

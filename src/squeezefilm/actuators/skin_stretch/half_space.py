@@ -15,11 +15,24 @@ import numpy as np
 
 from squeezefilm import hard_limits as hard
 from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
 
 Places = Annotated[
     si.MetreArray, si.AtLeast(-hard.STROKE_START.most), si.AtMost(hard.STROKE_START.most)
 ]
 """Places on a surface, at most 10 m from its middle."""
+
+
+def together(x: si.FloatArray, y: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
+    """x and y in their common shape. Raises `InputError` where they have none."""
+    try:
+        a, b = np.broadcast_arrays(x, y)
+    except ValueError as error:
+        raise InputError(
+            f"x and y have the shapes {np.shape(x)} and {np.shape(y)}, which do not go together; "
+            "give places that broadcast"
+        ) from error
+    return a, b
 
 
 def _log(along: si.FloatArray, across: si.FloatArray, r: si.FloatArray) -> si.FloatArray:
@@ -60,7 +73,7 @@ def tangential_patch(
     `x` and `y` broadcast. Finite everywhere; the strain is not, at the edges across x. Raises
     `InputError` for sizes not above 0 or a Poisson ratio outside 0 to 0.5.
     """
-    inverse, along, mixed = _corners(x, y, length, width)
+    inverse, along, mixed = _corners(*together(x, y), length, width)
     scale = 1 / (2 * math.pi)
     return (
         scale * ((1 - poisson_ratio) * inverse + poisson_ratio * along),
@@ -78,4 +91,4 @@ def normal_patch(
 ) -> si.MetreArray:
     """u_z at places of the surface, times the shear modulus and per pressure (so in metres), of a
     rectangle about the origin. As `tangential_patch`."""
-    return (1 - poisson_ratio) / (2 * math.pi) * _corners(x, y, length, width)[0]
+    return (1 - poisson_ratio) / (2 * math.pi) * _corners(*together(x, y), length, width)[0]
