@@ -99,7 +99,7 @@ _SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
 FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "actuators.skin_stretch.array.SkinStretchArray.answer": {"voltages": np.full(6, 10.0)},
     "actuators.skin_stretch.bimorph.Bimorph": {"width": 2e-3, "ceramic_thickness": 0.3e-3},
-    "actuators.skin_stretch.cradle.Cradle": {
+    "actuators.skin_stretch.cradle.FingerCradle": {
         "columns": 3,
         "rows": 2,
         "pitch_along": 1.2e-3,

@@ -15,7 +15,7 @@ from squeezefilm.actuators.motor.description import Cradle, Foot, FootContact, M
 from squeezefilm.actuators.motor.stator import FaceMode
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
-from squeezefilm.actuators.skin_stretch.cradle import Cradle, Fingertip
+from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip
 from squeezefilm.actuators.skin_stretch.tissue import Tissue
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.pad_place import PadPlace
@@ -182,10 +182,10 @@ MADE: dict[Any, Callable[[], Any]] = {
     ForceState: ForceState,
     Bimorph: lambda: Bimorph(20e-3, 1e-3, PZT, 0.3e-3, BRASS),
     Bender: lambda: MADE[Bimorph]().as_strip,
-    Cradle: lambda: Cradle(3, 2, 1.2e-3, 1.8e-3, 1e-3, 1.6e-3, 4e-3, 4e-3, 9e-3, 22e-3),
+    FingerCradle: lambda: FingerCradle(3, 2, 1.2e-3, 1.8e-3, 1e-3, 1.6e-3, 4e-3, 4e-3, 9e-3, 22e-3),
     Fingertip: Fingertip,
     Tissue: Tissue,
-    SkinStretchArray: lambda: SkinStretchArray(MADE[Bimorph](), MADE[Cradle]()),
+    SkinStretchArray: lambda: SkinStretchArray(MADE[Bimorph](), MADE[FingerCradle]()),
     AsperityLaw: AsperityLaw,
     DryFriction: lambda: DryFriction(1.2, 0.01),
     FrictionProfile: lambda: FrictionProfile(0.0, 1e-3, np.ones(4)),

@@ -13,7 +13,7 @@ from squeezefilm.actuators.skin_stretch.bonded_layer import (
     tangential_correction,
 )
 from squeezefilm.actuators.skin_stretch.cradle import (
-    Cradle,
+    FingerCradle,
     Fingertip,
     force_for_all,
     radii_that_touch_all,
@@ -157,7 +157,7 @@ def test_seating_on_a_flat_half_space_is_hertz_s_contact() -> None:
     # Contactors edge to edge, a sphere on them: F = (4/3) E* √R d^(3/2), E* = 2G/(1 − ν) for rigid
     # contactors; the pitch is a tenth of the contact's radius.
     R, force, tissue = 10e-3, 1.0, Tissue(shear_modulus=20e3, poisson_ratio=0.45, thickness=None)
-    grid = Cradle(24, 24, 0.4e-3, 0.4e-3, 0.4e-3, 0.4e-3, 9.7e-3, 9.7e-3)
+    grid = FingerCradle(24, 24, 0.4e-3, 0.4e-3, 0.4e-3, 0.4e-3, 9.7e-3, 9.7e-3)
     modulus = 2 * tissue.shear_modulus / (1 - tissue.poisson_ratio)
     a = (3 * force * R / (4 * modulus)) ** (1 / 3)
     assert a < 4.8e-3
@@ -171,7 +171,7 @@ def test_seating_on_a_flat_half_space_is_hertz_s_contact() -> None:
 
 def test_the_least_force_for_all_is_where_the_last_contactor_is_reached() -> None:
     pulp, finger = Tissue(shear_modulus=20e3), Fingertip()
-    cradle = Cradle(10, 6, 1.2e-3, 1.8e-3, *SIZE, 13e-3, 12e-3, 9e-3, 22e-3)
+    cradle = FingerCradle(10, 6, 1.2e-3, 1.8e-3, *SIZE, 13e-3, 12e-3, 9e-3, 22e-3)
     least = force_for_all(cradle, finger, pulp)
     assert seat(cradle, finger, pulp, 1.01 * least).touching == 60
     assert seat(cradle, finger, pulp, 0.97 * least).touching < 60

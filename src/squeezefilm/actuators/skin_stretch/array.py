@@ -17,7 +17,7 @@ from squeezefilm import hard_limits as hard
 from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
 from squeezefilm.actuators.skin_stretch.budget import Budget, budget
-from squeezefilm.actuators.skin_stretch.cradle import Cradle, Fingertip, seat
+from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip, seat
 from squeezefilm.actuators.skin_stretch.solid_bender import solid_bender
 from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, strain_matrices
 from squeezefilm.errors import GeometryError, InputError
@@ -42,7 +42,7 @@ class SkinStretchArray:
     """
 
     actuator: Bimorph
-    cradle: Cradle
+    cradle: FingerCradle
     tissue: Tissue = _TISSUE
     pulp: Tissue = _PULP
     finger: Fingertip = _FINGERTIP

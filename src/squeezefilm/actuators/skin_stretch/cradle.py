@@ -35,7 +35,7 @@ class Fingertip:
 
 @si.checked_numbers
 @dataclass(frozen=True)
-class Cradle:
+class FingerCradle:
     """`columns` of contactors along the finger and `rows` across it, at their pitches, each of
     `contactor_length` (along) × `contactor_width`, on a cradle of `radius_along` and
     `radius_across` (None: straight) that is at most `length` × `width`.
@@ -127,7 +127,7 @@ def _sag(place: si.FloatArray, radius: float | None) -> si.FloatArray:
     return np.asarray(radius * (1 - np.cos(np.minimum(np.abs(place) / radius, np.pi))))
 
 
-def gaps(cradle: Cradle, finger: Fingertip) -> si.MetreArray:
+def gaps(cradle: FingerCradle, finger: Fingertip) -> si.MetreArray:
     """The gap at every contactor when the finger first touches one (m); at least 0.
 
     Falls of circles along and across are added, and places are arcs: for contacts that reach less
@@ -141,7 +141,7 @@ def gaps(cradle: Cradle, finger: Fingertip) -> si.MetreArray:
 
 @si.checked_numbers
 def seat(
-    cradle: Cradle, finger: Fingertip, tissue: Tissue, force: Annotated[si.Newton, hard.FORCE]
+    cradle: FingerCradle, finger: Fingertip, tissue: Tissue, force: Annotated[si.Newton, hard.FORCE]
 ) -> Seating:
     """Which contactors a fingertip touches under a normal force (N), and with what force each.
 
@@ -172,7 +172,7 @@ def seat(
 
 
 @si.checked_numbers
-def force_for_all(cradle: Cradle, finger: Fingertip, tissue: Tissue) -> si.Newton:
+def force_for_all(cradle: FingerCradle, finger: Fingertip, tissue: Tissue) -> si.Newton:
     """The least normal force (N) under which a fingertip touches every contactor.
 
     With all in contact the forces are linear in depth, so no search is made. Raises
@@ -193,7 +193,7 @@ def force_for_all(cradle: Cradle, finger: Fingertip, tissue: Tissue) -> si.Newto
 
 @si.checked_numbers
 def radii_that_touch_all(
-    cradle: Cradle,
+    cradle: FingerCradle,
     finger: Fingertip,
     tissue: Tissue,
     force: Annotated[si.Newton, hard.FORCE],

@@ -23,8 +23,9 @@ Places = Annotated[
 """Places on a surface, at most 10 m from its middle."""
 
 
-def together(x: si.FloatArray, y: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
-    """x and y in their common shape. Raises `InputError` where they have none."""
+@si.checked_numbers
+def together(x: Places, y: Places) -> tuple[si.MetreArray, si.MetreArray]:
+    """x and y (m) in their common shape. Raises `InputError` where they have none."""
     try:
         a, b = np.broadcast_arrays(x, y)
     except ValueError as error:

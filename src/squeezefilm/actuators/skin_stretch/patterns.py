@@ -11,7 +11,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.actuators.skin_stretch.cradle import Cradle
+from squeezefilm.actuators.skin_stretch.cradle import FingerCradle
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import MOTION_SAMPLES, require_within
 from squeezefilm.render.texture.pattern import Pattern, require_pattern
@@ -22,7 +22,7 @@ VoltArray = Annotated[si.FloatArray, si.Unit("V")]
 @si.checked_numbers
 def pattern_voltages(
     pattern: Pattern,
-    cradle: Cradle,
+    cradle: FingerCradle,
     times: si.SecondArray,
     velocity: tuple[si.MetrePerSecond, si.MetrePerSecond],
     voltage: Annotated[si.Volt, si.AtLeast(0)],
@@ -48,7 +48,7 @@ def pattern_voltages(
 
 
 @si.checked_numbers
-def finest_period(cradle: Cradle, along: bool = True) -> si.Metre:
+def finest_period(cradle: FingerCradle, along: bool = True) -> si.Metre:
     """The shortest period (m) of a grating along (or across) the finger that contactors still tell
     from a longer one: two pitches (Nyquist). At the period itself the phase decides what comes."""
     return 2 * (cradle.pitch_along if along else cradle.pitch_across)
