@@ -83,7 +83,8 @@ def test_a_sample_of_hostile_calls_ends_in_a_typed_error_or_finite_numbers() -> 
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     "prefix",
-    ["actuators", "control", "calibration_record", "contact", "distributions", "film", "formats", "chain.friction",
+    ["actuators", "control",
+     "calibration_record", "contact", "distributions", "film", "formats", "chain.friction",
      "materials", "plate", "chain.prediction",
      "render", "chain.touch"],
 )  # fmt: skip

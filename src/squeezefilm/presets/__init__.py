@@ -104,6 +104,12 @@ def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folde
     looks_like_name = candidate.name == text and candidate.suffix != ".toml"
     if looks_like_name and text in known:
         return folder / f"{text}.toml"
+    if looks_like_name and kind == "preset" and text in actuator_names():
+        raise ConfigError(
+            f"'{text}' is a preset of an actuator, and a display is wanted here; no command takes "
+            "it yet, squeezefilm.actuators.described.load_actuator reads it. "
+            f"Displays: {', '.join(known)}"
+        )
     if looks_like_name and not _exists(candidate):
         kinds = "Studies" if kind == "study" else f"{kind.capitalize()}s"
         raise ConfigError(

@@ -62,3 +62,8 @@ def test_a_file_without_an_actuator_is_refused() -> None:
     assert actuator_kind("= 3") in KINDS
     with pytest.raises(ConfigError, match="is neither a file nor a"):
         load_actuator("biet2008-moter")
+
+
+def test_an_actuator_where_a_display_is_wanted_is_said_to_be_one() -> None:
+    with pytest.raises(ConfigError, match="is a preset of an actuator, and a display is wanted"):
+        presets.resolve("biet2008-motor")

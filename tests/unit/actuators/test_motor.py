@@ -110,6 +110,31 @@ def test_the_march_is_of_fourth_order_through_its_contacts() -> None:
     assert np.all(orders > 3.5)
 
 
+def test_a_slider_that_stays_on_its_feet_moves_as_a_mass_on_springs() -> None:
+    there = motor(damping=0.0)
+    one = np.ones_like(there.feet.across)
+    alike = replace(there, feet=there.feet._replace(across=0.7 * one, along=0.0 * one))
+    amplitude, mass, stiffness = 1e-8, 0.05, 3 * 2e7
+    moved = simulate(alike, Working(amplitude=amplitude), periods=20, traced=20)
+    assert moved.contact_share == pytest.approx(1.0)
+    own, driven = np.sqrt(stiffness / mass), 2 * np.pi * moved.frequency
+    swing = 0.7 * amplitude * own**2 / (own**2 - driven**2)
+    time = moved.time
+    expected = -PRELOAD / stiffness + swing * (np.cos(driven * time) - np.cos(own * time))
+    np.testing.assert_allclose(moved.height, expected, atol=1e-5 * abs(swing))
+
+
+def test_along_the_width_is_as_along_the_length() -> None:
+    there = motor()
+    feet = tuple(replace(foot, x=foot.y, y=foot.x) for foot in there.motor.feet)
+    cradle = replace(there.motor.cradle, direction=np.pi / 2)
+    wide = replace(there.motor, plate=turned(plate()), feet=feet, cradle=cradle)
+    across = assembled(wide, "timoshenko")
+    one = simulate(there, WORKING, speed=0.01, periods=20).period_thrust
+    other = simulate(across, WORKING, speed=0.01, periods=20).period_thrust
+    np.testing.assert_allclose(other, one, rtol=1e-6, atol=1e-6)
+
+
 @pytest.mark.parametrize("free", [True, False])
 def test_energy_is_kept_to_rounding(free: bool) -> None:
     working = Working(voltage=15.0) if free else WORKING
