@@ -165,7 +165,8 @@ def seat(
         most *= 2
     else:
         raise UnreachableError(
-            f"a force of {si.format_quantity(force, si.Unit('N'))} seats no finger on this cradle"
+            f"a force of {si.format_quantity(force, si.Unit('N'))} seats no finger on this cradle, "
+            "however deep; press less hard"
         )
     depth = float(brentq(lambda d: forces(d).sum() - force, 0.0, most, xtol=1e-12, rtol=1e-9))
     return Seating(forces(depth), depth)
