@@ -45,7 +45,7 @@ _BY_UNIT = {
     "kg/m2": 10.0, "V": 10.0, "m/V": 1e-7, "F": 1e-9, "ohm": 100.0, "m/s": 0.1, "1/m": 100.0,
     "C/m2": -5.0, "m2/N": 1e-11, "Pa/m": 1e9, "Pa*s/m": 1e3, "m2/s3": 0.05, "m2/s5": 40.0,
     "W": 1.0, "K": 10.0, "K/W": 10.0, "1/K": 1e-4, "s/m": 1e-3, "V/m": 1e4, "J/kg/K": 400.0,
-    "m/s2": 2.0, "A": 0.1, "V*s/A": 0.03, "m/N": 1e-3,
+    "m/s2": 2.0, "A": 0.1, "V*s/A": 0.03, "m/N": 1e-3, "m3": 1e-6, "F/m": 1e-8,
 }  # fmt: skip
 
 _BY_NAME: dict[str, Any] = {
@@ -97,6 +97,33 @@ _WAVE = np.linspace(0.0, 8e-3, 8, endpoint=False)
 _SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
 
 FOR_ONE_CALL: dict[str, dict[str, Any]] = {
+    "actuators.skin_stretch.array.SkinStretchArray.answer": {"voltages": np.full(6, 10.0)},
+    "actuators.skin_stretch.bimorph.Bimorph": {"width": 2e-3, "ceramic_thickness": 0.3e-3},
+    "actuators.skin_stretch.cradle.FingerCradle": {
+        "columns": 3,
+        "rows": 2,
+        "pitch_along": 1.2e-3,
+        "pitch_across": 1.8e-3,
+        "contactor_length": 1e-3,
+        "contactor_width": 1.6e-3,
+        "length": 4e-3,
+        "width": 4e-3,
+        "radius_along": 20e-3,
+        "radius_across": 9e-3,
+    },
+    "actuators.skin_stretch.patterns.pattern_voltages": {"times": np.array([0.0, 0.01])},
+    "actuators.skin_stretch.solid_bender.solid_bender": {"more": 0},
+    "actuators.skin_stretch.tissue.influence_matrix": {
+        "x": np.array([0.0, 3e-3]),
+        "y": np.array([0.0, 0.0]),
+        "size": (1e-3, 1.6e-3),
+    },
+    "actuators.skin_stretch.tissue.strain_matrices": {
+        "x": np.array([0.0, 3e-3]),
+        "y": np.array([0.0, 0.0]),
+        "size": (1e-3, 1.6e-3),
+        "cell": 0.5e-3,
+    },
     "actuators.motor.assembled.Working": {"amplitude": 1e-6},
     "actuators.motor.description.FootContact.stiffnesses": {"inclination": 0.1},
     "actuators.motor.description.Foot": {"x": 0.03, "y": 0.02},

@@ -13,6 +13,10 @@ import numpy as np
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
 from squeezefilm.actuators.motor.description import Cradle, Foot, FootContact, Motor
 from squeezefilm.actuators.motor.stator import FaceMode
+from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
+from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
+from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip
+from squeezefilm.actuators.skin_stretch.tissue import Tissue
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.pad_place import PadPlace
 from squeezefilm.contact.asperities import AsperityLaw
@@ -176,6 +180,12 @@ MADE: dict[Any, Callable[[], Any]] = {
     FootContact: lambda: some_motor().motor.contact,
     ForceLaw: some_force_law,
     ForceState: ForceState,
+    Bimorph: lambda: Bimorph(20e-3, 1e-3, PZT, 0.3e-3, BRASS),
+    Bender: lambda: MADE[Bimorph]().as_strip,
+    FingerCradle: lambda: FingerCradle(3, 2, 1.2e-3, 1.8e-3, 1e-3, 1.6e-3, 4e-3, 4e-3, 9e-3, 22e-3),
+    Fingertip: Fingertip,
+    Tissue: Tissue,
+    SkinStretchArray: lambda: SkinStretchArray(MADE[Bimorph](), MADE[FingerCradle]()),
     AsperityLaw: AsperityLaw,
     DryFriction: lambda: DryFriction(1.2, 0.01),
     FrictionProfile: lambda: FrictionProfile(0.0, 1e-3, np.ones(4)),

@@ -22,7 +22,7 @@ from squeezefilm.quantities import unit_of
 
 ROOMS = {
     "film", "plate", "contact", "render", "chain.friction", "chain.prediction", "chain.touch",
-    "chain.pad_place", "actuators.motor", "control",
+    "chain.pad_place", "actuators.skin_stretch", "actuators.motor", "control",
     "materials",
     "quantities", "distributions", "formats", "calibration_record",
 }  # fmt: skip

@@ -22,6 +22,10 @@ from squeezefilm.results import Result
 
 KINDS: dict[str, tuple[str, str]] = {
     "motor": ("squeezefilm.actuators.motor.description", "MotorDescription"),
+    "skin_stretch": (
+        "squeezefilm.actuators.skin_stretch.description",
+        "SkinStretchDescription",
+    ),
 }
 """By the table that a file has: the module and the dataclass that it is read into."""
 

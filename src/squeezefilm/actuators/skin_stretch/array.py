@@ -1,0 +1,149 @@
+"""The whole array on a fingertip: from volts to forces, displacements and strain of the skin.
+
+Every contactor sticks to the skin. Actuator i gives x_i = δ V_i − F_i/k, the skin x = C F with the
+tissue's influence C; so (C + 1/k) F = δ V. Linear and quasi-static: what comes of 60 voltages is a
+product with a matrix that is made once.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+
+from squeezefilm import hard_limits as hard
+from squeezefilm import quantities as si
+from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
+from squeezefilm.actuators.skin_stretch.budget import Budget, budget
+from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip, seat
+from squeezefilm.actuators.skin_stretch.solid_bender import solid_bender
+from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, strain_matrices
+from squeezefilm.errors import GeometryError, InputError
+
+_M = si.Unit("m")
+# Frozen, so that every array may share them.
+_TISSUE, _PULP, _FINGERTIP = Tissue(), Tissue(shear_modulus=20e3), Fingertip()
+ForceMatrix = Annotated[si.FloatArray, si.Unit("N/V")]
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class SkinStretchArray:
+    """Bending actuators on a cradle under a fingertip: what `[skin_stretch]` of a file describes.
+
+    `tissue` is what is pulled sideways, `pulp` what gives way when the finger is pressed on: a
+    stiff skin on soft pulp is softer to a broad push than to a local pull, and one modulus will not
+    do for both (20 kPa assumed, an order of magnitude). `normal_force` is that of the finger;
+    `friction_coefficient` that of contactors on skin, which decides whether they stick (assumed).
+    `theory` of the actuators: "solid" or "strip". Raises `GeometryError` for actuators thicker or
+    wider than the pitch leaves room for.
+    """
+
+    actuator: Bimorph
+    cradle: FingerCradle
+    tissue: Tissue = _TISSUE
+    pulp: Tissue = _PULP
+    finger: Fingertip = _FINGERTIP
+    normal_force: Annotated[si.Newton, hard.FORCE] = 2.0
+    friction_coefficient: Annotated[si.Dimensionless, si.Above(0), si.AtMost(20)] = 1.0
+    theory: Literal["solid", "strip"] = "solid"
+
+    def __post_init__(self) -> None:
+        for name, side, pitch in (
+            ("thick", self.actuator.thickness, self.cradle.pitch_along),
+            ("wide", self.actuator.width, self.cradle.pitch_across),
+        ):
+            if side >= pitch:
+                raise GeometryError(
+                    f"actuators {si.format_quantity(side, _M)} {name} stand at a pitch of "
+                    f"{si.format_quantity(pitch, _M)} and would touch; make them smaller or the "
+                    "pitch larger",
+                    quantity="actuator",
+                )
+
+    @property
+    def bender(self) -> Bender:
+        """What one actuator does, by the theory chosen."""
+        return solid_bender(self.actuator) if self.theory == "solid" else self.actuator.as_strip
+
+    @functools.cached_property
+    def influence(self) -> si.FloatArray:
+        """How far a newton on one contactor moves the skin under each (m/N)."""
+        return influence_matrix(self.tissue, *self.cradle.places, self.cradle.size)
+
+    @functools.cached_property
+    def force_per_volt(self) -> ForceMatrix:
+        """The forces on the skin (N) per volt on each actuator, (C + 1/k)⁻¹ δ."""
+        bender = self.bender
+        spring = np.eye(self.cradle.count) / bender.stiffness
+        solved = np.linalg.solve(self.influence + spring, np.eye(self.cradle.count))
+        return np.asarray(solved * bender.deflection_per_volt)
+
+    @si.checked_numbers
+    def strain_per_volt(
+        self, cell: Annotated[si.Metre, hard.SIDE] = 0.3e-3
+    ) -> tuple[si.MetreArray, si.MetreArray, si.FloatArray]:
+        """Edges of square cells along x and y (m), and the mean strains ε_xx, ε_yy, γ_xy in each
+        per volt on each actuator, shape (3, cells x, cells y, actuators)."""
+        x, y = self.cradle.places
+        edges_x, edges_y, per_force = strain_matrices(self.tissue, x, y, self.cradle.size, cell)
+        return edges_x, edges_y, per_force @ self.force_per_volt
+
+    @si.checked_numbers
+    def answer(self, voltages: Annotated[si.FloatArray, si.Unit("V")]) -> Pull:
+        """Forces and displacements of all contactors at voltages (V), one an actuator.
+
+        Raises `InputError` for another number of voltages, `OutOfRangeError` for one that would
+        undo the poling.
+        """
+        if voltages.shape != (self.cradle.count,):
+            raise InputError(
+                f"voltages of shape {voltages.shape} were given for {self.cradle.count} actuators; "
+                "give one for each",
+                quantity="voltages",
+            )
+        worst = float(voltages[int(np.argmax(np.abs(voltages)))])
+        self.actuator.require_voltage(worst)
+        forces = self.force_per_volt @ voltages
+        return Pull(voltages, forces, self.influence @ forces, self._held)
+
+    @functools.cached_property
+    def _held(self) -> si.FloatArray:
+        """The friction that may hold each contactor (N)."""
+        seated = seat(self.cradle, self.finger, self.pulp, self.normal_force)
+        return np.asarray(self.friction_coefficient * seated.forces)
+
+    @property
+    def budget(self) -> Budget:
+        """Mass, volume and surface against those of the published array."""
+        return budget(self.actuator, self.cradle.count, self.cradle.active_area)
+
+    @property
+    def crosstalk(self) -> si.Dimensionless:
+        """The largest displacement that one actuator driven alone gives another contactor's skin,
+        over its own, with all others holding still as the springs they are."""
+        moved = self.influence @ self.force_per_volt
+        own = np.diag(moved)
+        shares = np.abs(moved / own[None, :])
+        np.fill_diagonal(shares, 0.0)
+        return float(shares.max(initial=0.0))
+
+
+@si.checked_numbers
+@dataclass(frozen=True, eq=False)
+class Pull:
+    """What an array does at some `voltages`: `forces` on the skin, `displacements` of the
+    contactors, and `held`, the friction that may hold each."""
+
+    voltages: Annotated[si.FloatArray, si.Unit("V")]
+    forces: si.NewtonArray
+    displacements: si.MetreArray
+    held: si.NewtonArray
+
+    @property
+    def slipping(self) -> int:
+        """How many contactors ask for more friction than holds them: there the forces are too
+        large, since all were taken to stick."""
+        return int(np.count_nonzero(np.abs(self.forces) > self.held))

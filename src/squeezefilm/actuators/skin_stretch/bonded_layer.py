@@ -1,0 +1,143 @@
+"""A soft layer on rigid bone: what its surface gives way by, under tractions on it, against a
+half-space.
+
+In the Fourier plane of the surface a traction of wave number k moves it along the wave vector,
+across it in the plane, and up: three compliances in closed form. Those of a half-space (k h → ∞)
+are what `half_space` integrates exactly; the difference dies out as e^(−2kh), is smooth in place,
+and is brought back by Hankel transforms of order 0 and 2.
+
+Sources: plane strain of a layer bonded to a rigid base, for example Johnson 1985, section 5.8
+(10.1017/CBO9781139171731); the tests derive it anew by integrating Navier's equations in depth.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Annotated
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.special import jv
+
+from squeezefilm import hard_limits as hard
+from squeezefilm import quantities as si
+from squeezefilm.actuators.skin_stretch.half_space import Places, together
+
+Ratio = Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)]
+_NODES, _REACH = 400, 18.0
+"""Quadrature nodes in k h up to a reach where e^(−2kh) is 2e-16."""
+_FARTHEST = 12.0
+"""Distance over thickness up to which the tables go; beyond, the surface of a layer is at rest."""
+
+
+@si.checked_numbers
+def layer_compliances(
+    depth: Annotated[si.DimensionlessArray, si.Above(0)], poisson_ratio: Ratio
+) -> tuple[si.DimensionlessArray, si.DimensionlessArray, si.DimensionlessArray]:
+    """G u/(q h) of a bonded layer for tractions of wave number k = `depth`/h: along the wave
+    vector, across it, and normal to the surface.
+
+    For the first two the surface is free of normal traction, for the third of shear. Raises
+    `InputError` for a depth not above 0 or a Poisson ratio outside 0 to 0.5.
+    """
+    kappa = 3 - 4 * poisson_ratio
+    # Numerator and denominator over cosh 2kh, so that nothing overflows.
+    small = 1 / np.cosh(np.minimum(2 * depth, 700.0))
+    below = 2 * kappa + (4 * depth**2 + 1 + kappa**2) * small
+    grown = 2 * kappa * np.tanh(2 * depth)
+    scale = (1 - poisson_ratio) / depth
+    return (
+        scale * (grown + 4 * depth * small) / below,
+        np.tanh(depth) / depth,
+        scale * (grown - 4 * depth * small) / below,
+    )
+
+
+@functools.lru_cache(maxsize=16)
+def _tables(poisson_ratio: float) -> tuple[CubicSpline, CubicSpline, CubicSpline]:
+    """Of a layer less a half-space, over r/h: the parts of G h u/Q that do not turn with direction,
+    that go with cos 2θ, and the normal one."""
+    points, weights = np.polynomial.legendre.leggauss(_NODES)
+    k, w = _REACH * (points + 1) / 2, _REACH * weights / 2
+    along, across, normal = layer_compliances(k, poisson_ratio)
+    along, across = along - (1 - poisson_ratio) / k, across - 1 / k
+    normal = normal - (1 - poisson_ratio) / k
+    r = np.linspace(0.0, _FARTHEST, 601)
+    J0, J2 = jv(0, np.outer(r, k)), jv(2, np.outer(r, k))
+    measure = w * k / (2 * np.pi)
+    return (
+        CubicSpline(r, J0 @ (measure * (along + across) / 2)),
+        CubicSpline(r, -J2 @ (measure * (along - across) / 2)),
+        CubicSpline(r, J0 @ (measure * normal)),
+    )
+
+
+def _tabled(table: CubicSpline, r: si.FloatArray, half_space: float) -> si.FloatArray:
+    """A table's value, and beyond it what takes away the half-space's `half_space`/(2πr)."""
+    near = table(np.minimum(r, _FARTHEST))
+    return np.where(r <= _FARTHEST, near, -half_space / (2 * np.pi * np.maximum(r, _FARTHEST)))
+
+
+def _over_patch(
+    x: si.FloatArray,
+    y: si.FloatArray,
+    length: float,
+    width: float,
+    kernel: Callable[[si.FloatArray, si.FloatArray], tuple[si.FloatArray, ...]],
+) -> list[si.FloatArray]:
+    points, weights = np.polynomial.legendre.leggauss(4)
+    total: list[si.FloatArray] = []
+    for a, wa in zip(points * length / 2, weights, strict=True):
+        for b, wb in zip(points * width / 2, weights, strict=True):
+            some = [wa * wb * length * width / 4 * one for one in kernel(x - a, y - b)]
+            total = [t + s for t, s in zip(total, some, strict=True)] if total else some
+    return total
+
+
+@si.checked_numbers
+def tangential_correction(
+    x: Places,
+    y: Places,
+    length: Annotated[si.Metre, hard.SIDE],
+    width: Annotated[si.Metre, hard.SIDE],
+    poisson_ratio: Ratio,
+    thickness: Annotated[si.Metre, hard.SIDE],
+) -> tuple[si.MetreArray, si.MetreArray]:
+    """What bone at a depth `thickness` adds to `half_space.tangential_patch` (m; negative near).
+
+    Beyond 12 thicknesses both together are nothing. For patches up to two thicknesses wide, and
+    layers not thinner than that. Raises `InputError` for sizes not above 0.
+    """
+
+    def kernel(dx: si.FloatArray, dy: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
+        steady, turning, _ = _tables(float(poisson_ratio))
+        r2 = dx**2 + dy**2
+        r = np.sqrt(r2) / thickness
+        cos = np.divide(dx**2 - dy**2, r2, out=np.zeros_like(r2), where=r2 > 0)
+        sin = np.divide(2 * dx * dy, r2, out=np.zeros_like(r2), where=r2 > 0)
+        first = _tabled(steady, r, 1 - poisson_ratio / 2)
+        second = _tabled(turning, r, poisson_ratio / 2)
+        return (first + second * cos) / thickness, second * sin / thickness
+
+    u, v = _over_patch(*together(x, y), length, width, kernel)
+    return u, v
+
+
+@si.checked_numbers
+def normal_correction(
+    x: Places,
+    y: Places,
+    length: Annotated[si.Metre, hard.SIDE],
+    width: Annotated[si.Metre, hard.SIDE],
+    poisson_ratio: Ratio,
+    thickness: Annotated[si.Metre, hard.SIDE],
+) -> si.MetreArray:
+    """What bone at a depth `thickness` adds to `half_space.normal_patch` (m). As
+    `tangential_correction`."""
+
+    def kernel(dx: si.FloatArray, dy: si.FloatArray) -> tuple[si.FloatArray]:
+        r = np.hypot(dx, dy) / thickness
+        return (_tabled(_tables(float(poisson_ratio))[2], r, 1 - poisson_ratio) / thickness,)
+
+    return _over_patch(*together(x, y), length, width, kernel)[0]

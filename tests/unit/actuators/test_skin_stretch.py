@@ -1,0 +1,158 @@
+"""The skin-stretch array: its file, load line, the whole array, patterns, budget, refusals."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from squeezefilm.actuators.described import load_actuator
+from squeezefilm.actuators.skin_stretch import budget, cradle, load_line, patterns
+from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
+from squeezefilm.actuators.skin_stretch.description import SkinStretchDescription
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
+from squeezefilm.render.texture.shapes import SineWave
+
+
+@pytest.fixture(scope="module")
+def array() -> SkinStretchArray:
+    described = load_actuator("biet2008-skin-stretch")
+    assert isinstance(described, SkinStretchDescription)
+    return described.skin_stretch
+
+
+def test_the_preset_has_nearly_the_published_figures(array: SkinStretchArray) -> None:
+    bender, voltage = array.bender, array.actuator.largest_voltage
+    assert bender.deflection_per_volt * voltage == pytest.approx(load_line.PUBLISHED_FREE, rel=0.05)
+    assert bender.force_per_volt * voltage == pytest.approx(load_line.PUBLISHED_BLOCKED, rel=0.1)
+    skin = array.tissue.under_contactor(*array.cradle.size)
+    assert skin.stiffness == pytest.approx(load_line.IMPLIED_STIFFNESS, rel=0.01)
+    loaded = load_line.loaded_tip(bender, skin, voltage)
+    assert loaded.deflection == pytest.approx(load_line.PUBLISHED_LOADED, rel=0.05)
+    assert array.cradle.count == 60
+    assert array.budget.over == ()
+
+
+def test_the_implied_load_is_what_a_linear_actuator_leaves() -> None:
+    implied = load_line.implied_stiffness(
+        load_line.PUBLISHED_FREE, load_line.PUBLISHED_BLOCKED, load_line.PUBLISHED_LOADED
+    )
+    assert implied == pytest.approx(load_line.IMPLIED_STIFFNESS, rel=1e-12)
+    assert implied * load_line.PUBLISHED_LOADED == pytest.approx(0.0375, rel=1e-12)
+    own = load_line.PUBLISHED_BLOCKED / load_line.PUBLISHED_FREE
+    found = load_line.loaded_deflection(load_line.PUBLISHED_FREE, own, implied)
+    assert found == pytest.approx(load_line.PUBLISHED_LOADED, rel=1e-12)
+
+
+def test_the_load_line_meets_the_skin_where_bisection_finds_it(array: SkinStretchArray) -> None:
+    skin, bender = FingerpadDynamics(400.0, 0.5, 1e-5), array.bender
+    found = load_line.loaded_tip(bender, skin, 100.0)
+    low, high = 0.0, bender.deflection_per_volt * 100.0
+    for _ in range(80):
+        middle = (low + high) / 2
+        given = bender.force_per_volt * 100.0 - bender.stiffness * middle
+        low, high = (middle, high) if given > skin.stiffness * middle else (low, middle)
+    assert found.deflection == pytest.approx(low, rel=1e-12)
+    # At the bandwidth the motion has left by 3 dB, and nowhere before.
+    f = np.linspace(0.0, found.bandwidth, 400)
+    share = np.abs(load_line.tip_motion(bender, skin, 100.0, f)) ** 2 / found.deflection**2
+    assert np.all((share[:-1] < 2) & (share[:-1] > 0.5))
+    assert min(abs(share[-1] - 2), abs(share[-1] - 0.5)) < 1e-6
+
+
+def test_a_heavily_damped_tip_falls_by_3_db_before_it_rises(array: SkinStretchArray) -> None:
+    found = load_line.loaded_tip(array.bender, FingerpadDynamics(500.0, 5.0, 1e-6), 100.0)
+    skin = FingerpadDynamics(500.0, 5.0, 1e-6)
+    at = load_line.tip_motion(array.bender, skin, 100.0, np.array([found.bandwidth]))
+    assert abs(at[0]) == pytest.approx(found.deflection / np.sqrt(2), rel=1e-9)
+
+
+def test_forces_balance_actuators_and_skin(array: SkinStretchArray) -> None:
+    voltages = np.random.default_rng(3).uniform(-150, 150, 60)
+    pull = array.answer(voltages)
+    free = array.bender.deflection_per_volt * voltages
+    assert pull.forces / array.bender.stiffness == pytest.approx(
+        free - pull.displacements, rel=1e-9, abs=1e-15
+    )
+    assert array.force_per_volt == pytest.approx(array.force_per_volt.T, rel=1e-9)
+    # One alone and all others held by their springs: between the lone load line and being free.
+    alone = np.zeros(60)
+    alone[27] = 100.0
+    skin = array.tissue.under_contactor(*array.cradle.size)
+    lone = load_line.loaded_tip(array.bender, skin, 100.0).deflection
+    assert 0.9 * lone < array.answer(alone).displacements[27] < lone
+    assert 0 < array.crosstalk < 0.5
+
+
+def test_the_same_pull_on_all_slips_nowhere_and_a_fine_wave_does(array: SkinStretchArray) -> None:
+    voltage = array.actuator.largest_voltage
+    assert array.answer(np.full(60, voltage)).slipping == 0
+    x, _ = array.cradle.places
+    assert array.answer(voltage * np.sin(2 * np.pi * x / 4.8e-3)).slipping > 20
+
+
+def test_strain_of_voltages_is_the_strain_of_their_forces(array: SkinStretchArray) -> None:
+    voltages = np.random.default_rng(4).uniform(-100, 100, 60)
+    edges_x, edges_y, per_volt = array.strain_per_volt(0.6e-3)
+    assert per_volt.shape == (3, edges_x.size - 1, edges_y.size - 1, 60)
+    # The strain along a row of cells adds up to how far its ends came apart.
+    forces, (px, py) = array.answer(voltages).forces, array.cradle.places
+    row = edges_y.size // 2
+    ends = 0.0
+    for force, a, b in zip(forces, px, py, strict=True):
+        for y in edges_y[row : row + 2]:
+            u = array.tissue.shifts(edges_x[[0, -1]] - a, np.full(2, y - b), *array.cradle.size)[0]
+            ends += 0.5 * force * (u[1] - u[0])
+    total = float((per_volt[0, :, row] @ voltages).sum() * 0.6e-3)
+    assert total == pytest.approx(ends, rel=1e-9, abs=1e-15)
+
+
+def test_a_wave_moves_over_the_contactors_as_the_finger_does(array: SkinStretchArray) -> None:
+    wave, times = SineWave(6e-3), np.array([0.0, 0.012, 0.024])
+    found = patterns.pattern_voltages(wave, array.cradle, times, (0.1, 0.0), 100.0)
+    assert found.shape == (3, 60)
+    # In 12 ms at 100 mm/s the finger goes on by one pitch: each column feels what the next felt.
+    assert found[1, :54] == pytest.approx(found[0, 6:], abs=1e-9)
+    x, y = array.cradle.places
+    assert found[0] == pytest.approx(100 * (2 * wave(x, y, 0.1, 0.0) - 1), abs=1e-9)
+    # A grating of one pitch is a pull of all together, and another phase is another pull.
+    blind = patterns.pattern_voltages(SineWave(1.2e-3), array.cradle, times[:1], (0.1, 0.0), 100.0)
+    assert np.ptp(blind) < 1e-6
+    assert patterns.finest_period(array.cradle) == pytest.approx(2.4e-3)
+    with pytest.raises(InputError, match="times is empty"):
+        patterns.pattern_voltages(wave, array.cradle, np.zeros(0), (0.1, 0.0), 100.0)
+
+
+def test_what_cannot_be_is_refused_in_words(array: SkinStretchArray) -> None:
+    with pytest.raises(GeometryError, match=r"12 columns .* more than a cradle of 13 mm holds"):
+        dataclasses.replace(array.cradle, columns=12)
+    with pytest.raises(GeometryError, match="overlap"):
+        dataclasses.replace(array.cradle, contactor_length=1.3e-3)
+    with pytest.raises(GeometryError, match="half around"):
+        dataclasses.replace(array.cradle, radius_across=3e-3)
+    thick = dataclasses.replace(array.actuator, ceramic_thickness=0.6e-3)
+    with pytest.raises(GeometryError, match="would touch"):
+        dataclasses.replace(array, actuator=thick)
+    with pytest.raises(GeometryError, match="at least 4 times as long"):
+        dataclasses.replace(array.actuator, length=5e-3)
+    with pytest.raises(OutOfRangeError, match=r"against its poling; at most 0.5 kV/mm"):
+        array.answer(np.full(60, -180.0))
+    with pytest.raises(InputError, match="give one for each"):
+        array.answer(np.zeros(59))
+    with pytest.raises(UnreachableError, match="the least"):
+        cradle.radii_that_touch_all(array.cradle, array.finger, array.pulp, 0.1)
+
+
+def test_lines_and_power(array: SkinStretchArray) -> None:
+    assert budget.lines_needed(60, "direct") == 61
+    assert budget.lines_needed(60, "matrix") == 16
+    assert budget.lines_needed(60, "daisy_chain") == 5
+    bender = array.bender
+    one = budget.loss_power(array.actuator, bender, 100.0, 250.0)
+    assert one == pytest.approx(np.pi * 250 * bender.capacitance * 0.02 * 1e4)
+    assert budget.charging_power(bender, 60, 100.0, 250.0) == pytest.approx(
+        60 * 250 * bender.capacitance * 4e4
+    )
+    small = budget.budget(array.actuator, 60, 1.3e-4, most_mass=10e-3, most_volume=1e-6)
+    assert len(small.over) == 2
+    assert "10 mm" not in budget.budget(array.actuator, 60, 1e-5).over[0]
