@@ -35,8 +35,8 @@ _PATIENCE: si.Second = 60.0
 _LEAVE: si.Second = 2.0
 """How long one waits for a piece before doing it oneself, and for a process to end by itself."""
 
-# Pieces that are sent ahead, so that the next one is there when one is done.
-_AHEAD = 2
+# A piece that is sent cannot be done here: one that waits there for a long one would be waited for.
+_AHEAD = 1
 
 
 class Kept:

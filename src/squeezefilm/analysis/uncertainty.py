@@ -166,9 +166,7 @@ def uncertain_friction(
     mixture = mixture_of(display, prediction)
     count = POINTS * samples
     tell = progress or (lambda _: None)
-    drawn, of_points = evaluate(mixture, sobol_points(mixture, count, seed), tell)
-    kept, of_design = _saltelli(mixture, samples, seed, tell)
-    refused = of_points.together_with(of_design)
+    drawn, kept, refused = _drawn(mixture, samples, seed, tell)
     if refused.share > MOST_REFUSED:
         raise OutOfRangeError(refusal_words(refused))
     friction = drawn.friction
@@ -250,28 +248,28 @@ def _design(mixture: Mixture, samples: int, seed: int) -> si.FloatArray:
     return joint.moved(mixture.paths, design.reshape(-1, len(inputs))).reshape(design.shape)
 
 
-def _saltelli(
+def _drawn(
     mixture: Mixture, samples: int, seed: int, tell: SayProgress
-) -> tuple[si.FloatArray, Refusals]:
-    """µ′/µ of the design, shape (samples, inputs + 4) less the rows with a refused draw, and what
-    was refused; NaN where an input explained too little to be followed."""
-    design = _design(mixture, samples, seed)
+) -> tuple[Outcome, si.FloatArray, Refusals]:
+    """What comes of the points of the interval; µ′/µ of the design, shape (samples, inputs + 4)
+    less the rows with a refused draw, NaN where an input explained too little to be followed; and
+    what was refused."""
+    points, design = sobol_points(mixture, POINTS * samples, seed), _design(mixture, samples, seed)
     found = np.full(design.shape[:2], np.nan)
-    first, every = max(samples // 4, _FIRST_ROWS), np.arange(design.shape[1])
-
-    def draw(rows: slice, columns: si.IntArray) -> Refusals:
-        asked = design[rows][:, columns]
-        drawn, refused = evaluate(mixture, asked.reshape(-1, asked.shape[-1]), tell, _WHICH)
-        found[rows, columns] = drawn.friction.reshape(asked.shape[:2])
-        return refused
-
-    refused, columns = draw(slice(first), every), every
+    first, inputs = max(samples // 4, _FIRST_ROWS), design.shape[-1]
+    at_once = np.concatenate([points, design[:first].reshape(-1, inputs)])
+    drawn, refused = evaluate(mixture, at_once, tell)
+    found[:first] = drawn.friction[len(points) :].reshape(first, -1)
+    columns = np.arange(design.shape[1])
     if samples > first:
         columns = followed(found[:first])
-        refused = refused.together_with(draw(slice(first, samples), columns))
+        rest = design[first:, columns]
+        more, refused_too = evaluate(mixture, rest.reshape(-1, inputs), tell, _WHICH)
+        found[first:, columns] = more.friction.reshape(rest.shape[:2])
+        refused = refused.together_with(refused_too)
     whole = np.isfinite(found[:, columns]).all(axis=1)
     whole[:first] = np.isfinite(found[:first]).all(axis=1)
-    return found[whole], refused
+    return Outcome(*(one[: len(points)] for one in drawn)), found[whole], refused
 
 
 def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:

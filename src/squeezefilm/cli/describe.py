@@ -172,6 +172,7 @@ def analyze(asked: AnalyzeOptions) -> None:
 def _prepare(figures: bool) -> None:
     """Load what an analysis takes, before there is anything to analyse."""
     import_module("squeezefilm.analysis.analyze")
+    import_module("squeezefilm.chain.friction").prepare()
     if figures:
         import_module("squeezefilm.report.display.figures").prepare()
 
