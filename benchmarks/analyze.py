@@ -2,7 +2,7 @@
 
 Wall-clock times, imports included, what was compiled loaded from the cache, the least of some runs.
 "first" solves the plate and the films under the finger, "again" finds what the run before it kept
-on disk. Peers: the same run again on one processor, where there is no second process, and `predict`
+on disk, "changed" is again with a force that no run had, whose draws are drawn anew. Peers: the same run again on one processor, where there is no second process, and `predict`
 alone in the same process. Steps are the processor time of the process that an engineer waits for;
 one takes all until the next is told. The speed of a machine drifts: compare within one run only.
 Run: python benchmarks/analyze.py [DISPLAY …]
@@ -47,7 +47,9 @@ with second_process(figures.prepare):
     from squeezefilm.analysis.analyze import analyze
     from squeezefilm.display import load_display
     from squeezefilm.report.display.page import write_analysis
-    found = analyze(load_display(sys.argv[1]), progress=tell)
+    display = load_display(sys.argv[1])
+    force = float(sys.argv[4]) * display.finger.normal_force
+    found = analyze(display, normal_force=force, progress=tell)
     tell("summary")
     write_analysis(found, Path(sys.argv[2]), tell)
     tell("end")
@@ -62,9 +64,10 @@ class Run(NamedTuple):
     steps: dict[str, float]
 
 
-def run(display: str, folder: Path, kept: str, processors: str) -> Run:
-    """Run the verb; `kept` is where films and plates are kept, or "off"."""
-    command = [sys.executable, "-c", STEPS, display, str(folder / "report"), processors]
+def run(display: str, folder: Path, kept: str, processors: str, force: float = 1.0) -> Run:
+    """Run the verb with a force over the display's own; `kept` is where films, plates and draws are
+    kept, or "off"."""
+    command = [sys.executable, "-c", STEPS, display, str(folder / "report"), processors, str(force)]
     environment = os.environ | {"SQUEEZEFILM_CACHE": kept}
     began = time.perf_counter()
     done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
@@ -73,23 +76,32 @@ def run(display: str, folder: Path, kept: str, processors: str) -> Run:
 
 def main() -> None:
     """Print for each display how long its analysis takes, over its peers, and what limits it."""
-    head = f"{'first':>8}{'again':>9}{'one processor':>15}{'over predict':>14}"
+    head = f"{'first':>8}{'again':>9}{'changed':>9}{'one processor':>15}{'over predict':>14}"
     print(f"{'display':<16}{head}   what takes it")
     for display in sys.argv[1:] or DISPLAYS:
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             kept = str(folder / "kept")
             first = run(display, folder, kept, "all")
-            # In turn, so that both meet the same machine.
-            pairs = [
-                [run(display, folder, kept, one) for one in ("all", "one")] for _ in range(ROUNDS)
+            # In turn, so that all meet the same machine.
+            turns = [
+                (
+                    run(display, folder, kept, "all"),
+                    run(display, folder, kept, "all", 1.01 + 0.001 * number),
+                    run(display, folder, kept, "one"),
+                )
+                for number in range(ROUNDS)
             ]
-        both, alone = (min(some, key=lambda one: one.wall) for some in zip(*pairs, strict=True))
+        both, changed, alone = (
+            min(some, key=lambda one: one.wall) for some in zip(*turns, strict=True)
+        )
         whole = sum(alone.steps.values())
         predicted = sum(alone.steps[step] for step in PREDICT if step in alone.steps)
         ranked = sorted(alone.steps.items(), key=lambda item: -item[1])[:5]
         most = ", ".join(f"{name} {100 * took / whole:.0f} %" for name, took in ranked)
-        times = f"{first.wall:>6.1f} s{both.wall:>7.1f} s{alone.wall:>13.1f} s"
+        times = (
+            f"{first.wall:>6.1f} s{both.wall:>7.1f} s{changed.wall:>7.1f} s{alone.wall:>13.1f} s"
+        )
         print(f"{display:<16}{times}{whole / predicted:>14.1f}   {most}", flush=True)
 
 

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.drawn import evaluate
 from squeezefilm.analysis.draws import Mixture, as_drawn, outcome_of
 from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.intervals import quantiles
-from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, evaluate, sobol_points
+from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, sobol_points
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 from squeezefilm.errors import SqueezefilmError

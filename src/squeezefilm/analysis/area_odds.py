@@ -15,15 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.drawn import DRAWN_AT_ONCE, evaluate
 from squeezefilm.analysis.draws import Mixture, Outcome, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import quantiles
-from squeezefilm.analysis.uncertainty import (
-    DRAWN_AT_ONCE,
-    POINTS,
-    SAMPLES,
-    evaluate,
-    sobol_points,
-)
+from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, sobol_points
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea, active_area
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.pad_place import pad_place

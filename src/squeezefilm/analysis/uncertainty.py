@@ -5,16 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.drawn import evaluate
 from squeezefilm.analysis.draws import (
     Mixture,
     Outcome,
     Refusals,
-    Tally,
     as_drawn,
     between_limits,
     mixture_of,
@@ -30,19 +32,18 @@ from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends, quantiles
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
+from squeezefilm.kept_arrays import KeptArrays
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
-from squeezefilm.second_process import is_present, later, values
 
 SAMPLES, POINTS = 32, 4
 """Base samples where none are asked for, and how many points make the interval for each: chosen by
 `tests/verification/test_uncertainty_coverage.py`."""
 
 
-# So many that nobody waits long for the other process, and so few messages that they take no time.
-DRAWN_AT_ONCE = 12
-
 _WHICH = "which value matters, by draw"
+_POINTS = KeptArrays("sobol-points", [Path(__file__)])
+
 # From fewer rows one cannot tell which inputs matter.
 _FIRST_ROWS = 8
 
@@ -229,10 +230,8 @@ def refusal_words(refused: Refusals) -> str:
 def _design(mixture: Mixture, samples: int, seed: int) -> si.FloatArray:
     """Points in the unit cube, shape (samples, inputs + 4, inputs): A, A with each column of B, B,
     then A with all columns of B that could be measured and B with those of A."""
-    from scipy.stats import qmc
-
     inputs = mixture.inputs
-    both = qmc.Sobol(2 * len(inputs), rng=seed).random(samples)
+    both = _sobol(2 * len(inputs), samples, seed)
     a, b = both[:, : len(inputs)], both[:, len(inputs) :]
     measurable = np.array([one.knowledge == "measurable" for one in inputs])
     taken = [
@@ -275,50 +274,9 @@ def _drawn(
 def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
     """Scrambled Sobol' points of a mixture's unit cube, shape (count, inputs); `count` a power of
     two. Of a calibrated display what was calibrated is drawn from its table."""
-    from scipy.stats import qmc
-
-    points = np.asarray(qmc.Sobol(len(mixture.inputs), rng=seed).random(count))
+    points = _sobol(len(mixture.inputs), count, seed)
     joint = mixture.display.joint
     return points if joint is None else joint.picked(mixture.paths, points)
-
-
-def evaluate(
-    mixture: Mixture,
-    points: si.DimensionlessArray,
-    tell: SayProgress,
-    what: str = "friction of draw",
-) -> tuple[Outcome, Refusals]:
-    """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
-    where refused; and what was refused. `tell` is told some twenty times; a second process takes
-    its share."""
-    found = mixture.known(points)
-    new = np.flatnonzero(np.isnan(found[:, 0]))
-    blocks = np.array_split(new, -(-new.size // DRAWN_AT_ONCE)) if new.size else []
-    pieces = [later(_evaluated, mixture, points[block]) for block in blocks]
-    every = max(len(pieces) // 20, 1)
-    # The other process begins with the first of them.
-    for number, piece in enumerate(reversed(pieces) if is_present() else pieces):
-        if number % every == 0:
-            tell(f"{what} {number * DRAWN_AT_ONCE + 1} of {len(points)}")
-        values(piece)
-    tally = Tally()
-    for block, piece in zip(blocks, pieces, strict=True):
-        found[block], refused = piece.value
-        tally.take(refused)
-    mixture.learn(points[new], found[new])
-    return Outcome(*found.T), tally.found(len(points))
-
-
-@as_drawn()
-def _evaluated(mixture: Mixture, points: si.DimensionlessArray) -> tuple[si.FloatArray, Tally]:
-    """What comes of some draws, shape (n, 3), and what was refused."""
-    found, tally = np.full((len(points), 3), np.nan), Tally()
-    for number, draw in enumerate(mixture.draws(points)):
-        try:
-            found[number] = mixture.outcome(points[number], draw)
-        except SqueezefilmError as error:
-            tally.refuse(draw.heights, error)
-    return found, tally
 
 
 def _interval(values: si.FloatArray) -> tuple[float, float] | None:
@@ -348,6 +306,19 @@ class FrictionBand:
     high: si.DimensionlessArray
     level: si.Dimensionless
     samples: int
+
+
+def _sobol(dimensions: int, count: int, seed: int) -> si.DimensionlessArray:
+    """Scrambled Sobol' points, shape (count, dimensions): kept on disk, since loading SciPy's
+    statistics for them takes a quarter of a second."""
+    asked = repr((scipy.__version__, dimensions, count, seed))
+    points = _POINTS.get(asked, count * dimensions)
+    if points is None:
+        from scipy.stats import qmc
+
+        points = np.asarray(qmc.Sobol(dimensions, rng=seed).random(count))
+        _POINTS.put(asked, points)
+    return points.reshape(count, dimensions)
 
 
 @as_drawn()

@@ -7,9 +7,10 @@ import dataclasses
 import numpy as np
 import pytest
 
+from squeezefilm.analysis.drawn import evaluate
 from squeezefilm.analysis.draws import Mixture
 from squeezefilm.analysis.joint_draws import AMPLITUDE_SHARE, FRICTION_OFFSET, calibrated_inputs
-from squeezefilm.analysis.uncertainty import evaluate, sobol_points
+from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 from squeezefilm.joint_spread import JointSpread

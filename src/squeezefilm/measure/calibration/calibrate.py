@@ -9,9 +9,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.drawn import evaluate
 from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, between_limits
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, quantiles
-from squeezefilm.analysis.uncertainty import evaluate, sobol_points
+from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.touch import touch
 from squeezefilm.display import Display

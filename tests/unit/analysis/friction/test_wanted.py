@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from squeezefilm.analysis.drawn import evaluate
 from squeezefilm.analysis.draws import Mixture, outcome_of
 from squeezefilm.analysis.free_amplitude import FreeAmplitude
 from squeezefilm.analysis.friction import wanted as room
@@ -16,7 +17,7 @@ from squeezefilm.analysis.friction.wanted import (
     uncertain_voltage,
     wanted_friction,
 )
-from squeezefilm.analysis.uncertainty import evaluate, sobol_points
+from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import OutOfRangeError, UnreachableError

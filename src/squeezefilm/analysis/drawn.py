@@ -1,0 +1,109 @@
+"""Many draws of a mixture: in two processes, and kept on disk.
+
+Whoever analyses a display again, with another texture or report, asks for the same draws again.
+"""
+
+from __future__ import annotations
+
+import pickle
+from hashlib import blake2b
+from pathlib import Path
+
+import numpy as np
+
+import squeezefilm
+from squeezefilm import quantities as si
+from squeezefilm.analysis.draws import Mixture, Outcome, Refusals, Tally, as_drawn
+from squeezefilm.errors import SqueezefilmError
+from squeezefilm.kept_arrays import KeptResults
+from squeezefilm.progress import SayProgress
+from squeezefilm.second_process import is_present, later, values
+
+# So many that nobody waits long for the other process, and so few messages that they take no time.
+DRAWN_AT_ONCE = 12
+
+# Fewer are drawn again sooner than found.
+_WORTH_KEEPING = 100
+_KEPT = KeptResults("draws", [Path(squeezefilm.__file__).parent])
+
+
+def evaluate(
+    mixture: Mixture,
+    points: si.DimensionlessArray,
+    tell: SayProgress,
+    what: str = "friction of draw",
+) -> tuple[Outcome, Refusals]:
+    """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
+    where refused; and what was refused. `tell` is told some twenty times; a second process takes
+    its share."""
+    found = mixture.known(points)
+    new = np.flatnonzero(np.isnan(found[:, 0]))
+    asked = _asked(mixture, points[new]) if new.size >= _WORTH_KEEPING else ""
+    kept: tuple[si.FloatArray, Tally] | None = _KEPT.get(asked) if asked else None
+    if kept is None:
+        kept = _drawn_now(mixture, points, new, tell, what)
+        if asked:
+            _KEPT.put(asked, kept)
+    found[new], tally = kept
+    mixture.learn(points[new], found[new])
+    return Outcome(*found.T), tally.found(len(points))
+
+
+def _asked(mixture: Mixture, points: si.DimensionlessArray) -> str:
+    """A hash of all that draws come from: the display with its ranges and the working point, the
+    solved plate by the numbers that draws take of it."""
+    p = mixture.prediction
+    mode, law, felt = p.mode, p.law, p.touch
+    numbers = (
+        mode.resonance_frequency,
+        mode.quality_factor,
+        mode.modal_mass,
+        mode.half_wavelength,
+        mode.amplitude_per_volt,
+        felt.free_amplitude,
+        p.frequency,
+        p.voltage,
+        p.normal_force,
+        law.position,
+        law.speed,
+    )
+    place = None if law.place is None else (law.place.x, law.place.y, law.place.at_centre)
+    words = (mixture.model, p.surface.name, law.slip)
+    told = (mixture.display, mixture.inputs, numbers, place, words, *law.ridge_swings, points)
+    return blake2b(pickle.dumps(told, protocol=5)).hexdigest()
+
+
+def _drawn_now(
+    mixture: Mixture,
+    points: si.DimensionlessArray,
+    new: si.IntArray,
+    tell: SayProgress,
+    what: str,
+) -> tuple[si.FloatArray, Tally]:
+    """What comes of the points numbered `new`, shape (n, 3), and what was refused."""
+    found = np.full((len(points), 3), np.nan)
+    blocks = np.array_split(new, -(-new.size // DRAWN_AT_ONCE)) if new.size else []
+    pieces = [later(_evaluated, mixture, points[block]) for block in blocks]
+    every = max(len(pieces) // 20, 1)
+    # The other process begins with the first of them.
+    for number, piece in enumerate(reversed(pieces) if is_present() else pieces):
+        if number % every == 0:
+            tell(f"{what} {number * DRAWN_AT_ONCE + 1} of {len(points)}")
+        values(piece)
+    tally = Tally()
+    for block, piece in zip(blocks, pieces, strict=True):
+        found[block], refused = piece.value
+        tally.take(refused)
+    return found[new], tally
+
+
+@as_drawn()
+def _evaluated(mixture: Mixture, points: si.DimensionlessArray) -> tuple[si.FloatArray, Tally]:
+    """What comes of some draws, shape (n, 3), and what was refused."""
+    found, tally = np.full((len(points), 3), np.nan), Tally()
+    for number, draw in enumerate(mixture.draws(points)):
+        try:
+            found[number] = mixture.outcome(points[number], draw)
+        except SqueezefilmError as error:
+            tally.refuse(draw.heights, error)
+    return found, tally
