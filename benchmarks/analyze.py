@@ -2,9 +2,10 @@
 
 Wall-clock times, imports included, what was compiled loaded from the cache, the least of some runs.
 "first" solves the plate and the films under the finger, "again" finds what the run before it kept
-on disk, "changed" is again with a force that no run had, whose draws are drawn anew. Peers: the same run again on one processor, where there is no second process, and `predict`
-alone in the same process. Steps are the processor time of the process that an engineer waits for;
-one takes all until the next is told. The speed of a machine drifts: compare within one run only.
+on disk, "changed" is again with a force that no run had, whose draws are drawn anew. Peers: the
+same run again on one processor, where there is no second process, and `predict` alone in the same
+process. Steps are the processor time of the process that an engineer waits for; one takes all until
+the next is told. The speed of a machine drifts: compare within one run only.
 Run: python benchmarks/analyze.py [DISPLAY …]
 """
 
