@@ -178,6 +178,10 @@ class PadLaw:
                 require_balanced(rows, self.asperities, swings, alike)
         return complex(found)
 
+    def __getstate__(self) -> dict[str, object]:
+        """What is pickled: not the form for compiled code, most of it tables made anew at once."""
+        return {name: value for name, value in vars(self).items() if name != "_compiled"}
+
     @cached_property
     def _compiled(self) -> CompiledPad:
         """The pad on an even wave as the compiled code takes it."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 import re
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,6 +26,7 @@ from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
+from squeezefilm.plate.solid.layers import Resolution
 from squeezefilm.plate.solid.modes import (
     Label,
     PlateModes,
@@ -211,13 +212,12 @@ def solved_plate(
             plate, band=wanted, tolerance=_BESIDE, deadline=hurry.modes, progress=shares
         )
     tell(f"response at {points} frequencies")
-    response = harmonic_response(
-        plate,
-        sweep_around(frequency, quality, points),
-        resolution=hurry.response_mesh(alone),
-        solved=pieces,
-    )
+    asked, mesh = sweep_around(frequency, quality, points), hurry.response_mesh(alone)
+    response = harmonic_response(plate, asked, resolution=mesh, solved=pieces)
     del pieces  # hundreds of megabytes
+    if not alone.left_coarse:
+        again = functools.partial(_response_again, plate, label, asked, mesh)
+        response = replace(response, _again=again)
     try:
         circuit = response.equivalent_circuit()
     except InputError:
@@ -231,6 +231,14 @@ def solved_plate(
         _shear_frequency(plate, label, frequency),
         hurry.left_out(alone, modes),
     )
+
+
+def _response_again(
+    plate: RectangularPlate, label: Label, frequencies: si.HertzArray, resolution: Resolution
+) -> HarmonicResponse:
+    """The response of `solved_plate`: without its modes the reduced space would be another."""
+    _, pieces = solve_for_response(plate, label, _WORKING)
+    return harmonic_response(plate, frequencies, resolution=resolution, solved=pieces)
 
 
 @reads_text
