@@ -8,6 +8,7 @@ whenever it looks for what a solve has left.
 
 from __future__ import annotations
 
+import atexit
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -23,5 +24,7 @@ def loading() -> Iterator[None]:
         yield
     finally:
         gc.freeze()
+        # When the program ends, a third of a second of garbage would be looked for a last time.
+        atexit.register(gc.freeze)
         if was_on:
             gc.enable()

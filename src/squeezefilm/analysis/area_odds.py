@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.drawn import DRAWN_AT_ONCE, evaluate
+from squeezefilm.analysis.drawn import DRAWN_AT_ONCE, KeptDraws, evaluate
 from squeezefilm.analysis.draws import Mixture, Outcome, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, sobol_points
@@ -26,6 +27,8 @@ from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.second_process import later, values
+
+_KEPT = KeptDraws("draws-over-areas")
 
 WHERE = ("best", "median", "worst")
 
@@ -90,10 +93,20 @@ def area_odds(
     mixture = mixture_of(display, p)
     points = sobol_points(mixture, POINTS * samples, seed)
     outcomes = np.stack(evaluate(mixture, points, lambda _: None)[0], axis=1)
+    make = functools.partial(_in_two_processes, mixture, over, points, outcomes)
+    return AreaOdds(_KEPT.found(mixture, points, over, make))
+
+
+def _in_two_processes(
+    mixture: Mixture,
+    over: list[_Elsewhere | None],
+    points: si.DimensionlessArray,
+    outcomes: si.FloatArray,
+) -> si.DimensionlessArray:
+    """What `_drawn` makes of them, some at a time."""
     blocks = max(len(points) // DRAWN_AT_ONCE, 1)
     parts = zip(np.array_split(points, blocks), np.array_split(outcomes, blocks), strict=True)
-    pieces = [later(_drawn, mixture, over, *part) for part in parts]
-    return AreaOdds(np.concatenate(values(*pieces)))
+    return np.concatenate(values(*[later(_drawn, mixture, over, *part) for part in parts]))
 
 
 @as_drawn()

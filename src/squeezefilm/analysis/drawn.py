@@ -5,9 +5,12 @@ Whoever analyses a display again, with another texture or report, asks for the s
 
 from __future__ import annotations
 
+import functools
 import pickle
+from collections.abc import Callable
 from hashlib import blake2b
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -19,12 +22,39 @@ from squeezefilm.kept_arrays import KeptResults
 from squeezefilm.progress import SayProgress
 from squeezefilm.second_process import is_present, later, values
 
+_Found = TypeVar("_Found")
+
 # So many that nobody waits long for the other process, and so few messages that they take no time.
 DRAWN_AT_ONCE = 12
 
 # Fewer are drawn again sooner than found.
 _WORTH_KEEPING = 100
-_KEPT = KeptResults("draws", [Path(squeezefilm.__file__).parent])
+
+
+class KeptDraws:
+    """What comes of draws, kept on disk from one process to the next; `kind` names the folder."""
+
+    def __init__(self, kind: str) -> None:
+        self._kept = KeptResults(kind, [Path(squeezefilm.__file__).parent])
+
+    def found(
+        self,
+        mixture: Mixture,
+        points: si.DimensionlessArray,
+        more: object,
+        make: Callable[[], _Found],
+    ) -> _Found:
+        """What `make` makes of the draws at points of the unit cube, shape (n, inputs), and of
+        whatever `more` there is to it: found where it was made before."""
+        asked = _asked(mixture, points, more)
+        kept: _Found | None = self._kept.get(asked)
+        if kept is None:
+            kept = make()
+            self._kept.put(asked, kept)
+        return kept
+
+
+_KEPT = KeptDraws("draws")
 
 
 def evaluate(
@@ -38,20 +68,17 @@ def evaluate(
     its share."""
     found = mixture.known(points)
     new = np.flatnonzero(np.isnan(found[:, 0]))
-    asked = _asked(mixture, points[new]) if new.size >= _WORTH_KEEPING else ""
-    kept: tuple[si.FloatArray, Tally] | None = _KEPT.get(asked) if asked else None
-    if kept is None:
-        kept = _drawn_now(mixture, points, new, tell, what)
-        if asked:
-            _KEPT.put(asked, kept)
-    found[new], tally = kept
+    make = functools.partial(_drawn_now, mixture, points, new, tell, what)
+    worth_keeping = new.size >= _WORTH_KEEPING
+    made = _KEPT.found(mixture, points[new], None, make) if worth_keeping else make()
+    found[new], tally = made
     mixture.learn(points[new], found[new])
     return Outcome(*found.T), tally.found(len(points))
 
 
-def _asked(mixture: Mixture, points: si.DimensionlessArray) -> str:
+def _asked(mixture: Mixture, points: si.DimensionlessArray, more: object = None) -> str:
     """A hash of all that draws come from: the display with its ranges and the working point, the
-    solved plate by the numbers that draws take of it."""
+    solved plate by the numbers that draws take of it; and of what `more` is made of them."""
     p = mixture.prediction
     mode, law, felt = p.mode, p.law, p.touch
     numbers = (
@@ -69,7 +96,7 @@ def _asked(mixture: Mixture, points: si.DimensionlessArray) -> str:
     )
     place = None if law.place is None else (law.place.x, law.place.y, law.place.at_centre)
     words = (mixture.model, p.surface.name, law.slip)
-    told = (mixture.display, mixture.inputs, numbers, place, words, *law.ridge_swings, points)
+    told = (mixture.display, mixture.inputs, numbers, place, words, *law.ridge_swings, points, more)
     return blake2b(pickle.dumps(told, protocol=5)).hexdigest()
 
 

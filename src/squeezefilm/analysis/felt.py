@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.drawn import KeptDraws
 from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import sobol_points
@@ -34,6 +35,7 @@ from squeezefilm.render.resonator.envelope import envelope_time_constant, finest
 
 DRAWS = 64
 _KNOTS = 17
+_KEPT = KeptDraws("draws-felt")
 
 Felt = Callable[[si.MetreArray], si.DimensionlessArray]
 
@@ -155,7 +157,6 @@ def _finest(
     return finest_felt(senses, period, grating_evidence(senses, period, amplitude, law, rubbed))
 
 
-@as_drawn()
 def _drawn(
     display: Display,
     p: Prediction,
@@ -163,21 +164,35 @@ def _drawn(
     speeds: tuple[si.MetrePerSecond, ...],
     count: int,
 ) -> tuple[si.MetreArray | None, str]:
-    """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
-    none is, NaN where the draw is refused; None with the reason where too many are."""
+    """The finest period felt (m) of each draw at each speed as `_felt_of_draws` has it; None with
+    the reason where too many draws are refused."""
     mixture = mixture_of(display, p)
-    found = np.full((count, len(speeds)), np.nan)
     points = sobol_points(mixture, count, seed=1)
+    make = functools.partial(_felt_of_draws, mixture, points, senses, speeds)
+    found = _KEPT.found(mixture, points, (senses, speeds), make)
+    lost = float(np.mean(np.isnan(found[:, 0])))
+    if lost > MOST_REFUSED:
+        return None, f"{lost:.1%} of the draws are refused, more than {MOST_REFUSED:.0%}"
+    return found, ""
+
+
+@as_drawn()
+def _felt_of_draws(
+    mixture: Mixture,
+    points: si.DimensionlessArray,
+    senses: Observer,
+    speeds: tuple[si.MetrePerSecond, ...],
+) -> si.MetreArray:
+    """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
+    none is, NaN where the draw is refused."""
+    found = np.full((len(points), len(speeds)), np.nan)
     for number, draw in enumerate(mixture.draws(points)):
         try:
             high = mixture.outcome(points[number], draw).amplitude
             found[number] = _felt_of(mixture, draw, high, senses, speeds)
         except SqueezefilmError:
             continue
-    lost = float(np.mean(np.isnan(found[:, 0])))
-    if lost > MOST_REFUSED:
-        return None, f"{lost:.1%} of the draws are refused, more than {MOST_REFUSED:.0%}"
-    return found, ""
+    return found
 
 
 def _felt_of(

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from squeezefilm.analysis import drawn
+from squeezefilm.analysis import area_odds, drawn, felt
 from squeezefilm.analysis.draws import Mixture
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import predict
@@ -79,3 +81,35 @@ def test_few_draws_are_not_kept(calls: list[int], tmp_path: Path) -> None:
         drawn.evaluate(_mixture(STATOR), points, lambda _: None)
     assert calls == [16, 16]
     assert not (tmp_path / "draws").exists()
+
+
+@pytest.mark.slow
+def test_felt_gratings_and_odds_over_the_area_are_found_again(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    plate, called = load_display("biet2008-plate"), []
+    monkeypatch.setattr(drawn, "_drawn_now", _told(drawn._drawn_now, "interval", called))
+    monkeypatch.setattr(felt, "_felt_of_draws", _told(felt._felt_of_draws, "felt", called))
+    monkeypatch.setattr(
+        area_odds, "_in_two_processes", _told(area_odds._in_two_processes, "area", called)
+    )
+    found = []
+    for force in (0.5, 0.5, 0.6):
+        prediction = predict(plate, normal_force=force)
+        area = area_odds.judged_area(plate, prediction, samples=32)
+        gratings = felt.felt_gratings(plate, prediction, draws=16)
+        assert area is not None
+        assert area.odds is not None
+        assert gratings is not None
+        found.append((area.odds.summary(), gratings.summary()))
+    assert called == 2 * ["interval", "area", "felt"]
+    assert found[0] == found[1] != found[2]
+
+
+def _told(function: Callable[..., Any], name: str, called: list[str]) -> Callable[..., Any]:
+    def told(*arguments: Any) -> Any:
+        called.append(name)
+        return function(*arguments)
+
+    return told

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 import re
-from dataclasses import KW_ONLY, dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +26,7 @@ from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
-from squeezefilm.plate.solid.layers import Resolution
+from squeezefilm.plate.solid.layers import COARSE, Resolution
 from squeezefilm.plate.solid.modes import (
     Label,
     PlateModes,
@@ -213,11 +213,11 @@ def solved_plate(
         )
     tell(f"response at {points} frequencies")
     asked, mesh = sweep_around(frequency, quality, points), hurry.response_mesh(alone)
-    response = harmonic_response(plate, asked, resolution=mesh, solved=pieces)
+    # What a deadline left coarse would not be solved so again.
+    solved_so = functools.partial(_response_again, plate, label, asked, mesh)
+    again = None if mesh is COARSE else solved_so
+    response = harmonic_response(plate, asked, resolution=mesh, solved=pieces, again=again)
     del pieces  # hundreds of megabytes
-    if not alone.left_coarse:
-        again = functools.partial(_response_again, plate, label, asked, mesh)
-        response = replace(response, _again=again)
     try:
         circuit = response.equivalent_circuit()
     except InputError:

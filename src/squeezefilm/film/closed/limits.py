@@ -9,6 +9,7 @@ Sources: Salbu 1964, 10.1115/1.3653080; Biet et al., equations 5 to 12.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -103,6 +104,13 @@ def _require_positive(what: str, value: Any) -> None:
         raise OutOfRangeError(
             f"{what} = {least:.4g} must be above 0; take a smaller amplitude or a larger roughness"
         )
+
+
+@lru_cache(maxsize=8)
+def _gauss(count: int) -> tuple[si.FloatArray, si.FloatArray]:
+    """Gauss points and weights: finding them takes longer than using them."""
+    node, weight = np.polynomial.legendre.leggauss(count)
+    return node, weight
 
 
 def _column(value: si.DimensionlessLike) -> Any:
@@ -218,7 +226,7 @@ def contact_mean_pressure(
     previous: Any = None
     change = np.inf
     for count in (8, 16, 32, 64, 128, 256):
-        node, weight = np.polynomial.legendre.leggauss(count)
+        node, weight = _gauss(count)
         E = (middle[:, np.newaxis] + half[:, np.newaxis] * node).ravel()
         theta = _true(E, e)
         dX = np.sqrt(1 - e**2) / (1 - e * np.cos(E)) / gap.ridge_number

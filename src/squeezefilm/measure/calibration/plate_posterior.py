@@ -38,6 +38,8 @@ BOUND = ("resonance_frequency", "parallel_resonance_frequency", "coupling_coeffi
 """Of which each follows from the other two, by what a coupling coefficient is."""
 # Of ln k: a body that is nearly all ceramic stays below.
 _MOST_COUPLED = -0.01
+# In standard deviations: further out the covariances of errors cannot be told from singular ones.
+_FURTHEST = 10.0
 _PASSES = 3
 
 
@@ -173,7 +175,14 @@ class PlateProblem:
 
     def log_posterior(self, points: si.DimensionlessArray) -> si.FloatArray:
         """The logarithm of the posterior density, but for a constant, at `points` (points,
-        parameters + kinds): scores, and last those of the discrepancy's scales."""
+        parameters + kinds): scores, and last those of the discrepancy's scales; none of a
+        discrepancy `_FURTHEST` from the usual, which proposals of the sampler reach."""
+        usual = np.all(np.abs(points[:, -len(KINDS) :]) < _FURTHEST, axis=1)
+        found = np.full(len(points), -np.inf)
+        found[usual] = self._log_posterior(points[usual])
+        return found
+
+    def _log_posterior(self, points: si.DimensionlessArray) -> si.DimensionlessArray:
         scores, scales = points[:, : -len(KINDS)], scales_of(points[:, -len(KINDS) :])
         prior = -np.sum(points**2, axis=1) / 2
         logs = self.answers(scores)

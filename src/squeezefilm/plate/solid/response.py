@@ -245,6 +245,7 @@ def harmonic_response(
     extrapolate: bool = True,
     progress: Callable[[str, float], None] | None = None,
     solved: Sequence[RefinedModes] = (),
+    again: Callable[[], HarmonicResponse] | None = None,
 ) -> HarmonicResponse:
     """The response to one volt on the drive over a band of frequencies (Hz, ascending).
 
@@ -256,7 +257,8 @@ def harmonic_response(
     band stands at its frequency extrapolated from two meshes, where `solve_modes` has it (the
     largest amplitude lies a little beside it, by damping and other modes). Without `extrapolate`,
     or on a mesh other than NORMAL and FINE, resonances lie where the mesh has them. `solved` are
-    modes in the band as `solve_for_response` has them: their meshes and factors serve again.
+    modes in the band as `solve_for_response` has them: their meshes and factors serve again, and
+    `again` is then how the same is had without them (see `SolvedAgain`).
 
     Raises `InputError` for frequencies that are not ascending and positive or a plate without a
     driven electrode, `GeometryError` for a load beside the plate.
@@ -287,7 +289,8 @@ def harmonic_response(
         q,
         potentials,
         tuple(loads),
-        functools.partial(
+        again
+        or functools.partial(
             harmonic_response,
             plate,
             f,

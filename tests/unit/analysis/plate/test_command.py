@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -127,9 +127,11 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Any]]:
         *,
         resolution: Resolution,
         solved: list[str],
+        again: Callable[[], Response],
     ) -> Response:
         assert resolution == NORMAL
         assert solved == ["pieces"]
+        assert callable(again)
         asked["sweep"] = frequencies
         return Response(plate, frequencies, asked["circuit"])
 

@@ -257,3 +257,16 @@ def test_an_error_that_all_readings_share_is_not_averaged_away() -> None:
         # Of a model that is believed of little, so that only the readings tell.
         logs = np.log(predictive(posed, fixed(20.0), seed=1).of(RESONANCES[0]))
         assert logs.std() == pytest.approx(expected, rel=0.1)
+
+
+def test_a_proposal_far_from_anything_has_no_density() -> None:
+    """The sampler's moves along differences of walkers propose what no walker would accept."""
+    asked = problem(seen("mass", (0.5, 0.0), 0.01), seen("amplitude_per_volt", (0.0, 0.5), 0.02))
+    random = np.random.default_rng(3)
+    near = random.normal(size=(50, 2 + len(KINDS)))
+    far = near * 40
+    found = asked.log_posterior(np.vstack([near, far]))
+    assert np.all(np.isfinite(found[:50]))
+    np.testing.assert_array_equal(found[:50], asked.log_posterior(near))
+    assert not np.any(np.isnan(found))
+    assert np.mean(np.isneginf(found[50:])) > 0.9
