@@ -42,9 +42,9 @@ def tell(text):
     took[name] = took.get(name, 0.0) + now - began
     last[:] = [text, now]
 from pathlib import Path
-from squeezefilm.report.display import figures
+from squeezefilm.cli.describe import _prepare, _prepare_figures
 from squeezefilm.second_process import second_process
-with second_process(figures.prepare):
+with second_process(_prepare, _prepare_figures):
     from squeezefilm.analysis.analyze import analyze
     from squeezefilm.display import load_display
     from squeezefilm.report.display.page import write_analysis

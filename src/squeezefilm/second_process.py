@@ -61,16 +61,17 @@ class Piece:
 
 
 class SecondProcess:
-    """A process that takes pieces of work. `prepare` loads what they need, meanwhile."""
+    """A process that takes pieces of work. The first of `prepare` loads what they need, before any
+    is sent; the others follow whenever there is nothing to do."""
 
-    def __init__(self, prepare: Callable[[], object]) -> None:
+    def __init__(self, *prepare: Callable[[], object]) -> None:
         self._line: Connection | None = None
         self._kept: list[Any] = []
         self._waiting: deque[Piece] = deque()
         self._sent: deque[Piece] = deque()
         self._warned: list[warnings.WarningMessage] = []
         self._change = threading.Condition()
-        self._is_lost = True
+        self._is_lost, self._is_ready = True, False
         spawn = multiprocessing.get_context("spawn")
         # Where the system has no room for a process, this one does everything.
         with contextlib.suppress(OSError):
@@ -124,7 +125,8 @@ class SecondProcess:
         return None
 
     def _send_ahead(self) -> None:
-        while not self._is_lost and self._waiting and len(self._sent) < _AHEAD:
+        # What is sent to one that still loads would be waited for.
+        while self._is_ready and not self._is_lost and self._waiting and len(self._sent) < _AHEAD:
             piece = self._waiting.popleft()
             # What cannot be sent is done here.
             with contextlib.suppress(pickle.PicklingError, AttributeError, TypeError):
@@ -161,10 +163,16 @@ class SecondProcess:
         """Take answers, which come in the order of what was sent, and send what is next."""
         with contextlib.suppress(OSError, EOFError):
             while True:
-                is_done, value, warned = line.recv()
+                answer = line.recv()
                 with self._change:
+                    if answer is None:
+                        self._is_ready = True
+                        self._send_ahead()
+                        self._change.notify_all()
+                        continue
                     if not self._sent:
                         continue
+                    is_done, value, warned = answer
                     piece = self._sent.popleft()
                     piece.value, piece.is_done = value, is_done
                     self._warned += warned
@@ -185,12 +193,12 @@ _PRESENT: ContextVar[SecondProcess | None] = ContextVar("second process", defaul
 
 
 @contextmanager
-def second_process(prepare: Callable[[], object]) -> Iterator[SecondProcess | None]:
+def second_process(*prepare: Callable[[], object]) -> Iterator[SecondProcess | None]:
     """A `SecondProcess` for the block; None unless there is a second processor for it."""
     if _processors() < 2:
         yield None
         return
-    process = SecondProcess(prepare)
+    process = SecondProcess(*prepare)
     before = _PRESENT.set(process)
     try:
         # Threads of either would wait for the other's.
@@ -245,22 +253,32 @@ def _deaf_to_interrupts() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _work(line: Connection, prepare: Callable[[], object]) -> None:
-    """Do what comes, and answer each piece."""
+def _work(line: Connection, prepare: Sequence[Callable[[], object]]) -> None:
+    """Say that it is ready, then do what comes, and answer each piece."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     messages: queue.SimpleQueue[Any] = queue.SimpleQueue()
     threading.Thread(target=_take, args=(line, messages), daemon=True).start()
-    # What fails here is done, and fails, where somebody sees it.
+    first, *others = prepare
+    _load(first)
+    with contextlib.suppress(OSError), one_blas_thread():
+        line.send(None)
+        _answer(line, messages, deque(others))
+
+
+def _load(prepare: Callable[[], object]) -> None:
+    """What fails here is done, and fails, where somebody sees it."""
     with contextlib.suppress(Exception), loading():
         prepare()
-    with one_blas_thread():
-        _answer(line, messages)
 
 
-def _answer(line: Connection, messages: queue.SimpleQueue[Any]) -> None:
-    """Do what comes, until the line is gone."""
+def _answer(
+    line: Connection, messages: queue.SimpleQueue[Any], others: deque[Callable[[], object]]
+) -> None:
+    """Do what comes, until the line is gone, and between times what else there is to prepare."""
     kept: list[Any] = []
     while True:
+        while others and messages.empty():
+            _load(others.popleft())
         message = messages.get()
         if not isinstance(message, tuple):
             kept.append(message)

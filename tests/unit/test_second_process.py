@@ -36,9 +36,16 @@ def nothing() -> None:
     """Prepares nothing."""
 
 
+def ready(process: SecondProcess) -> SecondProcess:
+    """The process, once it has loaded what it needs."""
+    with process._change:
+        assert process._is_lost or process._change.wait_for(lambda: process._is_ready, 30)
+    return process
+
+
 @pytest.fixture
 def process() -> SecondProcess:
-    return SecondProcess(time.time)
+    return ready(SecondProcess(time.time))
 
 
 def done(process: SecondProcess, *pieces: Piece) -> list[object]:

@@ -65,7 +65,7 @@ from squeezefilm.render.fidelity.survival import FidelityTable
 from squeezefilm.render.fidelity.trace import FrictionTrace
 from squeezefilm.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.results import Result, stamp, to_json
-from squeezefilm.second_process import later, values
+from squeezefilm.second_process import Piece, later, values
 
 BAND_POINTS, BAND_SAMPLES = 9, 64
 """Amplitudes at which the band of the friction is computed, and draws at each."""
@@ -202,11 +202,14 @@ class Analysis(Result):
         """Which grating survives at which speed; None where no voltage makes an amplitude."""
         return survival_by_drive(self.display, self.prediction)
 
-    def compute(self, names: Sequence[str], tell: SayProgress) -> None:
-        """Compute properties that are asked for in any case, by their `names`; a second process
-        takes its share."""
-        pieces = {name: later(getattr, self, name) for name in names}
-        for name, piece in reversed(pieces.items()):
+    def begin(self, names: Sequence[str]) -> dict[str, Piece]:
+        """Properties that are asked for in any case, by their `names`, for whichever process is
+        free; the longest first."""
+        return {name: later(getattr, self, name) for name in names}
+
+    def compute(self, begun: dict[str, Piece], tell: SayProgress) -> None:
+        """Wait for what was begun, or compute it here."""
+        for name, piece in reversed(begun.items()):
             tell(name.replace("_", " "))
             vars(self)[name] = values(piece)[0]
 

@@ -148,7 +148,8 @@ def analyze(asked: AnalyzeOptions) -> None:
             theory=asked.theory,
             quiet=asked.as_json,
         )
-    with second_process(partial(_prepare, asked.out is not None)), working(asked.as_json) as step:
+    prepare = (_prepare, _prepare_figures) if asked.out is not None else (_prepare,)
+    with second_process(*prepare), working(asked.as_json) as step:
         # Both processes load the rest at the same time.
         with loading():
             from squeezefilm.analysis.analyze import analyze as run
@@ -156,12 +157,13 @@ def analyze(asked: AnalyzeOptions) -> None:
         result = run(display, **given(asked, leave="target out as_json whole"), progress=step)
         written = None
         if asked.out is None and not asked.as_json:
-            result.compute(SHOWN_WITH_ALL if asked.whole else SHOWN, step)
+            result.compute(result.begin(SHOWN_WITH_ALL if asked.whole else SHOWN), step)
         if asked.out is not None:
             with loading():
                 from squeezefilm.report.display.page import write_analysis
 
-                _prepare(figures=True)
+                _prepare()
+                _prepare_figures()
             written = write_analysis(result, asked.out, progress=step)
     show = partial(show_analysis, whole=asked.whole)
     answer(asked.as_json, result, show, report=written)
@@ -169,12 +171,15 @@ def analyze(asked: AnalyzeOptions) -> None:
         typer.echo("add --out DIR to write result.json and a report with figures")
 
 
-def _prepare(figures: bool) -> None:
+def _prepare() -> None:
     """Load what an analysis takes, before there is anything to analyse."""
     import_module("squeezefilm.analysis.analyze")
     import_module("squeezefilm.chain.friction").prepare()
-    if figures:
-        import_module("squeezefilm.report.display.figures").prepare()
+
+
+def _prepare_figures() -> None:
+    """Load what figures take, before there is anything to draw."""
+    import_module("squeezefilm.report.display.figures").prepare()
 
 
 @dataclass(frozen=True)

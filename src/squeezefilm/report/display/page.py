@@ -90,8 +90,9 @@ def write_analysis(
     where the folder cannot be written to.
     """
     folder, tell = require_folder(folder), progress or (lambda _: None)
+    begun = analysis.begin(_BESIDE)
     figures = {item: later(drawing, analysis, item.key) for item in FIGURES if not item.needs}
-    analysis.compute(_BESIDE, tell)
+    analysis.compute(begun, tell)
     for item in FIGURES:
         if item.needs:
             shows = {name: getattr(analysis, name) for name in item.needs}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import time
 import itertools
 import subprocess
 import sys
@@ -171,6 +172,8 @@ def test_another_process_draws_the_same_from_what_a_figure_needs(
     with second_process(prepare) as aside:
         if aside is None:
             pytest.skip("there is one processor")
+        while not aside._is_ready:
+            time.sleep(0.01)
         # Without what was asked of it before.
         fresh, pieces = dataclasses.replace(analysis), {}
         for item in FIGURES:
