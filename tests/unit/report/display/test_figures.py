@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-import time
 import itertools
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from typing import Any
 
