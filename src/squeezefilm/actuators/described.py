@@ -7,6 +7,7 @@ A kind is a dataclass with `name`, `title`, `provenance` and one field that is n
 from __future__ import annotations
 
 import importlib
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.config.load import load_text
 from squeezefilm.config.scan import require_quick_toml
-from squeezefilm.errors import ConfigError
+from squeezefilm.errors import ConfigError, SqueezefilmError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.regular_file import read_regular_text
 from squeezefilm.results import Result
@@ -28,6 +29,19 @@ KINDS: dict[str, tuple[str, str]] = {
     ),
 }
 """By the table that a file has: the module and the dataclass that it is read into."""
+
+
+def is_actuator(name_or_path: str | Path) -> bool:
+    """Whether a preset's name or a TOML file is that of an actuator: it has the table of one of
+    `KINDS`. False for what cannot be read, which whoever reads it next says."""
+    text, path = str(name_or_path), Path(name_or_path)
+    if path.suffix != ".toml":
+        return text in presets.actuator_names()
+    try:
+        said = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+    except SqueezefilmError:
+        return False
+    return re.search(rf"^\s*\[+\s*({'|'.join(KINDS)})\b", said, re.MULTILINE) is not None
 
 
 def load_actuator(name_or_path: str | Path) -> Result:

@@ -9,7 +9,7 @@ from tests.unit.report import drawn
 from squeezefilm.actuators.motor.causal import averaged_graph, causal_graph
 from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
 from squeezefilm.actuators.motor.in_time import simulate
-from squeezefilm.report.motor.figures import (
+from squeezefilm.report.actuators.motor_figures import (
     causal_figure,
     foot_figure,
     map_figure,
@@ -32,9 +32,9 @@ def test_the_graph_draws_every_element_and_what_goes_between() -> None:
 
 def test_curves_map_and_foot_are_drawn() -> None:
     curve = speed_force_curve(motor(), WORKING, 4)
-    assert f"Stalls at {curve[0].force:.3g} N" in words(speed_force_figure(curve))
     found = motor_map(motor(), np.array([5.0, 60.0]), np.array([0.5e-6, 2e-6]))
     assert "no-load speed (mm/s)" in words(map_figure(found))
     feet = motor().feet
     moved = simulate(motor(), WORKING, periods=20, traced=2)
     assert "across it (µm)" in words(foot_figure((moved, feet.across[0], feet.along[0])))
+    assert f"Stalls at {curve[0].force:.3g} N" in words(speed_force_figure((curve, moved)))

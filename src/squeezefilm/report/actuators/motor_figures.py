@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from squeezefilm.actuators.motor.averaged import AveragedMotor
     from squeezefilm.actuators.motor.causal import CausalGraph
+    from squeezefilm.actuators.motor.closed_loop import TrackedForce
     from squeezefilm.actuators.motor.curves import MotorMap
     from squeezefilm.actuators.motor.in_time import MotorMotion
 
@@ -80,7 +81,9 @@ def causal_figure(graph: CausalGraph) -> Figure:
         )
         start, end = axes.transData.transform([(x0, y0), (x1, y1)])
         across = np.array([end[1] - start[1], start[0] - end[0]])
-        on_it = axes.transData.inverted().transform((start + end) / 2 + bend / 2 * across)
+        # Nearer to where it comes from: lines that cross halfway keep their words apart.
+        along = start + 0.36 * (end - start)
+        on_it = axes.transData.inverted().transform(along + 0.46 * bend * across)
         axes.text(
             float(on_it[0]),
             float(on_it[1]),
@@ -114,19 +117,43 @@ def _box(axes: Axes, name: str, place: tuple[float, float], causal: bool | None)
 
 
 @style.drawn
-def speed_force_figure(curve: tuple[AveragedMotor, ...]) -> Figure:
-    """Speed and efficiency over the force, from rest to no load."""
+def speed_force_figure(known: tuple[tuple[AveragedMotor, ...], MotorMotion]) -> Figure:
+    """Speed and efficiency over the force, from rest to no load; and where the motor resolved in
+    time is at one speed."""
+    curve, motion = known
     figure = style.new_figure(
         f"Stalls at {curve[0].force:.3g} N, runs {1e3 * curve[-1].speed:.3g} mm/s without a load",
-        curve[0].model,
+        "cross: resolved in time, the slider moved at that speed",
         4.0,
     )
     left, right = figure.subplots(1, 2)
     force = [one.force for one in curve]
     left.plot(force, [1e3 * one.speed for one in curve], color=style.BLUE)
+    guide = curve[0].thrust - curve[0].force
+    left.plot(motion.thrust - guide, 1e3 * motion.final_speed, "x", color=style.ORANGE, ms=8)
     left.set(xlabel="force on the load (N)", ylabel="speed (mm/s)")
-    right.plot(force, [100 * one.efficiency for one in curve], color=style.ORANGE)
+    right.plot(force, [100 * one.efficiency for one in curve], color=style.BLUE)
     right.set(xlabel="force on the load (N)", ylabel="efficiency (%)")
+    return figure
+
+
+@style.drawn
+def force_step_figure(tracked: TrackedForce) -> Figure:
+    """A commanded force and what came of it, and the voltage that the law took."""
+    error = 100 * (tracked.force[-1] / tracked.wanted[-1] - 1)
+    figure = style.new_figure(
+        f"The force law ends {abs(error):.2g} % from the force that is wanted",
+        "the slider moved at the best load's speed; each point a mean over one step of the law",
+        4.0,
+    )
+    left, right = figure.subplots(1, 2)
+    time = 1e3 * tracked.time
+    left.step(time, tracked.wanted, where="pre", color="black", label="wanted")
+    left.plot(time, tracked.force, color=style.BLUE, label="in time")
+    left.set(xlabel="time (ms)", ylabel="force (N)")
+    style.legend_below(left, columns=2)
+    right.step(time, tracked.voltage, where="pre", color=style.ORANGE)
+    right.set(xlabel="time (ms)", ylabel="voltage (V)")
     return figure
 
 
@@ -147,7 +174,8 @@ def map_figure(found: MotorMap) -> Figure:
         strict=True,
     ):
         drawn = axes.pcolormesh(x, y, np.ma.masked_invalid(values), shading="nearest")
-        figure.colorbar(drawn, ax=axes, label=label)
+        figure.colorbar(drawn, ax=axes)
+        axes.set_title(label, fontsize="medium")
         axes.set(xlabel="amplitude (µm)", yscale="log")
         style.plain_log(axes.yaxis)
     figure.axes[0].set_ylabel("preload (N)")

@@ -1,0 +1,208 @@
+"""What `squeezefilm analyze` computes of a planar standing-wave motor."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
+from squeezefilm.actuators.motor.averaged import AveragedMotor, no_load_speed, stall_force
+from squeezefilm.actuators.motor.causal import CausalGraph, averaged_graph
+from squeezefilm.actuators.motor.closed_loop import TrackedForce, inverted_law, track_force
+from squeezefilm.actuators.motor.curves import MotorMap, motor_map, speed_force_curve
+from squeezefilm.actuators.motor.description import MotorDescription
+from squeezefilm.actuators.motor.in_time import MotorMotion, simulate
+from squeezefilm.analysis.actuators.effects import Effect, effects
+from squeezefilm.errors import InputError
+from squeezefilm.progress import SayProgress
+from squeezefilm.results import Result, to_json
+
+# Where the mean over a period is off by more than this of µ times the preload, it is warned of.
+_APART = 0.05
+_MAP = 10
+_PERIODS, _TRACED = 600, 3
+_STEP = (0.3, 0.7)
+_STEPS = 60
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MotorAnalysis(Result):
+    """A motor at its voltage.
+
+    Attributes:
+        described: the motor as its file describes it.
+        motor: with its plate solved.
+        curve: from rest to no load.
+        best: the point of it with the largest efficiency.
+        map: over preload and amplitude, about those that it has.
+        motion: resolved in time at the speed of `best`.
+        graph: what makes what.
+        tracked: the force law's answer to a step, at that speed; None where a force cannot be
+            commanded.
+        effects: what each assumed value does to stall force and speed without a load.
+        warnings: in sentences.
+    """
+
+    described: MotorDescription
+    motor: AssembledMotor
+    voltage: si.Volt
+    curve: tuple[AveragedMotor, ...]
+    best: AveragedMotor
+    map: MotorMap
+    motion: MotorMotion
+    graph: CausalGraph
+    tracked: TrackedForce | None
+    effects: tuple[Effect, ...]
+    warnings: tuple[str, ...]
+    _shown: ClassVar[str] = "described.name voltage stall_force no_load_speed"
+
+    @property
+    def rest(self) -> AveragedMotor:
+        """The motor stalled."""
+        return self.curve[0]
+
+    @property
+    def stall_force(self) -> si.Newton:
+        """The load that just stops it (N)."""
+        return self.rest.force
+
+    @property
+    def no_load_speed(self) -> si.MetrePerSecond:
+        """Its speed where nothing is left for a load (m/s)."""
+        return self.curve[-1].speed
+
+    @property
+    def free_amplitude(self) -> si.Metre:
+        """Of the lobe at this voltage without a slider (m)."""
+        return self.voltage * self.motor.amplitude_per_volt
+
+    @property
+    def thrust_apart(self) -> si.Dimensionless:
+        """Averaged less resolved thrust at the speed of `best`, over µ times the preload (1)."""
+        described = self.motor.motor
+        most = described.contact.friction_coefficient * described.cradle.preload
+        return (self.best.thrust - self.motion.thrust) / most
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers for ``--json``, with units in the keys."""
+        mode = self.motor.modes[0].working
+        return {
+            "actuator": self.described.name,
+            "kind": "motor",
+            "voltage_V": self.voltage,
+            "resonance_frequency_Hz": mode.resonance_frequency,
+            "quality_factor": mode.quality_factor,
+            "free_amplitude_m": self.free_amplitude,
+            "amplitude_under_the_slider_m": self.rest.amplitude,
+            "preload_N": self.motor.motor.cradle.preload,
+            "stall_force_N": self.stall_force,
+            "no_load_speed_m_per_s": self.no_load_speed,
+            "holding_force_unpowered_N": self.motor.quiescent_force,
+            "contact_share": self.rest.contact_share,
+            "best": to_json(self.best) | {"efficiency": self.best.efficiency},
+            "thrust_in_time_N": self.motion.thrust,
+            "averaged_less_resolved_thrust": self.thrust_apart,
+            "energy_residual": self.motion.energy_residual,
+            "highest_voltage_V": self.motor.highest_voltage,
+            "speed_force_curve": [
+                {"speed_m_per_s": one.speed, "force_N": one.force, "efficiency": one.efficiency}
+                for one in self.curve
+            ],
+            "effects": to_json(self.effects),
+            "warnings": list(self.warnings),
+        }
+
+
+@si.checked_numbers
+def analyze_motor(
+    described: MotorDescription,
+    *,
+    voltage: Annotated[si.Volt, si.Above(0.0)] | None = None,
+    progress: SayProgress | None = None,
+) -> MotorAnalysis:
+    """A described motor at a voltage (V, zero-to-peak; its own if None): averaged, resolved in
+    time at its best load, over preload and amplitude, and under its force law.
+
+    Valid as the models are, see `averaged` and `simulate`. Raises what they raise:
+    `OutOfRangeError` for a preload under which it stalls, a foot over a node, or a voltage at which
+    the ceramic loses its poling.
+    """
+    tell = progress or (lambda _: None)
+    volts = described.motor.voltage if voltage is None else voltage
+    tell("modes of the plate")
+    motor = assembled(described.motor)
+    working = Working(voltage=volts)
+    tell("speed and force")
+    curve = speed_force_curve(motor, working)
+    best = max(curve, key=lambda one: one.efficiency)
+    tell("in time")
+    motion = simulate(motor, working, speed=best.speed, periods=_PERIODS, traced=_TRACED)
+    tell("preload and amplitude")
+    cradle, amplitude = described.motor.cradle, curve[0].amplitude
+    over = motor_map(
+        motor,
+        cradle.preload * np.geomspace(0.1, 2.5, _MAP),
+        amplitude * np.linspace(0.2, 2.0, _MAP),
+        progress=lambda done, of: None if done % _MAP else tell(f"{done} of {of} points"),
+    )
+    tell("force law")
+    tracked, why_not = _step(motor, best.speed, amplitude)
+    tell("what assumed values do")
+    moved = effects(described, described.provenance, lambda one: _answers(one, volts), _tried)
+    found = MotorAnalysis(
+        described, motor, volts, curve, best, over, motion, averaged_graph(motor), tracked, moved, ()
+    )
+    return dataclasses.replace(found, warnings=tuple(_warnings(found, why_not)))
+
+
+def _step(
+    motor: AssembledMotor, speed: si.MetrePerSecond, amplitude: si.Metre
+) -> tuple[TrackedForce | None, str]:
+    """The force law's answer to a step between two shares of the largest force at a speed."""
+    try:
+        law = inverted_law(motor, np.array([speed]), amplitude * np.linspace(0.3, 1.0, 12))
+    except InputError as error:
+        return None, f"no force can be commanded at the best load's speed: {error}"
+    low, high = (share * float(law.thrust.max()) for share in _STEP)
+    wanted = np.repeat([low, high], _STEPS // 2)
+    return track_force(motor, law, wanted, speed), ""
+
+
+def _answers(described: MotorDescription, voltage: si.Volt) -> Mapping[str, float]:
+    motor, working = assembled(described.motor), Working(voltage=voltage)
+    return {
+        "stall_force_N": stall_force(motor, working),
+        "no_load_speed_m_per_s": no_load_speed(motor, working),
+    }
+
+
+def _tried(path: str) -> bool:
+    """Feet would leave the wave, and each of the plate's own values is a solve: but for its Q they
+    are for an analysis of the plate as a display."""
+    in_plate = path.startswith(("motor.plate.", "motor.second_plate."))
+    return not path.startswith("motor.feet.") and (
+        not in_plate or path == "motor.plate.quality_factor"
+    )
+
+
+def _warnings(found: MotorAnalysis, why_no_force: str) -> list[str]:
+    said = []
+    if abs(found.thrust_apart) > _APART:
+        said.append(
+            f"At its best load the mean over a period gives {found.best.thrust:.3g} N and the "
+            f"motion in time {found.motion.thrust:.3g} N: the slider jumps for several periods, "
+            "which the mean does not know. Press it harder, or take the numbers in time."
+        )
+    if found.voltage > 0.8 * found.motor.highest_voltage:
+        said.append(
+            f"The voltage is {100 * found.voltage / found.motor.highest_voltage:.0f} % of that at "
+            "which the ceramic begins to lose its poling."
+        )
+    if found.no_load_speed < 0:
+        said.append("It moves against the direction that its cradle names: its feet push back.")
+    return [*said, *([why_no_force] if why_no_force else [])]

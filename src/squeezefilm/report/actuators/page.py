@@ -1,0 +1,100 @@
+"""The page of an actuator: what one decides from, its figures, and where its values are from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from squeezefilm.config.provenance import Provenance
+from squeezefilm.report.kit import style
+from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.report.kit.page_style import (
+    as_html,
+    bullets,
+    page,
+    picture_sections,
+    section,
+    stamped,
+    text_table,
+)
+from squeezefilm.report.kit.point_rows import Row
+from squeezefilm.results import stamp
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class Described(Protocol):
+    """An actuator as its file describes it."""
+
+    name: str
+    title: str
+
+    @property
+    def provenance(self) -> Mapping[str, Provenance]:
+        """Where each value is from."""
+
+
+class ActuatorAnalysis(Protocol):
+    """What every analysis of an actuator has."""
+
+    @property
+    def described(self) -> Any:
+        """The actuator, `Described`."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """In sentences."""
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers, with units in the keys."""
+
+
+def assumed_words(provenance: Mapping[str, Provenance]) -> str:
+    """How many of an actuator's values are assumed, in a sentence."""
+    assumed = sum(one.evidence == "assumed" for one in provenance.values())
+    return (
+        f"{assumed} of {len(provenance)} values with a source are assumed; the page (--out DIR) "
+        "lists them and says what they do."
+    )
+
+
+def write_page(
+    found: ActuatorAnalysis,
+    folder: Path,
+    *,
+    key_numbers: Sequence[Row],
+    figures: Mapping[str, tuple[str, Figure]],
+    more: str = "",
+    pictures: Mapping[str, bytes] | None = None,
+) -> Path:
+    """Write result.json, a PNG of each of the `figures` (by file name: heading and figure),
+    other `pictures` by file name, and report.html into `folder`; the path of the page.
+
+    `more` are sections of HTML after the figures. Raises `InputError` where the folder cannot be
+    written to.
+    """
+    folder, described = require_folder(folder), found.described
+    summary = found.summary()
+    stamped_with = stamp(summary)
+    files: dict[str, str | bytes] = {
+        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
+    }
+    files |= pictures or {}
+    files["result.json"] = json_text(summary | {"stamp": stamped_with})
+    body = section("Warnings", bullets(found.warnings)) + section(
+        "Key numbers", text_table("Zero to peak", ("quantity", "value", "remark"), key_numbers)
+    )
+    body += picture_sections(figures) + more + _sources(described.provenance)
+    title = as_html(described.title)
+    foot = stamped(stamped_with, "SHA-256 of the numbers")
+    files["report.html"] = page(title, title, as_html(described.name), body, foot)
+    write_folder(folder, files)
+    return folder / "report.html"
+
+
+def _sources(provenance: Mapping[str, Provenance]) -> str:
+    rows = [(path, one.evidence, one.source) for path, one in provenance.items()]
+    head = ("value", "evidence", "source")
+    return section("Where the values come from", text_table("As the file says", head, rows))
