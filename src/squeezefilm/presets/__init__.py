@@ -106,8 +106,8 @@ def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folde
         return folder / f"{text}.toml"
     if looks_like_name and kind == "preset" and text in actuator_names():
         raise ConfigError(
-            f"'{text}' is a preset of an actuator, and a display is wanted here; squeezefilm analyze "
-            f"takes it. Displays: {', '.join(known)}"
+            f"'{text}' is a preset of an actuator, and a display is wanted here; squeezefilm "
+            f"analyze takes it. Displays: {', '.join(known)}"
         )
     if looks_like_name and not _exists(candidate):
         kinds = "Studies" if kind == "study" else f"{kind.capitalize()}s"

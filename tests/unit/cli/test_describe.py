@@ -23,7 +23,9 @@ from squeezefilm.presets import display_names
 
 DISPLAY = "biet2008-plate"
 StandsIn = Callable[..., Any]
-ANSWER = SimpleNamespace(summary=lambda: {"found": 1}, compute=lambda names, tell: None)
+ANSWER = SimpleNamespace(
+    summary=lambda: {"found": 1}, begin=lambda names: {}, compute=lambda begun, tell: None
+)
 
 
 def test_the_verbs_are_those_of_the_program() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
@@ -10,12 +9,12 @@ from typing import TypeVar
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.parameters import unit_at, value_at, with_values
+from squeezefilm.analysis.parameters import unit_at, with_values
 from squeezefilm.config.provenance import Provenance
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.errors import SqueezefilmError
 
 MOVED: si.Dimensionless = 0.2
-"""A value that has no range of its own is moved by so much of it, both ways (tried, not a range)."""
+"""A value without a range of its own is moved by so much of it, both ways (tried, not a range)."""
 
 _Described = TypeVar("_Described")
 
@@ -79,10 +78,11 @@ def _uncertain(
     for path, origin in provenance.items():
         if origin.evidence != "assumed" and origin.distribution is None:
             continue
-        with contextlib.suppress(InputError, AttributeError, TypeError, ValueError):
-            value, _ = value_at(described, path)
-            if isinstance(value, float) and value != 0:
-                yield path, value, origin
+        value: object = described
+        for part in path.split("."):
+            value = value[int(part)] if isinstance(value, tuple) else getattr(value, part, None)
+        if isinstance(value, float) and value != 0:
+            yield path, value, origin
 
 
 def _answered(

@@ -155,7 +155,17 @@ def analyze_motor(
     tell("what assumed values do")
     moved = effects(described, described.provenance, lambda one: _answers(one, volts), _tried)
     found = MotorAnalysis(
-        described, motor, volts, curve, best, over, motion, averaged_graph(motor), tracked, moved, ()
+        described,
+        motor,
+        volts,
+        curve,
+        best,
+        over,
+        motion,
+        averaged_graph(motor),
+        tracked,
+        moved,
+        (),
     )
     return dataclasses.replace(found, warnings=tuple(_warnings(found, why_not)))
 

@@ -9,7 +9,7 @@ from squeezefilm.analysis.actuators.motor import MotorAnalysis
 from squeezefilm.report.actuators import motor_figures
 from squeezefilm.report.actuators.effect_rows import EFFECTS, effect_head, effect_rows
 from squeezefilm.report.actuators.page import assumed_words, write_page
-from squeezefilm.report.kit.numbers import HZ, M, N, SPEED, V, W, shown
+from squeezefilm.report.kit.numbers import HZ, SPEED, M, N, V, W, shown
 from squeezefilm.report.kit.page_style import section, text_table
 from squeezefilm.report.kit.point_rows import Row
 from squeezefilm.report.kit.terminal import bullets, show_rows

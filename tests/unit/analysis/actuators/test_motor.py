@@ -1,0 +1,70 @@
+"""What `analyze` says of a motor is what its room computes."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import pytest
+
+from squeezefilm.actuators.described import load_actuator
+from squeezefilm.actuators.motor.assembled import Working
+from squeezefilm.actuators.motor.averaged import no_load_speed, stall_force
+from squeezefilm.analysis.actuators.motor import MotorAnalysis, analyze_motor
+from squeezefilm.errors import OutOfRangeError
+
+DESCRIBED = load_actuator("biet2008-motor")
+
+
+@pytest.fixture(scope="module")
+def found() -> MotorAnalysis:
+    return analyze_motor(DESCRIBED)
+
+
+@pytest.mark.slow
+def test_the_ends_of_the_curve_are_stall_and_no_load(found: MotorAnalysis) -> None:
+    working = Working(voltage=15.0)
+    assert found.stall_force == pytest.approx(stall_force(found.motor, working))
+    assert found.no_load_speed == pytest.approx(no_load_speed(found.motor, working))
+    assert found.best.efficiency == max(one.efficiency for one in found.curve)
+    assert found.best.output == pytest.approx(found.best.force * found.best.speed)
+
+
+@pytest.mark.slow
+def test_time_and_mean_agree_and_energy_is_kept(found: MotorAnalysis) -> None:
+    assert abs(found.thrust_apart) < 0.02
+    assert found.motion.energy_residual < 1e-5
+    assert found.tracked is not None
+    assert found.tracked.force[-1] == pytest.approx(found.tracked.wanted[-1], rel=0.02)
+    assert found.warnings == ()
+
+
+@pytest.mark.slow
+def test_the_map_goes_through_the_working_point(found: MotorAnalysis) -> None:
+    assert found.map.preload[0] < DESCRIBED.motor.cradle.preload < found.map.preload[-1]
+    assert found.map.amplitude[0] < found.rest.amplitude < found.map.amplitude[-1]
+
+
+@pytest.mark.slow
+def test_effects_are_of_what_is_assumed_beside_the_plate(found: MotorAnalysis) -> None:
+    paths = {one.path for one in found.effects}
+    assert {"motor.contact.tangential_stiffness", "motor.cradle.preload"} <= paths
+    assert not any(path.startswith("motor.feet") for path in paths)
+    one = next(one for one in found.effects if one.path == "motor.contact.normal_stiffness")
+    # At rest the thrust goes with k_t/k_n.
+    low, high = one.answers["stall_force_N"]
+    assert low > found.stall_force > high
+
+
+@pytest.mark.slow
+def test_its_json_has_units_in_its_keys(found: MotorAnalysis) -> None:
+    told = json.loads(json.dumps(found.summary(), allow_nan=False))
+    assert told["stall_force_N"] == found.stall_force
+    assert told["kind"] == "motor"
+
+
+def test_a_preload_that_stalls_is_refused_before_anything_long() -> None:
+    motor = DESCRIBED.motor
+    pressed = dataclasses.replace(motor, cradle=dataclasses.replace(motor.cradle, preload=400.0))
+    with pytest.raises(OutOfRangeError, match="the motor stalls"):
+        analyze_motor(dataclasses.replace(DESCRIBED, motor=pressed))
