@@ -1,0 +1,65 @@
+"""What the paper's conclusion says of its two neighbours: a planar standing-wave motor, of which it
+gives no number, and a display of 60 actuators that stretch the skin, whose sizes it does not give.
+"""
+
+from __future__ import annotations
+
+import math
+
+from squeezefilm.actuators.described import load_actuator
+from squeezefilm.actuators.motor.assembled import Working, assembled
+from squeezefilm.actuators.motor.averaged import averaged
+from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
+from squeezefilm.analysis.claims.values import ClaimValue, value_of
+
+_PRELOADS, _AMPLITUDES = (10.0, 20.0), (1.5e-6, 4e-6)
+_PRINTED_SURFACE = 10e-6
+
+
+def _array() -> SkinStretchArray:
+    described: SkinStretchArray = load_actuator("biet2008-skin-stretch").skin_stretch  # type: ignore[attr-defined]
+    return described
+
+
+@value_of("skin-stretch-free")
+def _() -> ClaimValue:
+    array, volts = _array(), _array().actuator.largest_voltage
+    return ClaimValue((array.bender.deflection_per_volt * volts,), note=f"at {volts:.3g} V")
+
+
+@value_of("skin-stretch-blocked")
+def _() -> ClaimValue:
+    array, volts = _array(), _array().actuator.largest_voltage
+    return ClaimValue((array.bender.force_per_volt * volts,), note=f"at {volts:.3g} V")
+
+
+@value_of("skin-stretch-surface")
+def _() -> ClaimValue:
+    array = _array()
+    apart = math.sqrt(_PRINTED_SURFACE / array.cradle.count)
+    return ClaimValue(
+        (array.cradle.active_area,),
+        (_PRINTED_SURFACE,),
+        note=f"60 contactors on 10 mm² would stand {1e3 * apart:.2g} mm apart",
+    )
+
+
+@value_of("skin-stretch-mass")
+def _() -> ClaimValue:
+    return ClaimValue((_array().budget.mass,), note="of the actuators alone, without clamps")
+
+
+@value_of("motor-contact")
+def _() -> ClaimValue:
+    motor = assembled(load_actuator("biet2008-motor").motor)  # type: ignore[attr-defined]
+
+    def share(preload: float, amplitude: float) -> float:
+        return averaged(motor, Working(amplitude=amplitude, preload=preload)).contact_share
+
+    (light, hard), (small, large) = _PRELOADS, _AMPLITUDES
+    pressed = share(hard, small) - share(light, small)
+    swung = share(hard, small) - share(hard, large)
+    return ClaimValue(
+        (pressed, swung),
+        note="how much longer feet touch under 20 N than under 10 N, and at 1.5 µm than at 4 µm",
+    )
