@@ -69,14 +69,20 @@ def materials(
 def new(
     file: Annotated[Path, typer.Argument(callback=reachable, help="The TOML file to write.")],
     source: Annotated[
-        str,
+        str | None,
         typer.Option("--from", help="The preset to start from; squeezefilm presets lists them."),
-    ],
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")] = False,
 ) -> None:
     """Write a commented TOML file of your own, starting from a preset."""
     from squeezefilm.display import new_display_file
+    from squeezefilm.presets import display_names
 
+    if source is None:
+        raise InputError(
+            f"a new file starts from a preset; say which: squeezefilm new {file} --from "
+            f"biet2008-plate. There are {', '.join(display_names())}"
+        )
     new_display_file(file, source, replace=force)
     typer.echo(f"wrote {file}; edit it, then: squeezefilm analyze {file}")
 

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 
 from squeezefilm import quantities as si
 
+LEVEL: si.Dimensionless = 0.95
+"""Of an interval, unless said."""
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -16,7 +19,7 @@ class Estimate:
     standard_error: float
     interval: tuple[float, float]
     unit: str
-    level: si.Dimensionless = 0.95
+    level: si.Dimensionless = LEVEL
 
 
 @dataclass(frozen=True)

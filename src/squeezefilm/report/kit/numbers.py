@@ -19,6 +19,9 @@ if typing.TYPE_CHECKING:
 
 M, HZ, S, N, V = si.Unit("m"), si.Unit("Hz"), si.Unit("s"), si.Unit("N"), si.Unit("V")
 _TYPED_MICRO = re.compile(r"(?<=\d )u(?=[msNVAFWH]\b)")
+_TYPED_OHM = re.compile(r"(?<=\d )([kMmµG]?)ohm\b")
+_TYPED_POWER = re.compile(r"(?:(?<=\d )|(?<=\d kg/)|(?<=\d N/)|(?<=\d C/))([kcmµn]?m)([23])(?!\w)")
+_RAISED = {"2": "²", "3": "³"}
 _MINUS = re.compile(r"(?<![\w.\-−–/])-(?=\d)")
 A, W, SPEED, PER_VOLT = si.Unit("A"), si.Unit("W"), si.Unit("m/s"), si.Unit("m/V")
 
@@ -70,11 +73,13 @@ def span(low: float, high: float) -> str:
 
 def printable(text: str) -> str:
     """A text in one line without control characters (a terminal would obey them), its units and
-    signs as everywhere: "2 um" is 2 µm, -3 is −3."""
+    signs as everywhere: "2 um" is 2 µm, "5 ohm" 5 Ω, "1 kg/m3" 1 kg/m³, -3 is −3."""
     line = " ".join(
         "".join(" " if unicodedata.category(c) in ("Cc", "Cf", "Cs") else c for c in text).split()
     )
-    return _MINUS.sub("−", _TYPED_MICRO.sub("µ", line))
+    line = _TYPED_OHM.sub(r"\1Ω", _TYPED_MICRO.sub("µ", line))
+    line = _TYPED_POWER.sub(lambda found: found[1] + _RAISED[found[2]], line)
+    return _MINUS.sub("−", line)
 
 
 def unit_stays(text: str) -> str:

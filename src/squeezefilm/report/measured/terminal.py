@@ -9,7 +9,7 @@ from typing import Any
 
 from squeezefilm import quantities as si
 from squeezefilm.measure.fits.by_kind import Fit
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate
+from squeezefilm.measure.fits.estimate import LEVEL, Adequacy, Estimate
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
 from squeezefilm.report.kit.numbers import printable, shown
@@ -60,21 +60,21 @@ def _show_one(title: str, fit: Fit) -> None:
     bullets(console, [(word, fit.adequacy.sentence, look)])
 
 
-HEAD = ("quantity", "value", "interval", "standard error")
+HEAD = ("quantity", "value", si.percent(LEVEL) + " interval", "standard error")
 _LEAST_DIGITS, _MOST_DIGITS = 3, 9
 
 
 def estimate_rows(fit: Fit) -> list[tuple[str, ...]]:
-    """The estimates of a fit: name, value, interval with its level, standard error; with so many
-    digits that two of the standard error are seen."""
+    """The estimates of a fit: name, value, interval (with its level where that is no usual one),
+    standard error; with so many digits that two of the standard error are seen."""
     rows: list[tuple[str, ...]] = []
     for name, one in estimates(fit):
         digits = _digits(one.value, one.standard_error)
         low, high = (valued(value, one.unit, digits) for value in one.interval)
-        level = si.percent(one.level)
+        level = "" if one.level == LEVEL else f" ({si.percent(one.level)})"
         error = valued(one.standard_error, one.unit, 2)
         value = valued(one.value, one.unit, digits)
-        rows.append((name, value, f"{low} to {high} ({level})", error))
+        rows.append((name, value, f"{low} to {high}{level}", error))
     return rows
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.report.display.layout_figures import FILL, draw_sector
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.numbers import HZ, M, shown
+from squeezefilm.report.kit.numbers import HZ, M, printable, shown
 from squeezefilm.report.kit.page_style import FigureOf
 
 if TYPE_CHECKING:
@@ -166,7 +166,7 @@ def response(result: RingAnalysis) -> Figure:
     below.semilogy(f, 1e3 * swept.admittance.real, color=style.ORANGE, ls="--", label="Re Y")
     if result.circuit is not None:
         circuit = 1e3 * np.abs(result.circuit.admittance(swept.frequencies))
-        resistance = shown(result.circuit.motional_resistance, si.Unit("ohm"), 3)
+        resistance = printable(shown(result.circuit.motional_resistance, si.Unit("ohm"), 3))
         name = f"equivalent circuit, R1 = {resistance}"
         below.semilogy(f, circuit, color=style.INK, lw=1.0, ls=(0, (1, 2)), label=name)
     style.plain_log(below.yaxis)

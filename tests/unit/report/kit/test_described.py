@@ -89,6 +89,6 @@ def test_materials_are_listed_and_one_is_shown_with_its_sources(
     described.show_materials(described.material_list("pzt 5h"))
     words = " ".join(printed().split())
     assert "PZT-5H: very soft" in words
-    assert "constants.compliance_11 16.5e-12 m2/N" in words
+    assert "constants.compliance_11 16.5e-12 m²/N" in words
     with pytest.raises(InputError, match="Did you mean 'PZT-5"):
         described.material_list("PZT-5B")

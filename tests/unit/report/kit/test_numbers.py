@@ -42,7 +42,10 @@ def test_changes_have_their_sign_and_shares_their_space() -> None:
     [
         ("a gap of 2.29 um at 3 us", "a gap of 2.29 µm at 3 µs"),
         ("drifts by -248 Hz (-0.5)", "drifts by −248 Hz (−0.5)"),
+        ("R1 164 ohm, 22.06 kohm", "R1 164 Ω, 22.06 kΩ"),
+        ("7743 kg/m3 on 10 mm2 and 1.3e-11 m2/N", "7743 kg/m³ on 10 mm² and 1.3e-11 m²/N"),
         # What is no unit and no sign stays.
+        ("model m2, out/m3, 5 m2x", "model m2, out/m3, 5 m2x"),
         ("P1-91, 2026-11-23, 1e-05, --all", "P1-91, 2026-11-23, 1e-05, --all"),
         ("5 umbrellas, -x", "5 umbrellas, -x"),
         ("10.1063/1.13-2 1/-3", "10.1063/1.13-2 1/-3"),

@@ -232,7 +232,7 @@ def test_the_response_has_amplitude_admittance_and_circuit() -> None:
     assert amplitude.get_ydata() == pytest.approx(20 * GAIN)
     assert to_hex(amplitude.get_color()) == BLUE
     lines = labelled(below)
-    assert list(lines) == ["|Y|", "Re Y", "equivalent circuit, R1 = 150 ohm"]
+    assert list(lines) == ["|Y|", "Re Y", "equivalent circuit, R1 = 150 Ω"]
     size, real, circuit = (one.get_ydata() for one in lines.values())
     assert size == pytest.approx(1e3 * np.abs(ADMITTANCE))
     assert real == pytest.approx([1, 6, 2])

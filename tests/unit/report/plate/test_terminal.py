@@ -98,7 +98,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         "As a Timoshenko beam 34.286 kHz +2.1 %",
         "As a shear plate 30.223 kHz −10.0 %",
         "At 15 V 12.3 mA 0.0926 VA, 0.0432 W",
-        "Equivalent circuit C0 5.43 nF R1 123 ohm, L1 98.8 mH, C1 123 pF",
+        "Equivalent circuit C0 5.43 nF R1 123 Ω, L1 98.8 mH, C1 123 pF",
         *WARM_LINES,
         "Sound at 0.3 m 120 dB loudest direction; guidance 100 dB",
         "Guidance (doubtful): somebody 1984",

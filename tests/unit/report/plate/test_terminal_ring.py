@@ -89,7 +89,7 @@ def test_a_ring_is_said_with_all_that_there_is() -> None:
         "Quality factor 212.3 from the losses of its materials",
         "Effective coupling 0.123",
         "At 12 V 12.3 mA 0.0741 VA, 0.0212 W",
-        "Equivalent circuit C0 5.43 nF R1 123 ohm, L1 98.8 mH, C1 123 pF",
+        "Equivalent circuit C0 5.43 nF R1 123 Ω, L1 98.8 mH, C1 123 pF",
         *WARM_LINES,
         "Sound at 0.3 m 120 dB loudest direction, touched face only; guidance 100 dB",
         "Sound at 0.5 m 117 dB",
