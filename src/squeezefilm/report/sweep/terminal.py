@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.terminal import heading, plain_console, table
@@ -14,6 +15,7 @@ MOST_ROWS = 40
 """A longer sweep shows its first and last rows."""
 MOST_COLUMNS = 7
 _TOLD = 3
+_HEAD = 9
 _ALIKE = 0.6  # below it another mode may have taken its place
 
 
@@ -29,6 +31,17 @@ def sweep_columns(found: Sweep) -> list[tuple[str, list[str]]]:
         symbol, words = cells(column.values, column.unit)
         columns.append((labelled(name_of(column), symbol), words))
     return columns
+
+
+def in_lines(name: str) -> str:
+    """A column's name in lines, broken before underscores and after dots and blanks, so that a
+    terminal of 80 columns breaks no word."""
+    lines = [""]
+    for part in re.findall(r"_?[^._ ]+[. ]*|[._ ]+", name):
+        if lines[-1] and len(lines[-1]) + len(part.rstrip()) > _HEAD:
+            lines.append("")
+        lines[-1] += part
+    return "\n".join(line.rstrip() for line in lines)
 
 
 def show_sweep(found: Sweep) -> None:
@@ -52,7 +65,8 @@ def show_sweep(found: Sweep) -> None:
             cut = ("…",) * len(head)
             rows = [*rows[: MOST_ROWS // 2], cut, *rows[-MOST_ROWS // 2 :]]
         shown = [row[:MOST_COLUMNS] for row in rows]
-        table(console, head[:MOST_COLUMNS], shown, fixed=range(len(found.axes)))
+        several = [in_lines(name) for name in head[:MOST_COLUMNS]]
+        table(console, several, shown, fixed=range(len(found.axes)))
         if len(head) > MOST_COLUMNS:
             console.print(f"{len(head) - MOST_COLUMNS} more columns stand in the files of --out")
     reasons = counted(reason for reason in found.reasons if reason)

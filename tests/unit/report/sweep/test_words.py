@@ -14,7 +14,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import parquet_of_columns
 from squeezefilm.report.sweep.figures import sweep_figure
 from squeezefilm.report.sweep.files import require_kind, sweep_csv, write_sweep
-from squeezefilm.report.sweep.terminal import show_answers, show_sweep, sweep_columns
+from squeezefilm.report.sweep.terminal import in_lines, show_answers, show_sweep, sweep_columns
 from squeezefilm.report.sweep.words import name_of, scaled
 from squeezefilm.search.axes import Axis
 from squeezefilm.search.followed import FollowedMode
@@ -203,3 +203,9 @@ def test_all_that_can_be_asked_is_listed(capsys: pytest.CaptureFixture[str]) -> 
     text = capsys.readouterr().out
     assert "  relative_friction\n" in text
     assert "  modes.N.frequency\n" in text
+
+
+def test_a_head_breaks_between_its_words() -> None:
+    assert in_lines("resonance_frequency (kHz)") == "resonance\n_frequency\n(kHz)"
+    assert in_lines("actuator.thickness (mm)") == "actuator.\nthickness\n(mm)"
+    assert in_lines("power (W)") == "power (W)"
