@@ -1,6 +1,6 @@
 """Verbs about a display: what there is, what it says, and what follows from it, room by room."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -149,7 +149,7 @@ def analyze(asked: AnalyzeOptions) -> None:
     from squeezefilm.loading import loading
 
     if is_actuator(asked.target):
-        _analyze_actuator(asked)
+        import_module("squeezefilm.cli.actuator").analyze_actuator(asked)
         return
     from squeezefilm.second_process import second_process
 
@@ -182,35 +182,6 @@ def analyze(asked: AnalyzeOptions) -> None:
     answer(asked.as_json, result, show, report=written)
     if written is None and not asked.as_json:
         typer.echo("add --out DIR to write result.json and a report with figures")
-
-
-def _analyze_actuator(asked: AnalyzeOptions) -> None:
-    usual = AnalyzeOptions(asked.target)
-    taken = ("target", "voltage", "out", "as_json", "whole")
-    other = [
-        field.name
-        for field in fields(asked)
-        if field.name not in taken and getattr(asked, field.name) != getattr(usual, field.name)
-    ]
-    if other:
-        named = ", ".join(f"--{name.replace('_', '-')}" for name in other)
-        raise InputError(
-            f"{named}: only a display has that; of an actuator, analyze takes --voltage, --out and "
-            "--json. Its other values stand in its file"
-        )
-    voltage = read_option(asked.voltage, "voltage", "V")
-    from squeezefilm.report.actuators.dispatch import analyze_actuator
-    from squeezefilm.report.kit.folder import require_folder
-
-    if asked.out is not None:
-        require_folder(asked.out)
-    with working(asked.as_json) as step:
-        one = analyze_actuator(asked.target, voltage, step)
-        written = None
-        if asked.out is not None:
-            step("figures")
-            written = one.write(one.found, asked.out)
-    answer(asked.as_json, one.found, one.show, report=written)
 
 
 def _prepare() -> None:

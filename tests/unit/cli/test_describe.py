@@ -174,3 +174,10 @@ def test_a_place_nobody_can_write_to_is_refused_first(
     assert done.returncode == 2
     assert "nothing can be written there" in done.stderr
     assert analysis.asked.calls == []
+
+
+def test_a_new_file_says_from_what_it_can_start(tmp_path: Path) -> None:
+    done = run("new", str(tmp_path / "mine.toml"))
+    assert done.returncode == 2
+    assert "--from biet2008-plate" in done.stderr
+    assert not (tmp_path / "mine.toml").exists()

@@ -191,4 +191,10 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
             f"; {best.neighbour} lies {best.neighbour_distance:.3g} half-bandwidths away and adds "
             f"{100 * best.neighbour_share:.2g} % of that"
         )
-    return Suggestion(best, said + ").")
+    said += ")."
+    if best.crowded:
+        said += (
+            " It is crowded all the same: what moves at its resonance is partly the other mode. "
+            "Other ceramics or another size of the plate may part them."
+        )
+    return Suggestion(best, said)

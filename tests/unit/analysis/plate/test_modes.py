@@ -110,6 +110,9 @@ def test_the_suggestion_is_inaudible_straight_and_moves_most() -> None:
     nothing = suggested(modes[:3])
     assert nothing.mode is None
     assert "none can be suggested" in nothing.text
+    assert "crowded" not in best.text
+    close = dataclasses.replace(modes[3], neighbour_share=0.3)
+    assert "It is crowded all the same" in suggested([close]).text
     twice = suggested([dataclasses.replace(modes[3], unique=False)])
     assert 'working_frequency = "30 kHz"' in twice.text
 

@@ -1,0 +1,53 @@
+"""What `analyze` does with the file of a motor or of a skin-stretch array."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import TYPE_CHECKING, get_args, get_type_hints
+
+from typer.models import OptionInfo
+
+from squeezefilm.cli.app import answer, read_option, working
+from squeezefilm.errors import InputError
+from squeezefilm.report.actuators import dispatch
+from squeezefilm.report.kit.folder import require_folder
+
+if TYPE_CHECKING:
+    from squeezefilm.cli.describe import AnalyzeOptions
+
+_TAKEN = ("target", "voltage", "out", "as_json", "whole")
+
+
+def analyze_actuator(asked: AnalyzeOptions) -> None:
+    """Analyse an actuator. Raises `InputError` for options that only a display has."""
+    usual = type(asked)(asked.target)
+    other = [
+        _flag(type(asked), field.name)
+        for field in fields(asked)
+        if field.name not in _TAKEN and getattr(asked, field.name) != getattr(usual, field.name)
+    ]
+    if other:
+        raise InputError(
+            f"{', '.join(other)}: only a display has that; of an actuator, analyze takes "
+            "--voltage, --out and --json. Its other values stand in its file"
+        )
+    voltage = read_option(asked.voltage, "voltage", "V")
+    if asked.out is not None:
+        require_folder(asked.out)
+    with working(asked.as_json) as step:
+        one = dispatch.analyze_actuator(asked.target, voltage, step)
+        written = None
+        if asked.out is not None:
+            step("figures")
+            written = one.write(one.found, asked.out)
+    answer(asked.as_json, one.found, one.show, report=written)
+
+
+def _flag(options: type, name: str) -> str:
+    """How an option is typed."""
+    for one in get_args(get_type_hints(options, include_extras=True)[name]):
+        if isinstance(one, OptionInfo):
+            for said in (one.default, *(one.param_decls or ())):
+                if isinstance(said, str) and said.startswith("--"):
+                    return said
+    return f"--{name.replace('_', '-')}"
