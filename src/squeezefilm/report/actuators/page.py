@@ -55,8 +55,8 @@ def assumed_words(provenance: Mapping[str, Provenance]) -> str:
     """How many of an actuator's values are assumed, in a sentence."""
     assumed = sum(one.evidence == "assumed" for one in provenance.values())
     return (
-        f"{assumed} of {len(provenance)} values with a source are assumed; the page (--out DIR) "
-        "lists them and says what they do."
+        f"{assumed} of {len(provenance)} values with a source are assumed, and the numbers hang on "
+        "them; the page's last tables (--out DIR) list them and say what they do."
     )
 
 
@@ -83,8 +83,9 @@ def write_page(
     }
     files |= pictures or {}
     files["result.json"] = json_text(summary | {"stamp": stamped_with})
-    body = section("Warnings", bullets(found.warnings)) + section(
-        "Key numbers", text_table("Zero to peak", ("quantity", "value", "remark"), key_numbers)
+    warned = [*found.warnings, assumed_words(described.provenance)]
+    body = section("Warnings", bullets(warned)) + section(
+        "Key numbers", text_table("Amplitudes zero to peak", ("quantity", "value", "remark"), key_numbers)
     )
     body += picture_sections(figures) + more + _sources(described.provenance)
     title = as_html(described.title)
