@@ -28,7 +28,8 @@ KINDS: dict[str, tuple[str, str]] = {
         "SkinStretchDescription",
     ),
 }
-"""By the table that a file has: the module and the dataclass that it is read into."""
+"""By the table that a file has: the module and the dataclass that it is read into. What `analyze`
+says of a kind is in modules of this name, see `report.actuators.dispatch`."""
 
 
 def is_actuator(name_or_path: str | Path) -> bool:

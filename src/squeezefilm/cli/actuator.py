@@ -15,7 +15,7 @@ from squeezefilm.report.kit.folder import require_folder
 if TYPE_CHECKING:
     from squeezefilm.cli.describe import AnalyzeOptions
 
-_TAKEN = ("target", "voltage", "out", "as_json", "whole")
+_TAKEN = ("target", "voltage", "out", "as_json")
 
 
 def analyze_actuator(asked: AnalyzeOptions) -> None:

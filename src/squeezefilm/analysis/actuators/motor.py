@@ -24,7 +24,7 @@ from squeezefilm.results import Result, to_json
 
 # Where the mean over a period is off by more than this of µ times the preload, it is warned of.
 _APART = 0.05
-_MAP = 10
+_MAP, _RESOLVED = 10, 5
 _PERIODS, _TRACED = 600, 3
 _STEP = (0.3, 0.7)
 _STEPS = 60
@@ -41,6 +41,8 @@ class MotorAnalysis(Result):
         best: the point of it with the largest efficiency.
         map: over preload and amplitude, about those that it has.
         motion: resolved in time at the speed of `best`.
+        resolved: speed (m/s) and force left for a load (N) of the motor resolved in time, from
+            rest to no load, shape (speeds, 2).
         graph: what makes what.
         tracked: the force law's answer to a step, at that speed; None where a force cannot be
             commanded.
@@ -55,6 +57,7 @@ class MotorAnalysis(Result):
     best: AveragedMotor
     map: MotorMap
     motion: MotorMotion
+    resolved: si.FloatArray
     graph: CausalGraph
     tracked: TrackedForce | None
     effects: tuple[Effect, ...]
@@ -82,6 +85,20 @@ class MotorAnalysis(Result):
         return self.voltage * self.motor.amplitude_per_volt
 
     @property
+    def input_power(self) -> si.Watt:
+        """What the drive puts in at `best` (W): output, losses of plate, contacts and guide."""
+        one = self.best
+        guide = (one.thrust - one.force) * one.speed
+        return one.output + one.plate_loss + one.contact_loss + one.friction_loss + guide
+
+    @property
+    def best_of_map(self) -> tuple[si.Dimensionless, si.Newton, si.Metre]:
+        """The largest efficiency over preload and amplitude, and where (N, m)."""
+        at = np.unravel_index(np.nanargmax(self.map.efficiency), self.map.efficiency.shape)
+        found = self.map.efficiency[at], self.map.preload[at[0]], self.map.amplitude[at[1]]
+        return float(found[0]), float(found[1]), float(found[2])
+
+    @property
     def thrust_apart(self) -> si.Dimensionless:
         """Averaged less resolved thrust at the speed of `best`, over µ times the preload (1)."""
         described = self.motor.motor
@@ -105,7 +122,15 @@ class MotorAnalysis(Result):
             "holding_force_unpowered_N": self.motor.quiescent_force,
             "contact_share": self.rest.contact_share,
             "best": to_json(self.best) | {"efficiency": self.best.efficiency},
+            "input_power_W": self.input_power,
+            "best_of_map": dict(
+                zip(("efficiency", "preload_N", "amplitude_m"), self.best_of_map, strict=True)
+            ),
             "thrust_in_time_N": self.motion.thrust,
+            "resolved_curve": [
+                {"speed_m_per_s": speed, "force_N": force}
+                for speed, force in self.resolved.tolist()
+            ],
             "averaged_less_resolved_thrust": self.thrust_apart,
             "energy_residual": self.motion.energy_residual,
             "highest_voltage_V": self.motor.highest_voltage,
@@ -142,6 +167,7 @@ def analyze_motor(
     best = max(curve, key=lambda one: one.efficiency)
     tell("in time")
     motion = simulate(motor, working, speed=best.speed, periods=_PERIODS, traced=_TRACED)
+    resolved = _resolved(motor, working, curve)
     tell("preload and amplitude")
     cradle, amplitude = described.motor.cradle, curve[0].amplitude
     over = motor_map(
@@ -162,12 +188,24 @@ def analyze_motor(
         best,
         over,
         motion,
+        resolved,
         averaged_graph(motor),
         tracked,
         moved,
         (),
     )
     return dataclasses.replace(found, warnings=tuple(_warnings(found, why_not)))
+
+
+def _resolved(
+    motor: AssembledMotor, working: Working, curve: tuple[AveragedMotor, ...]
+) -> si.FloatArray:
+    """Speed and force left for a load, in time, at every so many points of an averaged curve."""
+    found = []
+    for one in curve[:: len(curve) // _RESOLVED]:
+        there = simulate(motor, working, speed=one.speed, periods=_PERIODS, traced=0)
+        found.append((one.speed, there.thrust - (one.thrust - one.force)))
+    return np.array(found)
 
 
 def _step(

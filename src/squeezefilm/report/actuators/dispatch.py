@@ -1,4 +1,5 @@
-"""Which analysis and which report go with each kind of actuator."""
+"""The analysis and the report that go with an actuator, by the table of its file: of a kind `motor`
+the functions `analyze_motor`, `show_motor` and `write_motor` of modules of that name."""
 
 from __future__ import annotations
 
@@ -8,33 +9,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from squeezefilm import quantities as si
-from squeezefilm.actuators.described import load_actuator
+from squeezefilm.actuators.described import KINDS, load_actuator
 from squeezefilm.progress import SayProgress
 from squeezefilm.report.actuators.page import ActuatorAnalysis
-
-
-class _Kind(NamedTuple):
-    """By name, since each loads what it needs: analysis and its function, report and what prints
-    and writes."""
-
-    analysis: str
-    analyze: str
-    report: str
-    show: str
-    write: str
-
-
-# By the dataclass that a description is read into.
-_KINDS = {
-    "MotorDescription": _Kind("motor", "analyze_motor", "motor", "show_motor", "write_motor"),
-    "SkinStretchDescription": _Kind(
-        "skin_stretch",
-        "analyze_skin_stretch",
-        "skin_stretch",
-        "show_skin_stretch",
-        "write_skin_stretch",
-    ),
-}
 
 
 class AnalyzedActuator(NamedTuple):
@@ -52,8 +29,11 @@ def analyze_actuator(
     (V, zero-to-peak; its own if None). Raises what `load_actuator` and the kind's analysis raise.
     """
     described = load_actuator(target)
-    kind = _KINDS[type(described).__name__]
-    analysis = import_module(f"squeezefilm.analysis.actuators.{kind.analysis}")
-    report = import_module(f"squeezefilm.report.actuators.{kind.report}")
-    found = getattr(analysis, kind.analyze)(described, voltage=voltage, progress=progress)
-    return AnalyzedActuator(found, getattr(report, kind.show), getattr(report, kind.write))
+    # A kind is named alike wherever it is: as the table of its file.
+    kind = next(one for one in KINDS if hasattr(described, one))
+    analysis = import_module(f"squeezefilm.analysis.actuators.{kind}")
+    report = import_module(f"squeezefilm.report.actuators.{kind}")
+    found = getattr(analysis, f"analyze_{kind}")(described, voltage=voltage, progress=progress)
+    return AnalyzedActuator(
+        found, getattr(report, f"show_{kind}"), getattr(report, f"write_{kind}")
+    )

@@ -25,6 +25,7 @@ def motor_rows(found: MotorAnalysis) -> list[Row]:
     motor, best = found.motor, found.best
     mode, described = motor.modes[0].working, motor.motor
     kept = found.rest.amplitude / found.free_amplitude
+    efficiency, preload, amplitude = found.best_of_map
     return [
         ("Stall force", shown(found.stall_force, N, 3), "the load that just stops the slider"),
         ("Speed without a load", shown(found.no_load_speed, SPEED, 3), ""),
@@ -32,7 +33,13 @@ def motor_rows(found: MotorAnalysis) -> list[Row]:
             "Best efficiency",
             f"{100 * best.efficiency:.2g} %",
             f"at {shown(best.speed, SPEED, 3)} against {shown(best.force, N, 3)}: "
-            f"{shown(best.output, W, 3)} out, {shown(best.plate_loss, W, 3)} lost in the plate",
+            f"{shown(best.output, W, 3)} out of {shown(found.input_power, W, 3)}, of which "
+            f"{shown(best.plate_loss, W, 3)} are lost in the plate",
+        ),
+        (
+            "Best of the map",
+            f"{100 * efficiency:.2g} %",
+            f"under {shown(preload, N, 3)} at {shown(amplitude, M, 3)}, of what was looked at",
         ),
         (
             "The same in time",
@@ -93,7 +100,7 @@ def _figures(found: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
     figures = {
         "speed-force": (
             "Speed against force",
-            motor_figures.speed_force_figure((found.curve, found.motion)),
+            motor_figures.speed_force_figure((found.curve, found.resolved)),
         ),
         "map": ("Preload and amplitude", motor_figures.map_figure(found.map)),
         "foot": (

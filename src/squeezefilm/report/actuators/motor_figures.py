@@ -117,20 +117,19 @@ def _box(axes: Axes, name: str, place: tuple[float, float], causal: bool | None)
 
 
 @style.drawn
-def speed_force_figure(known: tuple[tuple[AveragedMotor, ...], MotorMotion]) -> Figure:
-    """Speed and efficiency over the force, from rest to no load; and where the motor resolved in
-    time is at one speed."""
-    curve, motion = known
+def speed_force_figure(known: tuple[tuple[AveragedMotor, ...], si.FloatArray]) -> Figure:
+    """Speed and efficiency over the force, from rest to no load: the averaged motor, and the speeds
+    and forces of the one resolved in time."""
+    curve, resolved = known
     figure = style.new_figure(
         f"Stalls at {curve[0].force:.3g} N, runs {1e3 * curve[-1].speed:.3g} mm/s without a load",
-        "cross: resolved in time, the slider moved at that speed",
+        "line: averaged; crosses: resolved in time, the slider moved at that speed",
         4.0,
     )
     left, right = figure.subplots(1, 2)
     force = [one.force for one in curve]
     left.plot(force, [1e3 * one.speed for one in curve], color=style.BLUE)
-    guide = curve[0].thrust - curve[0].force
-    left.plot(motion.thrust - guide, 1e3 * motion.final_speed, "x", color=style.ORANGE, ms=8)
+    left.plot(resolved[:, 1], 1e3 * resolved[:, 0], "x", color=style.ORANGE, ms=8)
     left.set(xlabel="force on the load (N)", ylabel="speed (mm/s)")
     right.plot(force, [100 * one.efficiency for one in curve], color=style.BLUE)
     right.set(xlabel="force on the load (N)", ylabel="efficiency (%)")

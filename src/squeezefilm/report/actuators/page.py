@@ -84,9 +84,9 @@ def write_page(
     files |= pictures or {}
     files["result.json"] = json_text(summary | {"stamp": stamped_with})
     warned = [*found.warnings, assumed_words(described.provenance)]
-    body = section("Warnings", bullets(warned)) + section(
-        "Key numbers", text_table("Amplitudes zero to peak", ("quantity", "value", "remark"), key_numbers)
-    )
+    head = ("quantity", "value", "remark")
+    body = section("Warnings", bullets(warned))
+    body += section("Key numbers", text_table("Amplitudes zero to peak", head, key_numbers))
     body += picture_sections(figures) + more + _sources(described.provenance)
     title = as_html(described.title)
     foot = stamped(stamped_with, "SHA-256 of the numbers")

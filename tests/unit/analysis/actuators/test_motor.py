@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 
+import numpy as np
 import pytest
 
 from squeezefilm.actuators.described import load_actuator
@@ -28,11 +29,19 @@ def test_the_ends_of_the_curve_are_stall_and_no_load(found: MotorAnalysis) -> No
     assert found.no_load_speed == pytest.approx(no_load_speed(found.motor, working))
     assert found.best.efficiency == max(one.efficiency for one in found.curve)
     assert found.best.output == pytest.approx(found.best.force * found.best.speed)
+    assert found.best.efficiency == pytest.approx(found.best.output / found.input_power)
+    efficiency, preload, _ = found.best_of_map
+    assert efficiency > found.best.efficiency
+    assert preload in found.map.preload
 
 
 @pytest.mark.slow
 def test_time_and_mean_agree_and_energy_is_kept(found: MotorAnalysis) -> None:
     assert abs(found.thrust_apart) < 0.02
+    averaged = np.interp(
+        found.resolved[:, 0], [c.speed for c in found.curve], [c.force for c in found.curve]
+    )
+    np.testing.assert_allclose(found.resolved[:, 1], averaged, atol=0.03 * found.stall_force)
     assert found.motion.energy_residual < 1e-5
     assert found.tracked is not None
     assert found.tracked.force[-1] == pytest.approx(found.tracked.wanted[-1], rel=0.02)

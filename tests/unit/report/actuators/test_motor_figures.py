@@ -7,11 +7,13 @@ from tests.unit.actuators.test_motor import WORKING, motor
 from tests.unit.report import drawn
 
 from squeezefilm.actuators.motor.causal import averaged_graph, causal_graph
+from squeezefilm.actuators.motor.closed_loop import TrackedForce
 from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
 from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.report.actuators.motor_figures import (
     causal_figure,
     foot_figure,
+    force_step_figure,
     map_figure,
     speed_force_figure,
 )
@@ -37,4 +39,13 @@ def test_curves_map_and_foot_are_drawn() -> None:
     feet = motor().feet
     moved = simulate(motor(), WORKING, periods=20, traced=2)
     assert "across it (µm)" in words(foot_figure((moved, feet.across[0], feet.along[0])))
-    assert f"Stalls at {curve[0].force:.3g} N" in words(speed_force_figure((curve, moved)))
+    assert f"Stalls at {curve[0].force:.3g} N" in words(
+        speed_force_figure((curve, np.array([[0.0, 1.0]])))
+    )
+
+
+def test_a_step_of_force_says_how_near_it_ends() -> None:
+    time = np.linspace(1e-3, 4e-3, 4)
+    wanted, force = np.array([1.0, 1.0, 2.0, 2.0]), np.array([0.5, 1.0, 1.5, 1.96])
+    tracked = TrackedForce(time, wanted, force, 1e-6 * force, 10 * force, 0)
+    assert "ends 2 % from the force" in words(force_step_figure(tracked))

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
 from squeezefilm.actuators.described import is_actuator
@@ -15,6 +19,7 @@ from squeezefilm.errors import ConfigError
 from squeezefilm.report.actuators import motor, skin_stretch, skin_stretch_figures
 from squeezefilm.report.actuators.dispatch import AnalyzedActuator, analyze_actuator
 from squeezefilm.report.actuators.page import assumed_words
+from squeezefilm.report.kit import style
 
 NAMES = ("biet2008-motor", "biet2008-skin-stretch")
 KINDS = {
@@ -42,6 +47,42 @@ def test_all_that_a_page_shows_lies_beside_it(analyzed: AnalyzedActuator, tmp_pa
     told = json.loads((page.parent / "result.json").read_text(encoding="utf-8"))
     assert told["stamp"]["squeezefilm_version"]
     assert told["actuator"] == analyzed.found.described.name
+
+
+@pytest.mark.slow
+def test_no_text_lies_on_another_or_is_cut_off(
+    analyzed: AnalyzedActuator, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    drawn: dict[str, Figure] = {}
+
+    def keep(found: object, folder: Path, *, figures: dict[str, Any], **more: object) -> Path:
+        drawn.update({name: figure for name, (_, figure) in figures.items()})
+        return folder
+
+    for room in (motor, skin_stretch):
+        monkeypatch.setattr(room, "write_page", keep)
+    analyzed.write(analyzed.found, tmp_path)
+    assert len(drawn) >= 3
+    for name, figure in drawn.items():
+        boxes: dict[str, Any] = {}
+        with style.rc():
+            figure.draw_without_rendering()
+        # Ticks beyond an axis's ends are there and not drawn.
+        ticks = {
+            id(label)
+            for axes in figure.axes
+            for axis in (axes.xaxis, axes.yaxis)
+            for label in axis.get_ticklabels(which="both")
+        }
+        for text in figure.findobj(Text):
+            if text.get_visible() and text.get_text().strip() and id(text) not in ticks:
+                box = text.get_window_extent()
+                boxes[f"{text.get_text()} {box.x0:.0f} {box.y0:.0f}"] = box
+        for one, other in itertools.combinations(boxes, 2):
+            assert not boxes[one].overlaps(boxes[other]), (name, one, other)
+        for text, box in boxes.items():
+            assert figure.bbox.x0 <= box.x0 + 1, (name, text)
+            assert box.x1 <= figure.bbox.x1 + 1, (name, text)
 
 
 @pytest.mark.slow
