@@ -315,6 +315,8 @@ def test_two_modes_thrust_in_the_plane() -> None:
     assert not both.sideways[:, 0].any()
     alone = averaged(both, WORKING)
     assert alone.sideways_thrust == 0.0
+    one = averaged(assembled(replace(described, second_plate=None), "timoshenko"), WORKING)
+    assert alone.thrust == pytest.approx(one.thrust, rel=1e-12)
     together = averaged(both, replace(WORKING, second=1.0))
     assert together.thrust != 0.0
     assert together.sideways_thrust != 0.0
@@ -322,6 +324,7 @@ def test_two_modes_thrust_in_the_plane() -> None:
     across = replace(described, cradle=replace(described.cradle, direction=np.pi / 2))
     turned_guide = averaged(assembled(across, "timoshenko"), replace(WORKING, second=1.0))
     assert turned_guide.thrust == pytest.approx(together.sideways_thrust, rel=1e-6)
+    assert turned_guide.sideways_thrust == pytest.approx(-together.thrust, rel=1e-6)
     with pytest.raises(InputError, match="no second_plate"):
         averaged(motor(), replace(WORKING, second=1.0))
     with pytest.raises(InputError, match="not averaged"):

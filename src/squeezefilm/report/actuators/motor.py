@@ -102,7 +102,12 @@ def _figures(found: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
             "Speed against force",
             motor_figures.speed_force_figure((found.curve, found.resolved)),
         ),
-        "map": ("Preload and amplitude", motor_figures.map_figure(found.map)),
+        "map": (
+            "Preload and amplitude",
+            motor_figures.map_figure(
+                (found.map, found.motor.motor.cradle.preload, found.rest.amplitude)
+            ),
+        ),
         "foot": (
             "The way of a foot",
             motor_figures.foot_figure((found.motion, feet.across[0], feet.along[0])),

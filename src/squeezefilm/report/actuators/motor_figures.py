@@ -146,23 +146,26 @@ def force_step_figure(tracked: TrackedForce) -> Figure:
         4.0,
     )
     left, right = figure.subplots(1, 2)
-    time = 1e3 * tracked.time
-    left.step(time, tracked.wanted, where="pre", color="black", label="wanted")
-    left.plot(time, tracked.force, color=style.BLUE, label="in time")
+    # At first the plate swings up and the law finds its way; that is no answer to a step.
+    seen = slice(tracked.time.size // 3, None)
+    time = 1e3 * tracked.time[seen]
+    left.step(time, tracked.wanted[seen], where="pre", color="black", label="wanted")
+    left.plot(time, tracked.force[seen], color=style.BLUE, label="in time")
     left.set(xlabel="time (ms)", ylabel="force (N)")
     style.legend_below(left, columns=2)
-    right.step(time, tracked.voltage, where="pre", color=style.ORANGE)
+    right.step(time, tracked.voltage[seen], where="pre", color=style.ORANGE)
     right.set(xlabel="time (ms)", ylabel="voltage (V)")
     return figure
 
 
 @style.drawn
-def map_figure(found: MotorMap) -> Figure:
-    """Stall force, no-load speed and efficiency over preload and amplitude; white where it
-    stalls."""
+def map_figure(known: tuple[MotorMap, si.Newton, si.Metre]) -> Figure:
+    """Stall force, no-load speed and efficiency over preload and amplitude, white where it stalls;
+    a mark at the preload (N) and amplitude (m) that the motor has."""
+    found, preload, amplitude = known
     figure = style.new_figure(
         "Preload and amplitude",
-        "averaged model; white: the feet never leave, the motor stalls",
+        "averaged model; white: the feet never leave, the motor stalls; mark: the motor as it is",
         3.6,
     )
     x, y = 1e6 * found.amplitude, found.preload
@@ -175,6 +178,7 @@ def map_figure(found: MotorMap) -> Figure:
         drawn = axes.pcolormesh(x, y, np.ma.masked_invalid(values), shading="nearest")
         figure.colorbar(drawn, ax=axes)
         axes.set_title(label, fontsize="medium")
+        style.mark(axes, 1e6 * amplitude, preload, 6)
         axes.set(xlabel="amplitude (µm)", yscale="log")
         style.plain_log(axes.yaxis)
     figure.axes[0].set_ylabel("preload (N)")

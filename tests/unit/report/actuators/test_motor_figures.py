@@ -35,7 +35,7 @@ def test_the_graph_draws_every_element_and_what_goes_between() -> None:
 def test_curves_map_and_foot_are_drawn() -> None:
     curve = speed_force_curve(motor(), WORKING, 4)
     found = motor_map(motor(), np.array([5.0, 60.0]), np.array([0.5e-6, 2e-6]))
-    assert "no-load speed (mm/s)" in words(map_figure(found))
+    assert "no-load speed (mm/s)" in words(map_figure((found, 20.0, 1e-6)))
     feet = motor().feet
     moved = simulate(motor(), WORKING, periods=20, traced=2)
     assert "across it (µm)" in words(foot_figure((moved, feet.across[0], feet.along[0])))
