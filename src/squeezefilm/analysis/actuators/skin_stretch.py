@@ -43,7 +43,8 @@ _WAYS: tuple[Lines, ...] = ("direct", "matrix", "daisy_chain")
 class ShownWave:
     """A sinusoidal texture that moves over the finger, its period two of the finest: `strain` ε_xx
     in cells between `edges_x` and `edges_y`, shape (frames, cells x, cells y), at `times`, and the
-    contactors' `displacements`, shape (frames, contactors); `pull` is the array at the first."""
+    contactors' `displacements` and which of them would slip, shape (frames, contactors); `pull` is
+    the array at the first."""
 
     period: si.Metre
     speed: si.MetrePerSecond
@@ -52,6 +53,7 @@ class ShownWave:
     edges_y: si.MetreArray
     strain: si.FloatArray
     displacements: si.MetreArray
+    slips: np.ndarray[tuple[int, ...], np.dtype[np.bool]]
     pull: Pull
 
 
@@ -216,8 +218,9 @@ def _wave(array: SkinStretchArray, voltage: si.Volt) -> ShownWave:
     driven = pattern_voltages(SineWave(period), array.cradle, times, (_SHOWN_SPEED, 0.0), voltage)
     x, y, per_volt = array.strain_per_volt()
     strain = np.moveaxis(per_volt[0] @ driven.T, -1, 0)
-    moved = driven @ (array.influence @ array.force_per_volt).T
-    return ShownWave(period, _SHOWN_SPEED, times, x, y, strain, moved, array.answer(driven[0]))
+    forces, pull = driven @ array.force_per_volt.T, array.answer(driven[0])
+    moved, slips = forces @ array.influence.T, np.abs(forces) > pull.held
+    return ShownWave(period, _SHOWN_SPEED, times, x, y, strain, moved, slips, pull)
 
 
 def _tried(path: str) -> bool:

@@ -10,6 +10,7 @@ from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor.assembled import Working, assembled
 from squeezefilm.actuators.motor.averaged import averaged
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
+from squeezefilm.actuators.skin_stretch.load_line import loaded_tip
 from squeezefilm.analysis.claims.values import ClaimValue, value_of
 
 _PRELOADS, _AMPLITUDES = (10.0, 20.0), (1.5e-6, 4e-6)
@@ -31,6 +32,14 @@ def _() -> ClaimValue:
 def _() -> ClaimValue:
     array, volts = _array(), _array().actuator.largest_voltage
     return ClaimValue((array.bender.force_per_volt * volts,), note=f"at {volts:.3g} V")
+
+
+@value_of("skin-stretch-loaded")
+def _() -> ClaimValue:
+    array = _array()
+    skin = array.tissue.under_contactor(*array.cradle.size)
+    tip = loaded_tip(array.bender, skin, array.actuator.largest_voltage)
+    return ClaimValue((tip.deflection,), note=f"with {1e3 * tip.force:.3g} mN on the skin")
 
 
 @value_of("skin-stretch-surface")

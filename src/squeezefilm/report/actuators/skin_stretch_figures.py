@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 _FRAME_MS = 60
 _DRAWN_TIMES = 10
-BoolArray = np.ndarray[tuple[int, ...], np.dtype[np.bool]]
 
 
 @style.drawn
@@ -58,14 +57,14 @@ def strain_figure(found: SkinStretchAnalysis) -> Figure:
     )
     left, right = figure.subplots(1, 2)
     _strain_map(figure, left, wave, 0)
-    slips = np.abs(wave.pull.forces) > wave.pull.held
-    _contactors(right, found, 0, slips)
+    _contactors(right, found, 0)
     style.legend_below(right, columns=2)
     return figure
 
 
-def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int, slips: BoolArray) -> None:
-    """Where each contactor's skin has gone, drawn larger."""
+def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
+    """Where each contactor's skin has gone, drawn larger, and which would slip."""
+    slips = found.wave.slips[frame]
     x, y = (1e3 * one for one in found.array.cradle.places)
     moved = _DRAWN_TIMES * 1e3 * found.wave.displacements[frame]
     axes.quiver(
@@ -127,7 +126,6 @@ def wave_animation(found: SkinStretchAnalysis) -> bytes:
     from PIL import Image
 
     wave, frames = found.wave, []
-    still = np.zeros(found.array.cradle.count, dtype=bool)
     for number in range(wave.times.size):
         with style.rc():
             figure = style.new_figure(
@@ -137,7 +135,8 @@ def wave_animation(found: SkinStretchAnalysis) -> bytes:
             )
             left, right = figure.subplots(1, 2)
             _strain_map(figure, left, wave, number)
-            _contactors(right, found, number, still)
+            _contactors(right, found, number)
+            style.legend_below(right, columns=2)
         frames.append(Image.open(io.BytesIO(style.png(figure, 80))).convert("RGB"))
     stream = io.BytesIO()
     first, *others = frames

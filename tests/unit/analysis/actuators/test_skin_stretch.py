@@ -38,6 +38,8 @@ def test_the_wave_moves_with_the_finger(found: SkinStretchAnalysis) -> None:
         wave.strain[frames // 2], -wave.strain[0], atol=1e-9 * np.abs(wave.strain).max()
     )
     np.testing.assert_allclose(wave.displacements[0], wave.pull.displacements, rtol=1e-9)
+    assert np.count_nonzero(wave.slips[0]) == wave.pull.slipping
+    assert np.array_equal(wave.slips[0], wave.slips[frames // 2])
 
 
 @pytest.mark.slow
