@@ -138,13 +138,25 @@ class StudyView {
     this.name = study.name;
     sessionStorage.setItem("squeezefilm study", study.name);
     const rows = study.participants.map((one) => this.participant(one));
-    this.main.replaceChildren(
+    this.redraw(
       element("section", { class: "card" }, element("h2", { text: study.name }),
         element("p", { class: "muted", text: `${study.title}. Seed ${study.seed}.` }),
         element("div", { class: "scroll" }, element("table", { class: "participants" },
           element("tr", {}, ...["participant", "answered", "now on", "sitting", ""].map((text) => element("th", { text }))), ...rows)),
         this.rehearsal(), element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.act("enrol", { study: study.name }))) })),
       ...study.confusion.map((table) => confusionCard(table)));
+  }
+
+  /** The main part drawn anew. Focus and a number half typed stay where they were: it is a participant,
+   * by beginning or by the last answer, who has it drawn anew under the experimenter's hand. */
+  redraw(...cards) {
+    const name = (one) => [one.closest("tr")?.dataset.participant, one.tagName, one.ariaLabel ?? one.textContent].join("|");
+    // Not ":focus", which is nothing while another window is in front.
+    const before = this.main.contains(document.activeElement) ? document.activeElement : null, key = before && name(before);
+    this.main.replaceChildren(...cards);
+    const same = before && [...this.main.querySelectorAll("button, input")].find((one) => name(one) === key);
+    if (same?.tagName === "INPUT") same.value = before.value;
+    same?.focus();
   }
 
   /** Simulated people may do a study that nobody took part in. */
