@@ -37,12 +37,13 @@ export class PlanView {
     const g = canvas.getContext("2d");
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.clearRect(0, 0, width, height);
-    if (!outline || !this.line) return;
+    const box = { left: 14, top: 22, width: width - 28, height: height * PLAN - 30 };
+    // A canvas not laid out yet, or folded away, has no room inside its margins: nothing can be drawn to scale.
+    if (!outline || !this.line || box.width <= 0 || box.height <= 0) return;
     const c = this.colours();
     // A cycle takes two seconds here and thirty microseconds there.
     const phase = this.still ? 1 : Math.cos((now / 1000) * Math.PI);
     g.font = "13px system-ui, sans-serif";
-    const box = { left: 14, top: 22, width: width - 28, height: height * PLAN - 30 };
     const across = this.drawPlan(g, box, c, phase);
     const side = { left: across.left, width: across.width, top: height * PLAN + 8, height: height * (1 - PLAN) - 30 };
     this.drawSide(g, side, c, phase);
