@@ -10,7 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.description import Motor
-from squeezefilm.actuators.motor.kernel import Feet, Slider, Stator
+from squeezefilm.actuators.motor.parts import Feet, Slider, Stator
 from squeezefilm.actuators.motor.stator import FaceMode, face_mode
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.heat.warming import FIELD_SHARE
@@ -113,6 +113,8 @@ class AssembledMotor:
         force = shares * (voltage or 0.0) * per_volt * mass * own**2 * loss
         if voltage is not None:
             amplitude = force / np.hypot(mass * (own**2 - omega**2), mass * own * omega * loss)
+        bend, cube, rise = self.motor.free_plate.terms(float(np.max(np.abs(amplitude), initial=0)))
+        one = np.ones(mass.size)
         return Stator(
             mass,
             mass * own**2,
@@ -121,6 +123,9 @@ class AssembledMotor:
             omega,
             np.zeros(mass.size),
             amplitude,
+            bend * one,
+            cube * one,
+            rise * one,
             is_held,
         )
 

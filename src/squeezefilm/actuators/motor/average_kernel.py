@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.actuators.motor.kernel import Feet, Stator
+from squeezefilm.actuators.motor.parts import Feet, Stator, followed
 from squeezefilm.compiled import compiled
 
-MEANS = 9
+MEANS = 11
 """Thrust along and sideways (N), normal force (N), share of contact, share of slip in it, contact
-loss (W), friction loss (W), and the first harmonic of what the feet do to the first mode (N),
-cosine and sine."""
+loss (W), friction loss (W), and the harmonic of each mode's own frequency in what the feet do to it
+(N), cosine and sine; of at most two modes."""
 
 
 class Swing(NamedTuple):
@@ -43,28 +43,24 @@ def _swinging(t: float, stator: Stator, w: si.Array, dw: si.Array) -> None:
         dw[j] = -stator.amplitude[j] * stator.omega[j] * math.sin(angle)
 
 
-@compiled(error_model="numpy")
-def _yielding(
-    depth: float, pull: float, Fx: float, limit: float, springs: tuple[float, float, float]
-) -> float:
-    """The share that friction leaves of a tangential force that is too large.
-
-    In its own direction, back to where it is `limit` times the elastic normal force, which a
-    leaning leg loses or gains as it yields.
-    """
-    k_nn, k_nt, k_tt = springs
-    own = (k_nn - k_nt * k_nt / k_tt) * depth
-    return limit * own / (pull - limit * k_nt * Fx / k_tt)
-
-
 @compiled()
-def _tally(means: si.Array, forces: tuple[float, float, float], push: float, angle: float) -> None:
-    """Add a foot's forces, and what it does to the first mode in phase with it and after it."""
-    means[0] += forces[0]
-    means[1] += forces[1]
-    means[2] += forces[2]
-    means[7] += 2.0 * push * math.cos(angle)
-    means[8] += 2.0 * push * math.sin(angle)
+def _tally(
+    means: si.Array,
+    i: int,
+    forces: tuple[float, float, float],
+    swinging: tuple[float, Stator, Feet, si.Array],
+) -> None:
+    """Add a foot's forces, and what it does to each mode in phase with it and after it."""
+    t, stator, feet, sideways = swinging
+    Fx, Fy, N = forces
+    means[0] += Fx
+    means[1] += Fy
+    means[2] += N
+    for j in range(stator.mass.size):
+        push = -(N * feet.across[i, j] + Fx * feet.along[i, j] + Fy * sideways[i, j])
+        angle = stator.omega[j] * t + stator.phase[j]
+        means[7 + 2 * j] += 2.0 * push * math.cos(angle)
+        means[8 + 2 * j] += 2.0 * push * math.sin(angle)
 
 
 @compiled(error_model="numpy")
@@ -92,7 +88,6 @@ def average_contact(
         counts = n >= swing.samples * swing.warm
         _swinging(t, stator, w, dw)
         for i in range(n_feet):
-            k_nn, k_nt, k_tt = feet.k_nn[i], feet.k_nt[i], feet.k_tt[i]
             depth, speed = -height, 0.0
             x, y = -swing.along * t, -swing.sideways * t
             for j in range(J):
@@ -110,26 +105,14 @@ def average_contact(
             if depth <= 0.0:
                 stretch[i, 0] = stretch[i, 1] = 0.0
                 continue
-            limit = feet.mu[i] * (1.0 + feet.chi[i] * speed)
-            ex, ey = stretch[i, 0] + dx, stretch[i, 1] + dy
-            Fx, Fy = k_nt * depth + k_tt * ex, k_tt * ey
-            pull = math.hypot(Fx, Fy)
-            slip = 0.0
-            if pull > limit * (k_nn * depth + k_nt * ex):
-                back = _yielding(depth, pull, Fx, limit, (k_nn, k_nt, k_tt))
-                Fx, Fy = back * Fx, back * Fy
-                slip = Fx * (ex - (Fx - k_nt * depth) / k_tt) + Fy * (ey - Fy / k_tt)
-                ex, ey = (Fx - k_nt * depth) / k_tt, Fy / k_tt
-            elastic = k_nn * depth + k_nt * ex
-            stretch[i, 0], stretch[i, 1] = ex, ey
+            Fx, Fy, elastic, slip = followed(i, feet, depth, speed, (dx, dy), stretch)
             if counts:
                 N = elastic * (1.0 + feet.chi[i] * speed)
                 contact += 1.0
                 slipping += 1.0 if slip != 0.0 else 0.0
                 means[5] += feet.chi[i] * speed * speed * elastic
                 means[6] += slip / dt
-                push = -(N * feet.across[i, 0] + Fx * feet.along[i, 0] + Fy * sideways[i, 0])
-                _tally(means, (Fx, Fy, N), push, stator.omega[0] * t + stator.phase[0])
+                _tally(means, i, (Fx, Fy, N), (t, stator, feet, sideways))
     total = swing.samples * swing.periods
     means[:] /= total
     means[3] = contact / (total * n_feet)

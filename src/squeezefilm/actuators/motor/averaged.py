@@ -14,20 +14,21 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, root
 
 from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.average_kernel import MEANS, Swing, settled_height
 from squeezefilm.actuators.motor.in_time import require_no_pull
-from squeezefilm.actuators.motor.kernel import Stator
-from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
+from squeezefilm.actuators.motor.parts import Stator
+from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError, UnreachableError
 
 SAMPLES: int = 256
 """Instants of a period: thrust within some 0.5 % of the preload times µ."""
 # Two modes beat: so many periods of the first are averaged.
 _BEATING = 64
 _SCAN = 40
+_ROUNDS, _SETTLED = 40, 1e-5
 _N, _M = si.Unit("N"), si.Unit("m")
 
 
@@ -40,7 +41,7 @@ class AveragedMotor:
         speed, sideways_speed: of the slider along the guide and across it in the plane (m/s).
         thrust, sideways_thrust: of the feet on the slider (N), the guide's friction not taken off.
         force: what is left for a load along the guide (N), against the motion.
-        amplitude: of the first mode (m).
+        amplitude, second_amplitude: of the modes (m); the second 0 without one.
         height: of the slider over the resting face (m).
         contact_share: of the time, mean of the feet (1).
         slip_share: of the contact (1).
@@ -55,6 +56,7 @@ class AveragedMotor:
     sideways_thrust: si.Newton
     force: si.Newton
     amplitude: si.Metre
+    second_amplitude: si.Metre
     height: si.Metre
     contact_share: si.Dimensionless
     slip_share: si.Dimensionless
@@ -85,20 +87,14 @@ def averaged(
 
     Valid while the slider's own resonance on its feet lies far below the vibration, and the slider
     does not jump for more than one period: `simulate` does not assume that. With a voltage the
-    first mode's amplitude is where the drive's force balances mode and feet at the first harmonic,
-    the largest one where there are several; that takes some hundred times as long.
+    amplitude of each mode is where the drive's force balances mode and feet at its frequency, the
+    largest one where there are several; that takes some hundred times as long.
 
-    Raises `InputError` for a voltage with a second mode, and what `AssembledMotor.stator` and
-    `require_no_pull` raise.
+    Raises what `AssembledMotor.stator` and `require_no_pull` raise.
     """
     stator = motor.stator(working, held=True)
     if working.voltage is not None:
-        if working.second:
-            raise InputError(
-                "two modes driven by voltages are not averaged; hold them at an amplitude",
-                quantity="voltage",
-            )
-        stator = _balanced(motor, working, stator, speed)
+        stator = _balanced(motor, working, stator, (speed, sideways_speed))
     require_no_pull(motor, stator)
     height, means = _means(motor, working, stator, (speed, sideways_speed), samples)
     guide = motor.motor.cradle.friction
@@ -106,7 +102,9 @@ def averaged(
     force = thrust - guide * np.sign(speed if speed != 0 else thrust)
     if speed == 0 and abs(thrust) <= guide:
         force = 0.0
-    loss = float(np.sum(0.5 * stator.damping * (stator.omega * stator.amplitude) ** 2))
+    moved = np.abs(stator.amplitude)
+    damping = stator.damping * (1 + stator.rise * moved)
+    loss = float(np.sum(0.5 * damping * (stator.omega * moved) ** 2))
     return AveragedMotor(
         working,
         speed,
@@ -115,6 +113,7 @@ def averaged(
         float(means[1]),
         float(force),
         float(stator.amplitude[0]),
+        float(stator.amplitude[1]) if len(motor.modes) > 1 else 0.0,
         height,
         float(means[3]),
         float(means[4]),
@@ -141,27 +140,60 @@ def _means(
 
 
 def _balanced(
-    motor: AssembledMotor, working: Working, stator: Stator, speed: si.MetrePerSecond
+    motor: AssembledMotor, working: Working, stator: Stator, speeds: tuple[float, float]
 ) -> Stator:
-    """The stator held at the amplitude at which drive, mode and feet are in balance."""
-    M, K, C, w = (one[0] for one in (stator.mass, stator.stiffness, stator.damping, stator.omega))
-    force = float(stator.force[0])
-    if force == 0:
+    """The stator held at the amplitudes at which drive, modes and feet are in balance."""
+    if stator.force[0] == 0:
         raise InputError(
             "voltage is 0 V: nothing vibrates, and the slider is held by up to "
             f"{si.format_quantity(motor.quiescent_force, _N)}; give a voltage or an amplitude",
             quantity="voltage",
         )
+    driven = np.flatnonzero(stator.force)
+    held = stator._replace(amplitude=np.zeros(stator.mass.size))
+    for _ in range(_ROUNDS):
+        before = held.amplitude
+        for j in driven.tolist():
+            held = _in_balance(motor, working, held, j, speeds)
+        # One mode by itself is found at once; two move the slider for each other.
+        if driven.size == 1 or np.allclose(held.amplitude, before, rtol=_SETTLED, atol=0):
+            return held
+    raise ConvergenceError(
+        f"the amplitudes of the two modes did not settle in {_ROUNDS} rounds; hold them at an "
+        "amplitude, or resolve the motor in time",
+        iterations=_ROUNDS,
+    )
+
+
+def _in_balance(
+    motor: AssembledMotor,
+    working: Working,
+    stator: Stator,
+    j: int,
+    speeds: tuple[float, float],
+    *,
+    free: bool = False,
+) -> Stator:
+    """The stator with mode `j` at the amplitude at which its drive is in balance with the feet (or
+    without them), the other mode being held."""
+    M, K, C, w = (
+        float(one[j]) for one in (stator.mass, stator.stiffness, stator.damping, stator.omega)
+    )
+    force, way = abs(float(stator.force[j])), float(np.sign(stator.force[j]))
 
     def held(amplitude: float) -> Stator:
-        return stator._replace(amplitude=np.array([amplitude, *np.zeros(M_count - 1)]))
-
-    M_count = stator.mass.size
+        there = stator.amplitude.copy()
+        there[j] = way * amplitude
+        return stator._replace(amplitude=there)
 
     def excess(amplitude: float) -> float:
-        _, means = _means(motor, working, held(amplitude), (speed, 0.0), 128)
-        real = (K - M * w**2) * amplitude - means[7]
-        lossy = C * w * amplitude + means[8]
+        means = np.zeros(MEANS)
+        if not free:
+            _, means = _means(motor, working, held(amplitude), speeds, 128)
+        # The first harmonic of `spring_at`, and `damping_at`.
+        bent = 8 / (3 * np.pi) * stator.bend[j] * amplitude + 0.75 * stator.cube[j] * amplitude**2
+        real = (K * (1 + bent) - M * w**2) * amplitude - way * means[7 + 2 * j]
+        lossy = C * (1 + stator.rise[j] * amplitude) * w * amplitude + way * means[8 + 2 * j]
         return float(np.hypot(real, lossy) - force)
 
     most = force / (C * w)
@@ -169,8 +201,8 @@ def _balanced(
     above = most
     for amplitude in tried:
         if excess(amplitude) < 0:
-            root = amplitude if above == amplitude else brentq(excess, amplitude, above, rtol=1e-6)
-            return held(float(root))
+            at = amplitude if above == amplitude else brentq(excess, amplitude, above, rtol=1e-6)
+            return held(float(at))
         above = amplitude
     raise UnreachableError(
         f"{si.format_quantity(float(working.voltage or 0.0), si.Unit('V'))} moves the plate less "
@@ -178,6 +210,23 @@ def _balanced(
         "it nearer to its resonance, harder, or press it less",
         quantity="voltage",
     )
+
+
+@si.checked_numbers
+def free_amplitude(motor: AssembledMotor, working: Working) -> si.Metre:
+    """The amplitude (m) of the first mode without a slider at a voltage, its nonlinearity counted:
+    the largest one where there are several.
+
+    Raises `UnreachableError` for a drive far beside the resonance, and what `AssembledMotor.stator`
+    raises.
+    """
+    if working.voltage is None:
+        assert working.amplitude is not None
+        return working.amplitude
+    if working.voltage == 0:
+        return 0.0
+    stator = motor.stator(working, held=True)
+    return float(_in_balance(motor, working, stator, 0, (0.0, 0.0), free=True).amplitude[0])
 
 
 @si.checked_numbers
@@ -242,3 +291,42 @@ def no_load_speed(motor: AssembledMotor, working: Working) -> si.MetrePerSecond:
     if left(tiny) <= 0:
         return 0.0
     return way * float(brentq(left, tiny, far, xtol=1e-7 * far))
+
+
+@si.checked_numbers
+def no_load_velocity(
+    motor: AssembledMotor, working: Working
+) -> tuple[si.MetrePerSecond, si.MetrePerSecond]:
+    """The velocity (m/s, along and sideways) at which a slider that is free in the plane is pushed
+    no more, but for the guide's friction against its motion.
+
+    Raises `ConvergenceError` where none is found, and as `stall_force`.
+    """
+    rest = averaged(motor, working)
+    require_moving(motor, rest)
+    held = working
+    if working.voltage is not None:
+        share = rest.second_amplitude / rest.amplitude
+        held = replace(working, voltage=None, amplitude=rest.amplitude, second=share)
+    preload = motor.slider(working, imposed=True).preload
+    reach = np.max(np.abs(motor.feet.along) + np.abs(motor.sideways))
+    fastest = float(reach * np.max(motor.stator(held).omega) * rest.amplitude)
+    guide = motor.motor.cradle.friction
+
+    def left(scaled: si.FloatArray) -> si.FloatArray:
+        velocity = fastest * scaled
+        there = averaged(motor, held, speed=velocity[0], sideways_speed=velocity[1])
+        thrust = np.array([there.thrust, there.sideways_thrust])
+        moving = float(np.hypot(*velocity))
+        return np.asarray((thrust - guide * velocity / max(moving, 1e-9 * fastest)) / preload)
+
+    start = np.array([rest.thrust, rest.sideways_thrust])
+    found = root(left, 0.2 * start / max(float(np.hypot(*start)), 1e-30), tol=1e-7)
+    if not found.success:
+        raise ConvergenceError(
+            "no velocity was found at which nothing pushes the slider in the plane; resolve it in "
+            "time",
+            partial=fastest * found.x,
+            iterations=int(found.nfev),
+        )
+    return float(fastest * found.x[0]), float(fastest * found.x[1])

@@ -11,6 +11,7 @@ from typing import Annotated, ClassVar
 from squeezefilm import hard_limits as hard
 from squeezefilm import presets
 from squeezefilm import quantities as si
+from squeezefilm.actuators.motor.free_plate import FreePlate
 from squeezefilm.config.load import load
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.config.references import References
@@ -92,6 +93,7 @@ class Cradle:
 
 
 _COOL = Thermal()
+_LINEAR = FreePlate()
 
 
 @si.checked_numbers
@@ -100,7 +102,8 @@ class Motor:
     """A slider on the feet of a plate that vibrates in one mode, or in two.
 
     `second_plate` is the same plate as its other electrodes drive it, for motion along the other
-    side. `thermal` has the coercive field, a share of which the drive must not pass.
+    side. `thermal` has the coercive field, a share of which the drive must not pass;
+    `free_plate` how resonance and losses follow the amplitude.
 
     Raises `GeometryError` for no feet, or feet beside the plate; `InputError` for a second plate of
     another size.
@@ -114,6 +117,7 @@ class Motor:
     voltage: Annotated[si.Volt, si.Above(0.0), si.AtMost(1e4)]
     second_plate: RectangularPlate | None = None
     thermal: Thermal = _COOL
+    free_plate: FreePlate = _LINEAR
 
     def __post_init__(self) -> None:
         if not self.feet:

@@ -10,6 +10,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.actuators.motor import kernel
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
+from squeezefilm.actuators.motor.parts import Feet, Slider, Stator, mode_energy
 from squeezefilm.errors import ConvergenceError, OutOfRangeError
 
 STEPS: int = 64
@@ -131,7 +132,7 @@ def simulate(
 
 
 def _periods(
-    parts: tuple[kernel.Stator, kernel.Feet, kernel.Slider, kernel.March],
+    parts: tuple[Stator, Feet, Slider, kernel.March],
     periods: int,
     steps: int,
     track: si.FloatArray,
@@ -169,7 +170,7 @@ def _periods(
     return rows, half
 
 
-def require_no_pull(motor: AssembledMotor, stator: kernel.Stator) -> None:
+def require_no_pull(motor: AssembledMotor, stator: Stator) -> None:
     """Refuse contact damping under which a foot would pull. Raises `OutOfRangeError`."""
     fastest = np.max(np.abs(motor.feet.across) @ (stator.amplitude * stator.omega))
     pull = float(np.max(motor.feet.chi) * fastest)
@@ -185,10 +186,10 @@ def require_no_pull(motor: AssembledMotor, stator: kernel.Stator) -> None:
 def resting(
     motor: AssembledMotor,
     working: Working,
-    stator: kernel.Stator,
+    stator: Stator,
     speed: float | None,
     start_speed: float,
-) -> tuple[kernel.March, kernel.Slider]:
+) -> tuple[kernel.March, Slider]:
     """The state before the march: a slider that rests on the feet, in its place."""
     slider = motor.slider(working, imposed=speed is not None)
     J, n_feet = stator.mass.size, motor.feet.mu.size
@@ -217,9 +218,7 @@ def resting(
     return march, slider
 
 
-def _energy(
-    motor: AssembledMotor, stator: kernel.Stator, slider: kernel.Slider, march: kernel.March
-) -> si.Joule:
+def _energy(motor: AssembledMotor, stator: Stator, slider: Slider, march: kernel.March) -> si.Joule:
     """Kinetic and elastic energy (J) of slider and feet, and of modes that are not held."""
     J, n_feet = stator.mass.size, motor.feet.mu.size
     at, y, feet = 2 * J, march.state, motor.feet
@@ -230,5 +229,5 @@ def _energy(
     if not slider.imposed:
         own += 0.5 * slider.mass * float(y[at + 3] ** 2)
     if not stator.held:
-        own += float(np.sum(0.5 * stator.mass * y[J:at] ** 2 + 0.5 * stator.stiffness * y[:J] ** 2))
+        own += float(np.sum(mode_energy(stator, y[:J], y[J:at])))
     return own

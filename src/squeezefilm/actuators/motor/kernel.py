@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.actuators.motor.parts import Feet, Slider, Stator, damping_at, spring_at
 from squeezefilm.compiled import compiled
 
 OPEN, STICK, SLIP_UP, SLIP_DOWN = 0, 1, 2, 3
@@ -30,46 +31,6 @@ TOTALS = 9
 MOST_EVENTS = 400
 _NO_EVENT = 1.0
 _LATER = 1e-3
-
-
-class Stator(NamedTuple):
-    """Per mode: modal mass (kg), stiffness (N/m), damping (N·s/m), amplitude of the drive's force
-    (N), angular frequency (rad/s), phase (rad), and the amplitude (m) at which it is held where
-    `held` is 1."""
-
-    mass: si.Array
-    stiffness: si.Array
-    damping: si.Array
-    force: si.Array
-    omega: si.Array
-    phase: si.Array
-    amplitude: si.Array
-    held: bool
-
-
-class Feet(NamedTuple):
-    """Per foot and mode the motion across and along the face for 1 m of the mode, (feet, modes);
-    per foot the stiffnesses (N/m), χ (s/m) and µ."""
-
-    across: si.Array
-    along: si.Array
-    k_nn: si.Array
-    k_nt: si.Array
-    k_tt: si.Array
-    chi: si.Array
-    mu: si.Array
-
-
-class Slider(NamedTuple):
-    """Mass (kg), preload (N), damping of the guide across (N·s/m), its dry friction along (N), the
-    load against +x (N), and whether the speed along is imposed."""
-
-    mass: float
-    preload: float
-    damping: float
-    guide: float
-    load: float
-    imposed: bool
 
 
 class March(NamedTuple):
@@ -162,10 +123,11 @@ def _drive(t: float, y: si.Array, stator: Stator, totals: int, dy: si.Array) -> 
             dy[J + j] = -(stator.omega[j] ** 2) * y[j]
         else:
             push = stator.force[j] * math.cos(stator.omega[j] * t + stator.phase[j])
-            lost = stator.damping[j] * y[J + j]
+            lost = damping_at(stator, j, y[j], y[J + j]) * y[J + j]
             dy[totals + DRIVE] += push * y[J + j]
             dy[totals + MODAL_LOSS] += lost * y[J + j]
-            dy[J + j] = (dy[J + j] + push - lost - stator.stiffness[j] * y[j]) / stator.mass[j]
+            back = spring_at(stator, j, y[j]) * y[j]
+            dy[J + j] = (dy[J + j] + push - lost - back) / stator.mass[j]
 
 
 @compiled()
