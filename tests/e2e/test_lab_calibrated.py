@@ -117,8 +117,9 @@ def test_design_shows_what_was_measured_beside_the_model(
     # A drawing folded away has no room to be drawn to scale; two frames pass over it.
     for height in ("0", "30px"):
         page.evaluate(
-            "(height) => { document.querySelector('section canvas').style.height = height; "
-            "return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))); }",
+            "(height) => new Promise((done) => {"
+            " document.querySelector('section canvas').style.height = height;"
+            " requestAnimationFrame(() => requestAnimationFrame(done)); })",
             height,
         )
     # The reading back of pixels is this test's own.

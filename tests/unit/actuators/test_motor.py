@@ -327,8 +327,6 @@ def test_two_modes_thrust_in_the_plane() -> None:
     assert turned_guide.sideways_thrust == pytest.approx(-together.thrust, rel=1e-6)
     with pytest.raises(InputError, match="no second_plate"):
         averaged(motor(), replace(WORKING, second=1.0))
-    XX
-        averaged(both, Working(voltage=5.0, second=1.0))
 
 
 def test_the_kernel_of_the_mean_is_of_second_order_in_its_instants() -> None:

@@ -105,13 +105,13 @@ def average_contact(
             if depth <= 0.0:
                 stretch[i, 0] = stretch[i, 1] = 0.0
                 continue
-            Fx, Fy, elastic, slip = followed(i, feet, depth, speed, (dx, dy), stretch)
+            Fx, Fy, elastic, slip_x, slip_y = followed(i, feet, depth, speed, (dx, dy), stretch)
             if counts:
                 N = elastic * (1.0 + feet.chi[i] * speed)
                 contact += 1.0
-                slipping += 1.0 if slip != 0.0 else 0.0
+                slipping += 1.0 if slip_x != 0.0 or slip_y != 0.0 else 0.0
                 means[5] += feet.chi[i] * speed * speed * elastic
-                means[6] += slip / dt
+                means[6] += (Fx * slip_x + Fy * slip_y) / dt
                 _tally(means, i, (Fx, Fy, N), (t, stator, feet, sideways))
     total = swing.samples * swing.periods
     means[:] /= total

@@ -86,9 +86,11 @@ def averaged(
     """A motor in the mean over a period, its slider at a speed along and sideways (m/s).
 
     Valid while the slider's own resonance on its feet lies far below the vibration, and the slider
-    does not jump for more than one period: `simulate` does not assume that. With a voltage the
-    amplitude of each mode is where the drive's force balances mode and feet at its frequency, the
-    largest one where there are several; that takes some hundred times as long.
+    does not jump for more than one period: `simulate` does not assume that. Two modes beat: their
+    difference frequency too must lie far above that resonance, or the slider follows the beat, and
+    the thrust is that of `simulate_plane`. A mode that no drive moves stays at rest. With a voltage
+    the amplitude of each mode is where the drive's force balances mode and feet at its frequency,
+    the largest one where there are several; that takes some hundred times as long.
 
     Raises what `AssembledMotor.stator` and `require_no_pull` raise.
     """

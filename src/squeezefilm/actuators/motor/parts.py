@@ -59,7 +59,7 @@ class Slider(NamedTuple):
 def spring_at(stator: Stator, j: int, q: float) -> float:
     """The stiffness (N/m) of a mode at its deflection q (m): k (1 + bend |q| + cube q²), a spring
     that keeps its energy."""
-    return stator.stiffness[j] * (1.0 + stator.bend[j] * abs(q) + stator.cube[j] * q * q)
+    return float(stator.stiffness[j] * (1.0 + stator.bend[j] * abs(q) + stator.cube[j] * q * q))
 
 
 def mode_energy(stator: Stator, q: si.FloatArray, speed: si.FloatArray) -> si.FloatArray:
@@ -73,7 +73,9 @@ def mode_energy(stator: Stator, q: si.FloatArray, speed: si.FloatArray) -> si.Fl
 def damping_at(stator: Stator, j: int, q: float, speed: float) -> float:
     """The damping (N·s/m) of a mode at deflection (m) and speed (m/s): it rises with the amplitude
     that these two make."""
-    return stator.damping[j] * (1.0 + stator.rise[j] * math.hypot(q, speed / stator.omega[j]))
+    return float(
+        stator.damping[j] * (1.0 + stator.rise[j] * math.hypot(q, speed / stator.omega[j]))
+    )
 
 
 @compiled(error_model="numpy")
@@ -93,21 +95,21 @@ def _yielding(
 @compiled(error_model="numpy")
 def followed(
     i: int, feet: Feet, depth: float, speed: float, moved: tuple[float, float], stretch: si.Array
-) -> tuple[float, float, float, float]:
+) -> tuple[float, float, float, float, float]:
     """A foot pressed in by `depth` (m, at `speed`, m/s) that `moved` (m) along and sideways in an
-    instant: its forces along and sideways, its elastic normal force (N), and the friction's work
-    (J). `stretch` (feet, 2) follows: as it would stick, and back to the limit, along the force,
-    where that is more than friction gives."""
+    instant: its forces along and sideways, its elastic normal force (N), and how far it slipped
+    along and sideways (m). `stretch` (feet, 2) follows: as it would stick, and back to the limit,
+    along the force, where that is more than friction gives."""
     k_nn, k_nt, k_tt = feet.k_nn[i], feet.k_nt[i], feet.k_tt[i]
     limit = feet.mu[i] * (1.0 + feet.chi[i] * speed)
     ex, ey = stretch[i, 0] + moved[0], stretch[i, 1] + moved[1]
     Fx, Fy = k_nt * depth + k_tt * ex, k_tt * ey
     pull = math.hypot(Fx, Fy)
-    slip = 0.0
+    slip_x, slip_y = 0.0, 0.0
     if pull > limit * (k_nn * depth + k_nt * ex):
         back = _yielding(depth, pull, Fx, limit, (k_nn, k_nt, k_tt))
         Fx, Fy = back * Fx, back * Fy
-        slip = Fx * (ex - (Fx - k_nt * depth) / k_tt) + Fy * (ey - Fy / k_tt)
-        ex, ey = (Fx - k_nt * depth) / k_tt, Fy / k_tt
+        slip_x, slip_y = ex - (Fx - k_nt * depth) / k_tt, ey - Fy / k_tt
+        ex, ey = ex - slip_x, ey - slip_y
     stretch[i, 0], stretch[i, 1] = ex, ey
-    return Fx, Fy, k_nn * depth + k_nt * ex, slip
+    return Fx, Fy, k_nn * depth + k_nt * ex, slip_x, slip_y

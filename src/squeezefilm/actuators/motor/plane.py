@@ -14,7 +14,7 @@ from squeezefilm.actuators.motor.parts import Slider, Stator, mode_energy
 from squeezefilm.actuators.motor.plane_kernel import TOTALS, PlaneMarch, march_plane
 
 STEPS: int = 256
-"""Steps of a period of the first mode: the thrust is then within some 1e-3 of µ times the preload."""
+"""Steps of a period of the first mode: thrust within some 1e-3 of µ times the preload."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,6 +144,7 @@ def _resting(
         place,
         last,
         depth,
+        np.zeros((n_feet, 2)),
         np.zeros((n_feet, 2)),
         np.zeros(TOTALS),
         np.zeros(2),

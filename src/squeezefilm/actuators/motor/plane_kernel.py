@@ -33,7 +33,8 @@ TOTALS = 10
 class PlaneMarch(NamedTuple):
     """The modes' deflections (m) and speeds (m/s), the last step's accelerations of modes and
     height, the slider (`HEIGHT` and so on), per foot where it stood to the slider (m), its depth
-    and its stretch (m), the works and impulses, and the time in contact and sticking (s)."""
+    (m), stretch (m) and force (N), the works and impulses, and the time in contact and sticking
+    (s)."""
 
     q: si.Array
     dq: si.Array
@@ -42,6 +43,7 @@ class PlaneMarch(NamedTuple):
     last: si.Array
     depth: si.Array
     stretch: si.Array
+    force: si.Array
     totals: si.Array
     shares: si.Array
 
@@ -59,7 +61,7 @@ def march_plane(
     stator, feet, sideways, slider, march = parts
     J, n_feet = stator.mass.size, feet.mu.size
     s, totals = march.slider, march.totals
-    half, speed_half = np.zeros(J), np.zeros(J)
+    half, speed_half, before = np.zeros(J), np.zeros(J), np.zeros(J)
     onto, lossy = np.zeros(J), np.zeros(n_feet)
     for step in range(steps):
         t = start + (step + 0.5) * h
@@ -74,6 +76,8 @@ def march_plane(
         z, x, y = s[HEIGHT] + 0.5 * h * s[RISE], s[X] + 0.5 * h * s[V_X], s[Y] + 0.5 * h * s[V_Y]
         rise = s[RISE] + 0.5 * h * march.ddq[J]
         onto[:] = 0.0
+        before[:] = march.q
+        z_before = s[HEIGHT]
         Fx, Fy, N = 0.0, 0.0, 0.0
         for i in range(n_feet):
             depth, speed, at_x, at_y = -z, -rise, -x, -y
@@ -88,30 +92,35 @@ def march_plane(
             lossy[i] = 0.0
             if depth <= 0.0:
                 march.stretch[i, 0] = march.stretch[i, 1] = 0.0
+                march.force[i, 0] = march.force[i, 1] = 0.0
                 continue
             if was < 0.0:
                 # It met the slider within this step: only what came after counts.
                 dx *= depth / (depth - was)
                 dy *= depth / (depth - was)
-            f_x, f_y, elastic, slip = followed(i, feet, depth, speed, (dx, dy), march.stretch)
+            f_x, f_y, elastic, slip_x, slip_y = followed(
+                i, feet, depth, speed, (dx, dy), march.stretch
+            )
             lossy[i] = feet.chi[i] * speed * elastic
             n = elastic + lossy[i]
             Fx, Fy, N = Fx + f_x, Fy + f_y, N + n
-            totals[5] += slip
+            # Of second order: slip begins at the force before and ends at the one after.
+            totals[5] += 0.5 * (march.force[i, 0] + f_x) * slip_x
+            totals[5] += 0.5 * (march.force[i, 1] + f_y) * slip_y
+            march.force[i, 0], march.force[i, 1] = f_x, f_y
             march.shares[0] += h / n_feet
-            if slip == 0.0:
+            if slip_x == 0.0 and slip_y == 0.0:
                 march.shares[1] += h / n_feet
             for j in range(J):
                 onto[j] -= n * feet.across[i, j] + f_x * feet.along[i, j] + f_y * sideways[i, j]
         _modes(t, h, stator, half, speed_half, onto, march)
         _moved(h, (Fx, Fy, N), slider, march)
         # The work of the contact's damper, at the speeds that the step really had.
-        mean_rise = (z - s[HEIGHT]) * -2.0 / h
         for i in range(n_feet):
-            rate = mean_rise
+            gone = z_before - s[HEIGHT]
             for j in range(J):
-                rate += feet.across[i, j] * (march.q[j] - half[j]) * 2.0 / h
-            totals[4] += lossy[i] * rate * h
+                gone += feet.across[i, j] * (march.q[j] - before[j])
+            totals[4] += lossy[i] * gone
         if track.shape[0] > step:
             track[step, 0] = start + (step + 1) * h
             track[step, 1:7] = s
@@ -133,10 +142,10 @@ def _modes(
     and the modes' own works."""
     for j in range(stator.mass.size):
         if stator.held:
-            angle = stator.omega[j] * (t + 0.5 * h) + stator.phase[j]
+            angle, before = stator.omega[j] * (t + 0.5 * h) + stator.phase[j], march.q[j]
             march.q[j] = stator.amplitude[j] * math.cos(angle)
             march.dq[j] = -stator.amplitude[j] * stator.omega[j] * math.sin(angle)
-            march.totals[0] -= onto[j] * speed_half[j] * h
+            march.totals[0] -= onto[j] * (march.q[j] - before)
             continue
         push = stator.force[j] * math.cos(stator.omega[j] * t + stator.phase[j])
         c = damping_at(stator, j, half[j], speed_half[j])

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.actuators.motor.free_plate import FreePlate
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
@@ -87,6 +88,32 @@ class VoltageSweepsFit:
                 ("amplitude_per_volt", self.amplitude_per_volt),
             )
         )
+
+    @si.checked_numbers
+    def free_plate(
+        self, share: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 1.0
+    ) -> FreePlate:
+        """The plate's nonlinearity as a motor's description takes it, for `[motor.free_plate]`.
+
+        `share` is what the point that was measured moves of the lobe (1). Losses that fall with the
+        amplitude by less than their standard error count as constant; raises `InputError` for a fit
+        that is not adequate, and for losses that fall.
+        """
+        if not self.adequacy.adequate:
+            raise InputError(
+                "the fit of these sweeps is not adequate, and its backbone is no property of the "
+                "plate; see what it says of its misfit"
+            )
+        rise = self.damping_rise
+        if rise.value < -2 * rise.standard_error:
+            raise InputError(
+                f"the losses fall with the amplitude ({rise.value:.3g} 1/m), which no plate by "
+                "itself does; measure it without what it rubs on"
+            )
+        by = {"linear": "by_amplitude", "quadratic": "by_square"}[self.law]
+        power = 1 if self.law == "linear" else 2
+        bent = {by: self.backbone.value * share**power}
+        return FreePlate(**bent, loss_rise=max(0.0, rise.value) * share)
 
     def resonance_at(self, amplitude: si.Metre) -> si.Hertz:
         """The backbone: the resonance frequency (Hz) at an amplitude (m)."""
