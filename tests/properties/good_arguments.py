@@ -130,6 +130,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "actuators.motor.stator.FaceMode.at": {"place": np.linspace(0.01, 0.07, 5)},
     "actuators.motor.averaged.averaged": {"samples": 64},
     "actuators.motor.in_time.simulate": {"periods": 4, "traced": 1},
+    "actuators.motor.plane.simulate_plane": {"periods": 4, "velocity": (0.01, 0.0)},
     "actuators.motor.curves.motor_map": {
         "preloads": np.array([5.0]),
         "amplitudes": np.array([1e-6]),

@@ -229,5 +229,5 @@ def _energy(motor: AssembledMotor, stator: Stator, slider: Slider, march: kernel
     if not slider.imposed:
         own += 0.5 * slider.mass * float(y[at + 3] ** 2)
     if not stator.held:
-        own += float(np.sum(mode_energy(stator, y[:J], y[J:at])))
+        own += float(mode_energy(stator, y[:J], y[J:at]))
     return own

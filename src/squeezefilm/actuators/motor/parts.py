@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from squeezefilm import quantities as si
 from squeezefilm.compiled import compiled
 
@@ -62,11 +60,15 @@ def spring_at(stator: Stator, j: int, q: float) -> float:
     return float(stator.stiffness[j] * (1.0 + stator.bend[j] * abs(q) + stator.cube[j] * q * q))
 
 
-def mode_energy(stator: Stator, q: si.FloatArray, speed: si.FloatArray) -> si.FloatArray:
-    """Kinetic and elastic energy (J) of each mode at deflections (m) and speeds (m/s)."""
-    size = np.abs(q)
-    spring = size**2 / 2 + stator.bend * size**3 / 3 + stator.cube * size**4 / 4
-    return np.asarray(0.5 * stator.mass * speed**2 + stator.stiffness * spring)
+@compiled()
+def mode_energy(stator: Stator, q: si.Array, speed: si.Array) -> float:
+    """Kinetic and elastic energy (J) of all modes at deflections (m) and speeds (m/s)."""
+    found = 0.0
+    for j in range(q.size):
+        size = abs(q[j])
+        bent = 0.5 + stator.bend[j] * size / 3.0 + stator.cube[j] * size * size / 4.0
+        found += 0.5 * stator.mass[j] * speed[j] ** 2 + stator.stiffness[j] * size * size * bent
+    return found
 
 
 @compiled()

@@ -163,5 +163,5 @@ def _energy(motor: AssembledMotor, stator: Stator, slider: Slider, march: PlaneM
     if not slider.imposed:
         own += 0.5 * slider.mass * float(s[4] ** 2 + s[5] ** 2)
     if not stator.held:
-        own += float(np.sum(mode_energy(stator, march.q, march.dq)))
+        own += float(mode_energy(stator, march.q, march.dq))
     return own
