@@ -143,11 +143,16 @@ def cross_section(
         key = (column, round(length, 12), order)
         if key not in kron_cache:
             M, D, S = line_matrices(length, order, hierarchic=True)
-            P2 = _kron(M, Z[0, 0])
-            P1 = _kron(D.T, Z[0, 1]) + _kron(M, Z[0, 2])
-            P0 = _kron(S, Z[1, 1]) + _kron(D, Z[1, 2]) + _kron(D.T, Z[2, 1]) + _kron(M, Z[2, 2])
             three = np.diag([1.0, 1.0, 1.0, 0.0])
             R = _kron(M, mass[None, :, None, :] * three[:, None, :, None])
+            if Z.any():
+                P2 = _kron(M, Z[0, 0])
+                P1 = _kron(D.T, Z[0, 1]) + _kron(M, Z[0, 2])
+                P0 = _kron(S, Z[1, 1]) + _kron(D, Z[1, 2]) + _kron(D.T, Z[2, 1])
+                P0 += _kron(M, Z[2, 2])
+            else:
+                # A weight may leave all of a column out.
+                P2 = P1 = P0 = np.zeros_like(R)
             kron_cache[key] = (P2, P1, P0, R)
         P2, P1, P0, R = kron_cache[key]
         for number, spring in enumerate(model.foundations):

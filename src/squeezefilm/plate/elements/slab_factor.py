@@ -9,9 +9,9 @@ most of the work is done once. The remaining chain of end slices is eliminated f
 from __future__ import annotations
 
 import collections
+import functools
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,47 +25,11 @@ from squeezefilm.plate.elements.mirrored_element import (
     SliceMatrices,
     mirrored_element,
 )
+from squeezefilm.plate.elements.slab_cells import Cell, Group, Place, cut, mirrors
 from squeezefilm.plate.elements.slabs import Slabs, relabelled
 
 Matrix = NDArray[Any]
 _REPEATED = 3
-
-
-@dataclass(frozen=True, eq=False)
-class _Cell:
-    """A stretch of elements eliminated onto its end slices.
-
-    `bubbles[k]` eliminates the inner slices of its k-th element onto its two end slices;
-    `joints[k]` the slice between elements k and k + 1 onto the first slice and slice k + 2.
-    `spans[k]` are the first and the last slice of an element, counted within the cell, `at[k]`
-    where its unknowns stand in these two.
-    """
-
-    bubbles: tuple[MirroredElement, ...]
-    joints: tuple[PartialLDL, ...]
-    spans: tuple[tuple[int, int], ...]
-    at: tuple[tuple[Matrix, Matrix], ...]
-    ends: Matrix
-    negative: int
-
-
-@dataclass(frozen=True, eq=False)
-class _Place:
-    """Where a cell stands: its slices in the order of the cell, mirrored or not."""
-
-    cell: _Cell
-    nodes: range
-    mirrored: bool
-
-    @property
-    def left(self) -> int:
-        """The first of its slices along x."""
-        return min(self.nodes)
-
-    @property
-    def right(self) -> int:
-        """The last of its slices along x."""
-        return max(self.nodes)
 
 
 class SlabFactor:
@@ -80,11 +44,11 @@ class SlabFactor:
         self._bubbles: dict[Any, MirroredElement] = {}
         # Reflection along x turns u and nothing else.
         self._mirror_signs = np.where(slabs.components == 0, -1.0, 1.0)
-        cells: dict[Any, _Cell] = {}
-        self._places: list[_Place] = []
+        cells: dict[Any, Cell] = {}
+        self._places: list[Place] = []
         for elements, repeated in self._stretches():
             forward, backward = self._key(elements), self._key(elements[::-1])
-            mirrored = forward not in cells and backward in cells and _mirrors(slabs, elements)
+            mirrored = forward not in cells and backward in cells and mirrors(slabs, elements)
             key = backward if mirrored else forward
             if not repeated:
                 # Its end slices may have more unknowns than its own: it is like no other.
@@ -93,7 +57,7 @@ class SlabFactor:
                 cells[key] = self._cell(elements)
             first = slabs.model.x.first_node
             nodes = range(first[elements[0]], first[elements[-1] + 1] + 1)
-            self._places.append(_Place(cells[key], nodes[::-1] if mirrored else nodes, mirrored))
+            self._places.append(Place(cells[key], nodes[::-1] if mirrored else nodes, mirrored))
         self._chain()
 
     @property
@@ -108,7 +72,7 @@ class SlabFactor:
         """Cells that occur three times or more, and by themselves the elements of all others (and
         whether it is one of the former): to eliminate a stretch onto its two ends costs nearly
         three times what it costs to go through it from the left."""
-        cells = _cut(self._slabs)
+        cells = cut(self._slabs)
         keys = [frozenset((self._key(cell), self._key(cell[::-1]))) for cell in cells]
         counts = collections.Counter(keys)
         out: list[tuple[list[int], bool]] = []
@@ -161,7 +125,7 @@ class SlabFactor:
             out[np.ix_(where, where)] = bubble.schur
         return out, sizes[0], at
 
-    def _cell(self, elements: Sequence[int]) -> _Cell:
+    def _cell(self, elements: Sequence[int]) -> Cell:
         # Cells are always made in ascending order of x; mirrored ones reuse them.
         bubbles = tuple(self._bubble(e) for e in elements)
         front, n0, first = self._ends(elements[0], bubbles[0])
@@ -181,7 +145,7 @@ class SlabFactor:
         negative = sum(one.negative for one in bubbles) + sum(one.negative for one in joints)
         stops = np.cumsum([0, *(self._slabs.model.x.orders[e] for e in elements)]).tolist()
         spans = tuple(itertools.pairwise(stops))
-        return _Cell(bubbles, tuple(joints), spans, tuple(places), front, negative)
+        return Cell(bubbles, tuple(joints), spans, tuple(places), front, negative)
 
     def _signs(self, node: int) -> Matrix:
         offsets = self._slabs.offsets
@@ -226,145 +190,111 @@ class SlabFactor:
 
     # -- solution ---------------------------------------------------------------------------
 
+    @functools.cached_property
+    def _groups(self) -> list[Group]:
+        """Places that share a cell: they are solved as one block of right sides."""
+        found: dict[int, list[Place]] = {}
+        for place in self._places:
+            found.setdefault(id(place.cell), []).append(place)
+        return [self._group(places) for places in found.values()]
+
+    def _group(self, places: list[Place]) -> Group:
+        offsets, sizes = self._slabs.offsets, self._slabs.sizes
+        at = np.stack(
+            [
+                np.concatenate([np.arange(offsets[n], offsets[n + 1]) for n in one.nodes])
+                for one in places
+            ],
+            axis=1,
+        )
+        signs = np.stack(
+            [
+                self._mirror_signs[at[:, k]] if one.mirrored else np.ones(at.shape[0])
+                for k, one in enumerate(places)
+            ],
+            axis=1,
+        )
+        stops = np.cumsum([0, *(sizes[n] for n in places[0].nodes)]).tolist()
+        return Group(places[0].cell, at, signs[:, :, None], stops)
+
     def solve(self, right: Matrix) -> Matrix:
         """The solution for each column of `right`, shape (unknowns, vectors)."""
         offsets = self._slabs.offsets
-        right = np.where(self._slabs.held[:, None], 0, right)
-        slices = [
-            np.array(right[a:b], dtype=self._dtype(right)) for a, b in itertools.pairwise(offsets)
-        ]
+        x = np.array(right, dtype=np.result_type(right.dtype, self._final.W.dtype))
+        x[self._slabs.held] = 0
         vectors = right.shape[1]
-        groups: dict[int, list[_Place]] = {}
-        for place in self._places:
-            groups.setdefault(id(place.cell), []).append(place)
-        # Places that share a cell are solved as one block of right sides.
-        blocks = [self._gathered(group, slices) for group in groups.values()]
+        blocks = [self._gathered(group, x) for group in self._groups]
         kept = [
-            self._forward(group[0].cell, block)
-            for group, block in zip(groups.values(), blocks, strict=True)
+            self._forward(group, block) for group, block in zip(self._groups, blocks, strict=True)
         ]
-        for group, block in zip(groups.values(), blocks, strict=True):
-            for number, place in enumerate(group):
-                columns = slice(number * vectors, (number + 1) * vectors)
-                for at in (0, -1):
-                    node = place.nodes[at]
-                    slices[node] += self._signed(place, node, block[at][:, columns])
-        for node in (0, len(slices) - 1):
-            slices[node][self._held(node)] = 0
+        for group, block in zip(self._groups, blocks, strict=True):
+            for ends in group.ends:
+                carried = block[ends].reshape(-1, group.count, vectors) * group.signs[ends]
+                for number in range(group.count):
+                    x[group.at[ends, number]] += carried[:, number]
+        for node in (0, len(offsets) - 2):
+            x[offsets[node] : offsets[node + 1]][self._held(node)] = 0
         for place, link in zip(self._places, self._links, strict=True):
-            slices[place.left], update = link.forward(slices[place.left])
-            slices[place.right] -= update
-        last = self._places[-1].right
-        reduced, _ = self._final.forward(slices[last])
-        slices[last] = self._final.backward(reduced, np.empty((0, vectors)))
+            left, after = self._slice(place.left), self._slice(place.right)
+            x[left], update = link.forward(x[left])
+            x[after] -= update
+        last = self._slice(self._places[-1].right)
+        reduced, _ = self._final.forward(x[last])
+        x[last] = self._final.backward(reduced, np.empty((0, vectors)))
         for place, link in zip(self._places[::-1], self._links[::-1], strict=True):
-            slices[place.left] = link.backward(slices[place.left], slices[place.right])
-        for group, block, parts in zip(groups.values(), blocks, kept, strict=True):
-            self._finish(group, slices, block, parts)
-        return np.concatenate(slices)
+            left, after = self._slice(place.left), self._slice(place.right)
+            x[left] = link.backward(x[left], x[after])
+        for group, block, parts in zip(self._groups, blocks, kept, strict=True):
+            self._finish(group, x, block, parts)
+        return x
 
-    def _dtype(self, right: Matrix) -> Any:
-        return np.result_type(right.dtype, self._final.W.dtype)
+    def _slice(self, node: int) -> slice:
+        return slice(self._slabs.offsets[node], self._slabs.offsets[node + 1])
 
-    def _signed(self, place: _Place, node: int, values: Matrix) -> Matrix:
-        """To or from the signs of a mirrored cell (u changes its sign)."""
-        return values * self._signs(node)[:, None] if place.mirrored else values
-
-    def _side_by_side(self, group: list[_Place], slices: list[Matrix], at: int) -> Matrix:
-        """What all places of one cell have in its slice `at`, with the signs of the cell."""
-        parts = [self._signed(one, one.nodes[at], slices[one.nodes[at]]) for one in group]
-        return np.concatenate(parts, axis=1)
-
-    def _gathered(self, group: list[_Place], slices: list[Matrix]) -> list[Matrix]:
-        """The right sides of all places of one cell, side by side; none at the end slices."""
-        block = [self._side_by_side(group, slices, k) for k in range(len(group[0].nodes))]
-        block[0], block[-1] = np.zeros_like(block[0]), np.zeros_like(block[-1])
+    def _gathered(self, group: Group, x: Matrix) -> Matrix:
+        """The right sides of all places of one cell, side by side with the signs of the cell (u
+        changes its sign in a mirrored one); none at the end slices."""
+        block = np.asarray((x[group.at] * group.signs).reshape(group.at.shape[0], -1))
+        for ends in group.ends:
+            block[ends] = 0
         return block
 
-    def _forward(self, cell: _Cell, block: list[Matrix]) -> list[Any]:
+    def _forward(self, group: Group, block: Matrix) -> list[Any]:
         """Carry right sides inside a cell to its ends (in place); returns the reduced sides."""
-        spans = cell.spans
+        cell, node = group.cell, group.node
         kept: list[Any] = []
-        for k, (bubble, (start, stop)) in enumerate(zip(cell.bubbles, spans, strict=True)):
+        for k, (bubble, (start, stop)) in enumerate(zip(cell.bubbles, cell.spans, strict=True)):
             if stop - start == 1:
                 kept.append(None)
                 continue
-            reduced, update = bubble.forward(np.concatenate(block[start + 1 : stop]))
+            reduced, update = bubble.forward(block[group.inside(start, stop)])
             kept.append(reduced)
             at0, at1 = cell.at[k]
-            block[start][at0] -= update[: at0.size]
-            block[stop][at1] -= update[at0.size :]
-        n0 = block[0].shape[0]
+            block[node(start)][at0] -= update[: at0.size]
+            block[node(stop)][at1] -= update[at0.size :]
+        first = node(0)
         for k, joint in enumerate(cell.joints):
-            middle, after = spans[k][1], spans[k + 1][1]
+            middle, after = node(cell.spans[k][1]), node(cell.spans[k + 1][1])
             block[middle], update = joint.forward(block[middle])
-            block[0] -= update[:n0]
-            block[after] -= update[n0:]
+            block[first] -= update[: first.stop]
+            block[after] -= update[first.stop :]
         return kept
 
-    def _finish(
-        self, group: list[_Place], slices: list[Matrix], block: list[Matrix], kept: list[Any]
-    ) -> None:
+    def _finish(self, group: Group, x: Matrix, block: Matrix, kept: list[Any]) -> None:
         """Solve inside the cells, their end slices being known."""
-        cell, spans = group[0].cell, group[0].cell.spans
-        for at in (0, -1):
-            block[at] = self._side_by_side(group, slices, at)
+        cell, node = group.cell, group.node
+        for ends in group.ends:
+            block[ends] = (x[group.at[ends]] * group.signs[ends]).reshape(-1, block.shape[1])
         for k in range(len(cell.joints) - 1, -1, -1):
-            middle, after = spans[k][1], spans[k + 1][1]
-            ends = np.concatenate([block[0], block[after]])
-            block[middle] = cell.joints[k].backward(block[middle], ends)
-        for k, (start, stop) in enumerate(spans):
+            middle, after = node(cell.spans[k][1]), node(cell.spans[k + 1][1])
+            outside = np.concatenate([block[node(0)], block[after]])
+            block[middle] = cell.joints[k].backward(block[middle], outside)
+        for k, (start, stop) in enumerate(cell.spans):
             if stop - start == 1:
                 continue
             at0, at1 = cell.at[k]
-            ends = np.concatenate([block[start][at0], block[stop][at1]])
-            inside = cell.bubbles[k].backward(kept[k], ends)
-            block[start + 1 : stop] = np.split(inside, stop - start - 1)
-        vectors = block[0].shape[1] // len(group)
-        for number, place in enumerate(group):
-            columns = slice(number * vectors, (number + 1) * vectors)
-            for node, part in zip(place.nodes[1:-1], block[1:-1], strict=True):
-                slices[node] = self._signed(place, node, part[:, columns])
-
-
-def _cut(slabs: Slabs) -> list[list[int]]:
-    """Elements grouped into cells: cut at the middle of each stretch of one pattern."""
-    model = slabs.model
-    elements = model.x.elements
-    keys = [slabs.patterns[e] + model.ceramic[e].tobytes() for e in range(elements)]
-    runs: list[list[int]] = []
-    for e in range(elements):
-        if runs and keys[e] == keys[runs[-1][-1]]:
-            runs[-1].append(e)
-        else:
-            runs.append([e])
-    cells: list[list[int]] = [[]]
-    for number, run in enumerate(runs):
-        # Half of a stretch goes to the cell before, half to the cell after; a stretch at an end
-        # of the plate is cut too, if it has a middle.
-        edges = [model.x.edges[e] for e in (*run, run[-1] + 1)]
-        middle = (edges[0] + edges[-1]) / 2
-        at = int(np.argmin(np.abs(np.array(edges) - middle)))
-        cuttable = len(run) > 1 and abs(edges[at] - middle) < 1e-9
-        symmetric_end = (number == 0 and model.ends[0] != "free") or (
-            number == len(runs) - 1 and model.ends[1] != "free"
-        )
-        if not cuttable or symmetric_end:
-            cells[-1].extend(run)
-            continue
-        cells[-1].extend(run[:at])
-        cells.append(list(run[at:]))
-    return [cell for cell in cells if cell]
-
-
-def _mirrors(slabs: Slabs, elements: Sequence[int]) -> bool:
-    """Whether a stretch may reuse its mirror image: not where two ceramics touch along x, for
-    there the order of their potentials would change."""
-    x = slabs.model.x
-    for e in elements[1:]:
-        node = x.first_node[e]
-        both = np.intersect1d(slabs.sections[e - 1].codes, slabs.sections[e].codes)
-        sections = slabs.sections[e - 1].codes.size, slabs.sections[e].codes.size
-        if slabs.sizes[node] > max(sections) and both.size < min(sections):
-            return False
-    return True
+            outside = np.concatenate([block[node(start)][at0], block[node(stop)][at1]])
+            block[group.inside(start, stop)] = cell.bubbles[k].backward(kept[k], outside)
+        inner = slice(group.ends[0].stop, group.ends[1].start)
+        vectors = x.shape[1]
+        x[group.at[inner]] = block[inner].reshape(-1, group.count, vectors) * group.signs[inner]

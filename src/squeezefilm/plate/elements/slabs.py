@@ -68,7 +68,7 @@ class Slabs:
 
     def __getstate__(self) -> dict[str, Any]:
         # Megabytes that are made anew in milliseconds, where anybody multiplies by them.
-        made_anew = ("sections", "patterns", "_sliced")
+        made_anew = ("sections", "patterns", "_sliced", "_alike")
         return {name: one for name, one in vars(self).items() if name not in made_anew}
 
     def _number(self) -> None:
@@ -166,25 +166,39 @@ class Slabs:
             return np.concatenate([self._apply(part, sections, mass) for part in some], axis=1)
         U = np.where(self.held[:, None], 0, U)
         out = np.zeros_like(U)
-        groups: dict[tuple[int, int], list[int]] = {}
-        for e, section in enumerate(sections):
-            groups.setdefault((id(section), self.model.x.orders[e]), []).append(e)
-        for elements in groups.values():
+        for elements, places, lines in self._alike:
             # All elements that share a slice and an order at once.
-            local = U[np.stack([np.stack(self._element_places[e]) for e in elements])]
-            part = self._group_times(elements, sections[elements[0]], local, mass)
-            for number, e in enumerate(elements):
-                for a, at in enumerate(self._element_places[e]):
-                    out[at] += part[:, number, a]
+            part = self._group_times(lines, sections[elements[0]], U[places], mass)
+            for number in range(len(elements)):
+                for a in range(places.shape[1]):
+                    out[places[number, a]] += part[:, number, a]
         out[self.held] = 0
         return out
 
+    @functools.cached_property
+    def _alike(self) -> list[tuple[list[int], si.IntArray, tuple[si.FloatArray, ...]]]:
+        """Elements that share a slice and an order: which, the places of their unknowns (elements,
+        nodes, unknowns of the slice), and their integrals along x."""
+        groups: dict[tuple[int, int], list[int]] = {}
+        for e, section in enumerate(self.sections):
+            groups.setdefault((id(section), self.model.x.orders[e]), []).append(e)
+        found: list[tuple[list[int], si.IntArray, tuple[si.FloatArray, ...]]] = []
+        for elements in groups.values():
+            places = np.stack([np.stack(self._element_places[e]) for e in elements])
+            M, D, S = (np.stack(some) for some in zip(*map(self._lines, elements), strict=True))
+            found.append((elements, places, (M, D, S)))
+        return found
+
     def _group_times(
-        self, elements: list[int], section: CrossSection, local: si.FloatArray, mass: bool
+        self,
+        lines: tuple[si.FloatArray, ...],
+        section: CrossSection,
+        local: si.FloatArray,
+        mass: bool,
     ) -> si.FloatArray:
         """The mass or stiffness of elements of one slice and order times their own unknowns, which
         come as (elements, nodes, unknowns of the slice, vectors) and go with the third first."""
-        M, D, S = (np.stack(some) for some in zip(*map(self._lines, elements), strict=True))
+        M, D, S = lines
         count, nodes, n, vectors = local.shape
         flat = local.reshape(count, nodes, n * vectors)
 
