@@ -99,6 +99,9 @@ NOT_CALLED = {
     plate.ring.elements.harmonic_system plate.ring.ceramic_disc.DiscSystem
     plate.ring.ceramic_disc.disc_system plate.elements.block_ldl.PartialLDL
     plate.elements.block_ldl.partial_ldl plate.elements.mirrored_element.MirroredElement
+    plate.elements.slab_cells.Cell plate.elements.slab_cells.Group
+    plate.elements.slab_cells.Group.inside plate.elements.slab_cells.Group.node
+    plate.elements.slab_cells.mirrors
     plate.elements.box_model.BoxModel
     plate.elements.box_model.Electrode
     plate.elements.box_model.Foundation plate.elements.box_model.Medium

@@ -138,14 +138,18 @@ class AssembledMotor:
         )
 
 
-def assembled(motor: Motor, theory: PlateTheory = "solid") -> AssembledMotor:
-    """The motor with its plate solved (see `working_mode` for the theories) and its feet on it.
+def assembled(
+    motor: Motor, theory: PlateTheory = "solid", modes: tuple[FaceMode, ...] | None = None
+) -> AssembledMotor:
+    """The motor with its plate solved (see `working_mode` for the theories) and its feet on it; on
+    `modes` that are known the plate is not solved again.
 
     Raises `OutOfRangeError` for a foot over a node of every mode, a leg that jams, and what the
     solvers raise.
     """
     plates = [motor.plate] if motor.second_plate is None else [motor.plate, motor.second_plate]
-    modes = tuple(face_mode(plate, theory) for plate in plates)
+    if modes is None:
+        modes = tuple(face_mode(plate, theory) for plate in plates)
     x, y = np.array([foot.x for foot in motor.feet]), np.array([foot.y for foot in motor.feet])
     across, along, sideways = (np.zeros((x.size, len(modes))) for _ in range(3))
     c, s = math.cos(motor.cradle.direction), math.sin(motor.cradle.direction)

@@ -11,12 +11,18 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
-from squeezefilm.actuators.motor.averaged import AveragedMotor, no_load_speed, stall_force
+from squeezefilm.actuators.motor.averaged import (
+    AveragedMotor,
+    free_amplitude,
+    no_load_speed,
+    stall_force,
+)
 from squeezefilm.actuators.motor.causal import CausalGraph, averaged_graph
 from squeezefilm.actuators.motor.closed_loop import TrackedForce, inverted_law, track_force
 from squeezefilm.actuators.motor.curves import MotorMap, motor_map, speed_force_curve
 from squeezefilm.actuators.motor.description import MotorDescription
 from squeezefilm.actuators.motor.in_time import MotorMotion, simulate
+from squeezefilm.analysis.actuators.drawn import DrawnAnswers, Usual, drawn_answers
 from squeezefilm.analysis.actuators.effects import Effect, effects
 from squeezefilm.errors import InputError
 from squeezefilm.progress import SayProgress
@@ -28,6 +34,20 @@ _MAP, _RESOLVED = 10, 5
 _PERIODS, _TRACED = 600, 3
 _STEP = (0.3, 0.7)
 _STEPS = 60
+_Q = "motor.plate.quality_factor"
+# None was measured on a motor. The plate's own frequency and shape are for its analysis as a
+# display, and solving it for each draw would take minutes.
+_USUAL = {
+    "motor.contact.normal_stiffness": Usual(0.5, 1.5, "of foot, slider and contact; a guess"),
+    "motor.contact.tangential_stiffness": Usual(
+        0.5, 1.05, "up to Mindlin's 0.82 of the normal one; softer legs; a guess"
+    ),
+    "motor.contact.friction_coefficient": Usual(0.7, 1.3, "dry pairs scatter so; a guess"),
+    "motor.contact.damping": Usual(0.0, 2.0, "from none to twice; a guess"),
+    "motor.cradle.preload": Usual(0.95, 1.05, "as springs or weights are set; a guess"),
+    "motor.cradle.friction": Usual(0.5, 1.5, "of a guide; a guess"),
+    _Q: Usual(0.7, 1.3, "the losses of a bonded assembly; as for displays"),
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,6 +67,7 @@ class MotorAnalysis(Result):
         tracked: the force law's answer to a step, at that speed; None where a force cannot be
             commanded.
         effects: what each assumed value does to stall force and speed without a load.
+        drawn: those two where what is uncertain is drawn together.
         warnings: in sentences.
     """
 
@@ -61,6 +82,7 @@ class MotorAnalysis(Result):
     graph: CausalGraph
     tracked: TrackedForce | None
     effects: tuple[Effect, ...]
+    drawn: DrawnAnswers
     warnings: tuple[str, ...]
     _shown: ClassVar[str] = "described.name voltage stall_force no_load_speed"
 
@@ -82,7 +104,7 @@ class MotorAnalysis(Result):
     @property
     def free_amplitude(self) -> si.Metre:
         """Of the lobe at this voltage without a slider (m)."""
-        return self.voltage * self.motor.amplitude_per_volt
+        return free_amplitude(self.motor, Working(voltage=self.voltage))
 
     @property
     def input_power(self) -> si.Watt:
@@ -139,6 +161,7 @@ class MotorAnalysis(Result):
                 for one in self.curve
             ],
             "effects": to_json(self.effects),
+            "drawn": to_json(self.drawn),
             "warnings": list(self.warnings),
         }
 
@@ -180,6 +203,14 @@ def analyze_motor(
     tracked, why_not = _step(motor, best.speed, amplitude)
     tell("what assumed values do")
     moved = effects(described, described.provenance, lambda one: _answers(one, volts), _tried)
+    tell("how sure that is")
+    sure = drawn_answers(
+        described,
+        described.provenance,
+        _USUAL,
+        lambda one: _drawn(described, motor, one, volts),
+        progress=lambda done, of: None if done % 16 else tell(f"{done} of {of} draws"),
+    )
     found = MotorAnalysis(
         described,
         motor,
@@ -192,6 +223,7 @@ def analyze_motor(
         averaged_graph(motor),
         tracked,
         moved,
+        sure,
         (),
     )
     return dataclasses.replace(found, warnings=tuple(_warnings(found, why_not)))
@@ -221,8 +253,31 @@ def _step(
     return track_force(motor, law, wanted, speed), ""
 
 
+def _drawn(
+    nominal: MotorDescription, solved: AssembledMotor, drawn: MotorDescription, voltage: si.Volt
+) -> Mapping[str, float]:
+    """The answers of a drawn motor on the solved plate; losses scale a mode at its resonance."""
+    share = drawn.motor.plate.quality_factor / nominal.motor.plate.quality_factor
+    modes = tuple(
+        dataclasses.replace(
+            mode,
+            working=dataclasses.replace(
+                mode.working,
+                quality_factor=share * mode.working.quality_factor,
+                amplitude_per_volt=share * mode.working.amplitude_per_volt,
+            ),
+        )
+        for mode in solved.modes
+    )
+    return _answered(assembled(drawn.motor, modes=modes), voltage)
+
+
 def _answers(described: MotorDescription, voltage: si.Volt) -> Mapping[str, float]:
-    motor, working = assembled(described.motor), Working(voltage=voltage)
+    return _answered(assembled(described.motor), voltage)
+
+
+def _answered(motor: AssembledMotor, voltage: si.Volt) -> Mapping[str, float]:
+    working = Working(voltage=voltage)
     return {
         "stall_force_N": stall_force(motor, working),
         "no_load_speed_m_per_s": no_load_speed(motor, working),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from squeezefilm.analysis.actuators.motor import MotorAnalysis
 from squeezefilm.report.actuators import motor_figures
 from squeezefilm.report.actuators.effect_rows import EFFECTS, effect_head, effect_rows
+from squeezefilm.report.actuators.how_sure import drawn_words, how_sure, with_interval
 from squeezefilm.report.actuators.page import assumed_words, write_page
 from squeezefilm.report.kit.numbers import HZ, SPEED, M, N, V, W, shown
 from squeezefilm.report.kit.page_style import section, text_table
@@ -26,9 +28,14 @@ def motor_rows(found: MotorAnalysis) -> list[Row]:
     mode, described = motor.modes[0].working, motor.motor
     kept = found.rest.amplitude / found.free_amplitude
     efficiency, preload, amplitude = found.best_of_map
+    sure = functools.partial(with_interval, found.drawn)
     return [
-        ("Stall force", shown(found.stall_force, N, 3), "the load that just stops the slider"),
-        ("Speed without a load", shown(found.no_load_speed, SPEED, 3), ""),
+        (
+            "Stall force",
+            sure(found.stall_force, "stall_force_N", N),
+            "the load that just stops the slider",
+        ),
+        ("Speed without a load", sure(found.no_load_speed, "no_load_speed_m_per_s", SPEED), ""),
         (
             "Best efficiency",
             f"{100 * best.efficiency:.2g} %",
@@ -75,6 +82,7 @@ def show_motor(found: MotorAnalysis) -> None:
     described = found.described
     title = f"{described.title} [{described.name}]"
     console = show_rows(title, motor_rows(found), found.warnings, fixed=(0, 1))
+    bullets(console, [("interval", drawn_words(found.drawn), "")])
     bullets(console, [("assumed", assumed_words(described.provenance), "yellow")])
 
 
@@ -91,7 +99,7 @@ def write_motor(found: MotorAnalysis, folder: Path) -> Path:
         folder,
         key_numbers=motor_rows(found),
         figures=_figures(found),
-        more=section("What each assumed value does", moved),
+        more=how_sure(found.drawn) + section("What each assumed value does", moved),
     )
 
 

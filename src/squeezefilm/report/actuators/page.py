@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -96,6 +97,15 @@ def write_page(
 
 
 def _sources(provenance: Mapping[str, Provenance]) -> str:
-    rows = [(path, one.evidence, one.source) for path, one in provenance.items()]
+    """Where values are from, those of the same place side by side: seven ceramics alike take as
+    many rows as one."""
+    rows: dict[tuple[str, str, str], list[str]] = {}
+    for path, one in provenance.items():
+        numbered = re.sub(r"\.\d+\.", ".*.", path)
+        rows.setdefault((numbered, one.evidence, one.source), []).append(path)
+    table = [
+        (paths[0] if len(paths) == 1 else f"{name} ({len(paths)} alike)", evidence, source)
+        for (name, evidence, source), paths in rows.items()
+    ]
     head = ("value", "evidence", "source")
-    return section("Where the values come from", text_table("As the file says", head, rows))
+    return section("Where the values come from", text_table("As the file says", head, table))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 
+from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.load_line import (
     PUBLISHED_BLOCKED,
     PUBLISHED_FREE,
@@ -12,6 +14,7 @@ from squeezefilm.actuators.skin_stretch.load_line import (
 from squeezefilm.analysis.actuators.skin_stretch import SkinStretchAnalysis
 from squeezefilm.report.actuators import skin_stretch_figures as drawn
 from squeezefilm.report.actuators.effect_rows import EFFECTS, effect_head, effect_rows
+from squeezefilm.report.actuators.how_sure import drawn_words, how_sure, with_interval
 from squeezefilm.report.actuators.page import assumed_words, write_page
 from squeezefilm.report.kit.numbers import HZ, M, N, V, W, shown
 from squeezefilm.report.kit.page_style import section, text_table
@@ -30,25 +33,27 @@ def skin_stretch_rows(found: SkinStretchAnalysis) -> list[Row]:
     """The key numbers: quantity, value, remark."""
     array, tip, budget = found.array, found.tip, found.array.budget
     heat, driven = found.power
+    sure = functools.partial(with_interval, found.drawn)
     count = array.cradle.count
     ways = " or ".join(way.replace("_", " ") for way in found.lines)
     seated = "never all" if found.least_force is None else shown(found.least_force, N, 3)
     return [
         (
             "Free deflection",
-            shown(found.free_deflection, M, 3),
+            sure(found.free_deflection, "free_deflection_m", M),
             f"at {shown(found.voltage, V, 3)}; the paper says {shown(PUBLISHED_FREE, M, 3)}",
         ),
         (
             "Blocked force",
-            shown(found.blocked_force, N, 3),
+            sure(found.blocked_force, "blocked_force_N", N),
             f"the paper says {shown(PUBLISHED_BLOCKED, N, 3)}",
         ),
         (
             "Against the skin",
-            f"{shown(tip.deflection, M, 3)}, {shown(tip.force, N, 3)}",
-            f"of {found.skin.stiffness / 1e3:.3g} N/mm (assumed), which the paper's "
-            f"{shown(PUBLISHED_LOADED, M, 3)} implies",
+            sure(tip.deflection, "deflection_on_skin_m", M),
+            f"and {sure(tip.force, 'force_on_skin_N', N)}; the skin's "
+            f"{found.skin.stiffness / 1e3:.3g} N/mm are assumed, as the paper's "
+            f"{shown(PUBLISHED_LOADED, M, 3)} imply",
         ),
         (
             "Resonance",
@@ -58,7 +63,7 @@ def skin_stretch_rows(found: SkinStretchAnalysis) -> list[Row]:
         ),
         (
             "Crosstalk",
-            f"{100 * array.crosstalk:.3g} %",
+            sure(array.crosstalk, "crosstalk", si.Unit("1")),
             "of its displacement, at the neighbour that moves most",
         ),
         (
@@ -92,6 +97,7 @@ def show_skin_stretch(found: SkinStretchAnalysis) -> None:
     described = found.described
     title = f"{described.title} [{described.name}]"
     console = show_rows(title, skin_stretch_rows(found), found.warnings, fixed=(0, 1))
+    bullets(console, [("interval", drawn_words(found.drawn), "")])
     bullets(console, [("assumed", assumed_words(described.provenance), "yellow")])
 
 
@@ -117,6 +123,6 @@ def write_skin_stretch(found: SkinStretchAnalysis, folder: Path) -> Path:
             "strain": ("The skin under the array", drawn.strain_figure(found)),
             "crosstalk": ("Crosstalk and seat", drawn.crosstalk_figure(found)),
         },
-        more=moving + section("What each assumed value does", moved),
+        more=moving + how_sure(found.drawn) + section("What each assumed value does", moved),
         pictures={_MOVING: drawn.wave_animation(found)},
     )
