@@ -74,7 +74,7 @@ NOT_CALLED = {
     "inside a solver: meshes, matrices and indices, made by calls that are checked": """
     contact.asperities.cubics contact.sharing.balance.require_balanced
     plate.solid.size.SolveSize.require_within
-    actuators.motor.in_time.resting
+    actuators.motor.in_time.resting actuators.skin_stretch.slip.held_forces
     film.periodic.batch.check_film film.periodic.batch.solve_all film.line_grid.LineGrid
     film.line_grid.edge_graded film.line_grid.edge_layer film.line_grid.gap_table
     film.line_grid.line_grid film.line_grid.mean_over film.line_grid.refined_line

@@ -1,8 +1,8 @@
 """The whole array on a fingertip: from volts to forces, displacements and strain of the skin.
 
-Every contactor sticks to the skin. Actuator i gives x_i = δ V_i − F_i/k, the skin x = C F with the
-tissue's influence C; so (C + 1/k) F = δ V. Linear and quasi-static: what comes of 60 voltages is a
-product with a matrix that is made once.
+Actuator i gives x_i = δ V_i − F_i/k, the skin x = C F with the tissue's influence C; where every
+contactor sticks, (C + 1/k) F = δ V. Linear and quasi-static: what comes of 60 voltages is a product
+with a matrix that is made once. Contactors that ask for more than their friction slip (`slip`).
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
 from squeezefilm.actuators.skin_stretch.budget import Budget, budget
 from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip, seat
+from squeezefilm.actuators.skin_stretch.slip import held_forces
 from squeezefilm.actuators.skin_stretch.solid_bender import solid_bender
 from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, strain_matrices
 from squeezefilm.errors import GeometryError, InputError
@@ -75,25 +76,36 @@ class SkinStretchArray:
 
     @functools.cached_property
     def force_per_volt(self) -> ForceMatrix:
-        """The forces on the skin (N) per volt on each actuator, (C + 1/k)⁻¹ δ."""
-        bender = self.bender
-        spring = np.eye(self.cradle.count) / bender.stiffness
-        solved = np.linalg.solve(self.influence + spring, np.eye(self.cradle.count))
-        return np.asarray(solved * bender.deflection_per_volt)
+        """The forces on the skin (N) per volt on each actuator that all stick, (C + 1/k)⁻¹ δ."""
+        solved = np.linalg.solve(self._compliance, np.eye(self.cradle.count))
+        return np.asarray(solved * self.bender.deflection_per_volt)
+
+    @functools.cached_property
+    def _compliance(self) -> si.FloatArray:
+        """C + 1/k (m/N)."""
+        return np.asarray(self.influence + np.eye(self.cradle.count) / self.bender.stiffness)
+
+    @si.checked_numbers
+    def strain_per_force(
+        self, cell: Annotated[si.Metre, hard.SIDE] = 0.3e-3
+    ) -> tuple[si.MetreArray, si.MetreArray, si.FloatArray]:
+        """Edges of square cells along x and y (m), and the mean strains ε_xx, ε_yy, γ_xy in each
+        per newton on each contactor, shape (3, cells x, cells y, contactors)."""
+        x, y = self.cradle.places
+        return strain_matrices(self.tissue, x, y, self.cradle.size, cell)
 
     @si.checked_numbers
     def strain_per_volt(
         self, cell: Annotated[si.Metre, hard.SIDE] = 0.3e-3
     ) -> tuple[si.MetreArray, si.MetreArray, si.FloatArray]:
-        """Edges of square cells along x and y (m), and the mean strains ε_xx, ε_yy, γ_xy in each
-        per volt on each actuator, shape (3, cells x, cells y, actuators)."""
-        x, y = self.cradle.places
-        edges_x, edges_y, per_force = strain_matrices(self.tissue, x, y, self.cradle.size, cell)
+        """As `strain_per_force`, per volt on each actuator where all stick."""
+        edges_x, edges_y, per_force = self.strain_per_force(cell)
         return edges_x, edges_y, per_force @ self.force_per_volt
 
     @si.checked_numbers
     def answer(self, voltages: Annotated[si.FloatArray, si.Unit("V")]) -> Pull:
-        """Forces and displacements of all contactors at voltages (V), one an actuator.
+        """Forces and displacements of all contactors at voltages (V), one an actuator, raised
+        together from none; those that friction does not hold slip.
 
         Raises `InputError` for another number of voltages, `OutOfRangeError` for one that would
         undo the poling.
@@ -104,10 +116,33 @@ class SkinStretchArray:
                 "give one for each",
                 quantity="voltages",
             )
-        worst = float(voltages[int(np.argmax(np.abs(voltages)))])
+        return self.answers(voltages[None, :])[0]
+
+    @si.checked_numbers
+    def answers(self, voltages: Annotated[si.FloatArray, si.Unit("V")]) -> tuple[Pull, ...]:
+        """`answer` to voltages (V) that follow one another, shape (instants, actuators): what has
+        slid stays slid. Steps so small that a contactor slips one way in each; some milliseconds an
+        instant where any slips.
+
+        Raises as `answer`.
+        """
+        if voltages.ndim != 2 or voltages.shape[1] != self.cradle.count or not voltages.size:
+            raise InputError(
+                f"voltages of shape {voltages.shape} were given; give a row for each instant, with "
+                f"{self.cradle.count} voltages, one for each actuator",
+                quantity="voltages",
+            )
+        worst = float(voltages.flat[int(np.argmax(np.abs(voltages)))])
         self.actuator.require_voltage(worst)
-        forces = self.force_per_volt @ voltages
-        return Pull(voltages, forces, self.influence @ forces, self._held)
+        slid, found = np.zeros(self.cradle.count), []
+        for row in voltages:
+            wanted = self.bender.deflection_per_volt * row
+            forces = held_forces(self._compliance, wanted - slid, self._held)
+            left = wanted - slid - self._compliance @ forces
+            # What sticks has nothing left but rounding.
+            slid = slid + np.where(np.abs(forces) >= (1 - 1e-9) * self._held, left, 0.0)
+            found.append(Pull(row, forces, self.influence @ forces, self._held, slid))
+        return tuple(found)
 
     @functools.cached_property
     def _held(self) -> si.FloatArray:
@@ -134,16 +169,21 @@ class SkinStretchArray:
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class Pull:
-    """What an array does at some `voltages`: `forces` on the skin, `displacements` of the
-    contactors, and `held`, the friction that may hold each."""
+    """What an array does at some `voltages`: `forces` on the skin, `displacements` of the skin
+    under the contactors, `held`, the friction that may hold each, and how far each has `slid`."""
 
     voltages: Annotated[si.FloatArray, si.Unit("V")]
     forces: si.NewtonArray
     displacements: si.MetreArray
     held: si.NewtonArray
+    slid: si.MetreArray
+
+    @property
+    def slips(self) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
+        """Which contactors pull with all of their friction."""
+        return np.asarray(np.abs(self.forces) >= (1 - 1e-9) * self.held)
 
     @property
     def slipping(self) -> int:
-        """How many contactors ask for more friction than holds them: there the forces are too
-        large, since all were taken to stick."""
-        return int(np.count_nonzero(np.abs(self.forces) > self.held))
+        """How many those are."""
+        return int(np.count_nonzero(self.slips))

@@ -34,7 +34,7 @@ from squeezefilm.render.texture.shapes import SineWave
 from squeezefilm.results import Result, to_json
 
 # The wave that is shown: so many of the finest periods long, and so many steps of it.
-_LONG, _FRAMES = 2.0, 24
+_LONG, _FRAMES, _SETTLED = 2.0, 24, 5
 _SHOWN_SPEED: si.MetrePerSecond = 0.05
 _FREQUENCIES = 300
 # What a maker chooses, such as a length, is not uncertain; what he gets and what skin is, are.
@@ -57,8 +57,8 @@ _WAYS: tuple[Lines, ...] = ("direct", "matrix", "daisy_chain")
 class ShownWave:
     """A sinusoidal texture that moves over the finger, its period two of the finest: `strain` ε_xx
     in cells between `edges_x` and `edges_y`, shape (frames, cells x, cells y), at `times`, and the
-    contactors' `displacements` and which of them would slip, shape (frames, contactors); `pull` is
-    the array at the first."""
+    skin's `displacements` under the contactors and which of these slip, shape (frames, contactors);
+    `pull` is the array at the first."""
 
     period: si.Metre
     speed: si.MetrePerSecond
@@ -187,8 +187,8 @@ def analyze_skin_stretch(
     ceramics bear): one actuator on the skin, all of them together, the finger on the cradle, and a
     texture that moves over it.
 
-    Quasi-static but for the tip's resonance; skin linear, contactors sticking (how many would slip
-    is counted). Raises `OutOfRangeError` for a voltage that undoes the poling, `UnreachableError`
+    Quasi-static but for the tip's resonance; skin linear, contactors stick or slip. Raises
+    `OutOfRangeError` for a voltage that undoes the poling, `UnreachableError`
     for a finger that no force seats.
     """
     tell = progress or (lambda _: None)
@@ -241,11 +241,12 @@ def _wave(array: SkinStretchArray, voltage: si.Volt) -> ShownWave:
     period = _LONG * finest_period(array.cradle)
     times = np.arange(_FRAMES) / _FRAMES * period / _SHOWN_SPEED
     driven = pattern_voltages(SineWave(period), array.cradle, times, (_SHOWN_SPEED, 0.0), voltage)
-    x, y, per_volt = array.strain_per_volt()
-    strain = np.moveaxis(per_volt[0] @ driven.T, -1, 0)
-    forces, pull = driven @ array.force_per_volt.T, array.answer(driven[0])
-    moved, slips = forces @ array.influence.T, np.abs(forces) > pull.held
-    return ShownWave(period, _SHOWN_SPEED, times, x, y, strain, moved, slips, pull)
+    x, y, per_force = array.strain_per_force()
+    # What slides at first settles by a fourth with each period: the last of six is shown.
+    pulls = array.answers(np.tile(driven, (_SETTLED + 1, 1)))[-_FRAMES:]
+    strain = np.moveaxis(per_force[0] @ np.array([one.forces for one in pulls]).T, -1, 0)
+    moved, slips = np.array([one.displacements for one in pulls]), [one.slips for one in pulls]
+    return ShownWave(period, _SHOWN_SPEED, times, x, y, strain, moved, np.array(slips), pulls[0])
 
 
 def _tried(path: str) -> bool:
@@ -277,8 +278,8 @@ def _warnings(
     for pull, doing in ((together, "all pull the same way"), (wave.pull, "the wave moves past")):
         if pull.slipping:
             said.append(
-                f"{pull.slipping} of {count} contactors would slip where {doing}: there the forces "
-                "and strains told are too large, since all were taken to stick."
+                f"{pull.slipping} of {count} contactors slip where {doing}: they pull no harder "
+                "than their friction, and less of the pattern comes through."
             )
     if seating.touching < count:
         needs = "No force" if least is None else f"{least:.2g} N"

@@ -72,7 +72,7 @@ def skin_stretch_rows(found: SkinStretchAnalysis) -> list[Row]:
             f"under {shown(array.normal_force, N, 3)}; all from {seated} on",
         ),
         (
-            "Would slip",
+            "Slip",
             f"{found.together.slipping} of {count}",
             f"where all pull alike; {found.wave.pull.slipping} in a wave of "
             f"{shown(found.wave.period, M, 3)}",

@@ -52,7 +52,7 @@ def strain_figure(found: SkinStretchAnalysis) -> Figure:
     figure = style.new_figure(
         f"A wave of {1e3 * wave.period:.3g} mm strains the skin by up to "
         f"{100 * np.max(np.abs(wave.strain)):.2g} %",
-        "elastic layer on bone, quasi-static, contactors sticking; means over cells",
+        "elastic layer on bone, quasi-static, contactors held by friction; means over cells",
         4.4,
     )
     left, right = figure.subplots(1, 2)
@@ -63,7 +63,7 @@ def strain_figure(found: SkinStretchAnalysis) -> Figure:
 
 
 def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
-    """Where each contactor's skin has gone, drawn larger, and which would slip."""
+    """Where each contactor's skin has gone, drawn larger, and which slip."""
     slips = found.wave.slips[frame]
     x, y = (1e3 * one for one in found.array.cradle.places)
     moved = _DRAWN_TIMES * 1e3 * found.wave.displacements[frame]
@@ -72,7 +72,7 @@ def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
         scale=1, width=0.006,
     )  # fmt: skip
     axes.plot(x[~slips], y[~slips], "o", ms=3, color="black", label="sticks")
-    axes.plot(x[slips], y[slips], "o", ms=3, mfc="white", color=style.ORANGE, label="would slip")
+    axes.plot(x[slips], y[slips], "o", ms=3, mfc="white", color=style.ORANGE, label="slips")
     side = found.array.cradle.pitch_along * 1e3
     axes.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
     axes.set_xlim(x.min() - side, x.max() + side)
@@ -130,7 +130,7 @@ def wave_animation(found: SkinStretchAnalysis) -> bytes:
         with style.rc():
             figure = style.new_figure(
                 f"A texture of {1e3 * wave.period:.3g} mm moves under the finger",
-                "elastic layer on bone, quasi-static, contactors sticking",
+                "elastic layer on bone, quasi-static, contactors held by friction",
                 4.2,
             )
             left, right = figure.subplots(1, 2)

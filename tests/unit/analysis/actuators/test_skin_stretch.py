@@ -35,7 +35,7 @@ def test_the_wave_moves_with_the_finger(found: SkinStretchAnalysis) -> None:
     frames = wave.times.size
     assert wave.strain.shape[0] == frames == wave.displacements.shape[0]
     np.testing.assert_allclose(
-        wave.strain[frames // 2], -wave.strain[0], atol=1e-9 * np.abs(wave.strain).max()
+        wave.strain[frames // 2], -wave.strain[0], atol=1e-4 * np.abs(wave.strain).max()
     )
     np.testing.assert_allclose(wave.displacements[0], wave.pull.displacements, rtol=1e-9)
     assert np.count_nonzero(wave.slips[0]) == wave.pull.slipping
