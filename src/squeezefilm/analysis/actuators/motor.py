@@ -22,6 +22,7 @@ from squeezefilm.actuators.motor.closed_loop import TrackedForce, inverted_law, 
 from squeezefilm.actuators.motor.curves import MotorMap, motor_map, speed_force_curve
 from squeezefilm.actuators.motor.description import MotorDescription
 from squeezefilm.actuators.motor.in_time import MotorMotion, simulate
+from squeezefilm.actuators.motor.plane import PlaneMotion, simulate_plane
 from squeezefilm.analysis.actuators.drawn import DrawnAnswers, Usual, drawn_answers
 from squeezefilm.analysis.actuators.effects import Effect, effects
 from squeezefilm.errors import InputError
@@ -32,6 +33,7 @@ from squeezefilm.results import Result, to_json
 _APART = 0.05
 _MAP, _RESOLVED = 10, 5
 _PERIODS, _TRACED = 600, 3
+_FREE, _FREE_STEPS = 4000, 64
 _STEP = (0.3, 0.7)
 _STEPS = 60
 _Q = "motor.plate.quality_factor"
@@ -68,6 +70,8 @@ class MotorAnalysis(Result):
             commanded.
         effects: what each assumed value does to stall force and speed without a load.
         drawn: those two where what is uncertain is drawn together.
+        plane: the slider free in the plane from rest, both plates at the voltage; None without a
+            second one.
         warnings: in sentences.
     """
 
@@ -83,6 +87,7 @@ class MotorAnalysis(Result):
     tracked: TrackedForce | None
     effects: tuple[Effect, ...]
     drawn: DrawnAnswers
+    plane: PlaneMotion | None
     warnings: tuple[str, ...]
     _shown: ClassVar[str] = "described.name voltage stall_force no_load_speed"
 
@@ -162,6 +167,9 @@ class MotorAnalysis(Result):
             ],
             "effects": to_json(self.effects),
             "drawn": to_json(self.drawn),
+            "velocity_in_the_plane_m_per_s": None
+            if self.plane is None
+            else self.plane.final_velocity.tolist(),
             "warnings": list(self.warnings),
         }
 
@@ -224,9 +232,17 @@ def analyze_motor(
         tracked,
         moved,
         sure,
+        _plane(motor, volts),
         (),
     )
     return dataclasses.replace(found, warnings=tuple(_warnings(found, why_not)))
+
+
+def _plane(motor: AssembledMotor, voltage: si.Volt) -> PlaneMotion | None:
+    if len(motor.modes) == 1:
+        return None
+    working = Working(voltage=voltage, second=1.0)
+    return simulate_plane(motor, working, periods=_FREE, steps=_FREE_STEPS, traced=_FREE)
 
 
 def _resolved(

@@ -257,8 +257,10 @@ def _tried(path: str) -> bool:
 
 def _answers(described: SkinStretchDescription, voltage: si.Volt) -> Mapping[str, float]:
     array = described.skin_stretch
-    tip = loaded_tip(array.bender, array.tissue.under_contactor(*array.cradle.size), voltage)
+    skin = array.tissue.under_contactor(*array.cradle.size)
+    tip = loaded_tip(array.bender, skin, voltage)
     return {
+        "skin_stiffness_N_per_m": skin.stiffness,
         "free_deflection_m": voltage * array.bender.deflection_per_volt,
         "blocked_force_N": voltage * array.bender.force_per_volt,
         "deflection_on_skin_m": tip.deflection,

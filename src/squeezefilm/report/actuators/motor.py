@@ -29,6 +29,16 @@ def motor_rows(found: MotorAnalysis) -> list[Row]:
     kept = found.rest.amplitude / found.free_amplitude
     efficiency, preload, amplitude = found.best_of_map
     sure = functools.partial(with_interval, found.drawn)
+    plane = []
+    if found.plane is not None:
+        along, sideways = found.plane.final_velocity.tolist()
+        plane = [
+            (
+                "Free in the plane",
+                f"{shown(along, SPEED, 3)}, {shown(sideways, SPEED, 3)}",
+                "along and sideways, both plates at the voltage, without a load, in time",
+            )
+        ]
     return [
         (
             "Stall force",
@@ -36,6 +46,7 @@ def motor_rows(found: MotorAnalysis) -> list[Row]:
             "the load that just stops the slider",
         ),
         ("Speed without a load", sure(found.no_load_speed, "no_load_speed_m_per_s", SPEED), ""),
+        *plane,
         (
             "Best efficiency",
             f"{100 * best.efficiency:.2g} %",
@@ -122,6 +133,8 @@ def _figures(found: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
         ),
         "causal": ("What makes what", motor_figures.causal_figure(found.graph)),
     }
+    if found.plane is not None:
+        figures["plane"] = ("Free in the plane", motor_figures.plane_figure(found.plane))
     if found.tracked is not None:
         figures["force-step"] = (
             "A force that is commanded",

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from squeezefilm.actuators.motor.closed_loop import TrackedForce
     from squeezefilm.actuators.motor.curves import MotorMap
     from squeezefilm.actuators.motor.in_time import MotorMotion
+    from squeezefilm.actuators.motor.plane import PlaneMotion
 
 
 def _floors(graph: CausalGraph) -> dict[str, int]:
@@ -204,5 +205,29 @@ def foot_figure(motion: tuple[MotorMotion, si.FloatArray, si.FloatArray]) -> Fig
     right.plot(time, 1e6 * moved.height, color="black", label="slider")
     right.plot(time[touching], 1e6 * w[touching], ".", ms=3, color=style.ORANGE)
     right.set(xlabel="time (µs)", ylabel="height (µm)")
+    style.legend_below(right, columns=2)
+    return figure
+
+
+@style.drawn
+def plane_figure(found: PlaneMotion) -> Figure:
+    """The way and the velocity of a slider that is free in the plane, from rest on."""
+    along, sideways = found.final_velocity.tolist()
+    figure = style.new_figure(
+        f"Free in the plane it ends at {1e3 * along:.3g} mm/s along and {1e3 * sideways:.3g} mm/s "
+        "sideways",
+        found.model,
+        4.0,
+    )
+    left, right = figure.subplots(1, 2)
+    path = 1e6 * found.path
+    left.plot(path[:, 0], path[:, 1], color=style.BLUE, lw=1)
+    left.plot(*path[-1], "o", color=style.ORANGE)
+    left.set(xlabel="along (µm)", ylabel="sideways (µm)")
+    time = 1e3 * found.time[-1] * np.arange(1, len(found.period_velocity) + 1)
+    time = time / len(found.period_velocity)
+    for k, (name, colour) in enumerate((("along", style.BLUE), ("sideways", style.ORANGE))):
+        right.plot(time, 1e3 * found.period_velocity[:, k], color=colour, lw=1, label=name)
+    right.set(xlabel="time (ms)", ylabel="velocity (mm/s)")
     style.legend_below(right, columns=2)
     return figure

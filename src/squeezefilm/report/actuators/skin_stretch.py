@@ -119,6 +119,7 @@ def write_skin_stretch(found: SkinStretchAnalysis, folder: Path) -> Path:
         folder,
         key_numbers=skin_stretch_rows(found),
         figures={
+            "actuator": ("One actuator", drawn.actuator_figure(found)),
             "load-line": ("One actuator against the skin", drawn.load_line_figure(found)),
             "strain": ("The skin under the array", drawn.strain_figure(found)),
             "crosstalk": ("Crosstalk and seat", drawn.crosstalk_figure(found)),

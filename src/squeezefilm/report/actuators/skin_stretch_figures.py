@@ -34,14 +34,81 @@ def load_line_figure(found: SkinStretchAnalysis) -> Figure:
     left.plot([0, free], [mn * found.blocked_force, 0], color=style.BLUE, label="actuator")
     reach = min(free, um * found.blocked_force / found.skin.stiffness)
     left.plot([0, reach], [0, reach * mn / um * found.skin.stiffness], color="black", label="skin")
+    _intervals(left, found, free)
     left.plot(um * tip.deflection, mn * tip.force, "o", color=style.ORANGE)
     left.set(xlabel="deflection (µm)", ylabel="force (mN)", xlim=(0, None), ylim=(0, None))
-    style.legend_below(left, columns=2)
+    style.legend_below(left, columns=3)
     right.plot(found.frequencies, um * np.abs(found.motion), color=style.BLUE)
     right.axvline(tip.bandwidth, color=style.ORANGE, lw=1, label="within 3 dB up to here")
     right.set(xlabel="frequency (Hz)", ylabel="deflection on the skin (µm)", xscale="log")
     style.plain_log(right.xaxis)
     style.legend_below(right)
+    return figure
+
+
+def _intervals(axes: Axes, found: SkinStretchAnalysis, free: float) -> None:
+    """Between which lines the skin lies in 5 to 95 % of the draws, and how far deflection and force
+    do."""
+    drawn = found.drawn.intervals
+    if not drawn:
+        return
+    um, mn = 1e6, 1e3
+    low, _, high = (mn / um * one for one in drawn["skin_stiffness_N_per_m"])
+    axes.fill_between(
+        [0, free], [0, free * low], [0, free * high], color="black", alpha=0.12, lw=0,
+        label="skin, 5 to 95 %",
+    )  # fmt: skip
+    x, y = um * found.tip.deflection, mn * found.tip.force
+    (left, _, right), (below, _, above) = drawn["deflection_on_skin_m"], drawn["force_on_skin_N"]
+    axes.errorbar(
+        x, y, xerr=[[max(0, x - um * left)], [max(0, um * right - x)]],
+        yerr=[[max(0, y - mn * below)], [max(0, mn * above - y)]], color=style.ORANGE, capsize=3,
+    )  # fmt: skip
+    axes.set_ylim(0, 1.05 * mn * found.blocked_force)
+
+
+@style.drawn
+def actuator_figure(found: SkinStretchAnalysis) -> Figure:
+    """One actuator's cross-section, and its line of deflection: free, on the skin, and blocked."""
+    from matplotlib.patches import Rectangle
+
+    one, tip, um, mm = found.array.actuator, found.tip, 1e6, 1e3
+    figure = style.new_figure(
+        f"An actuator {mm * one.length:.3g} mm long, {mm * one.width:.3g} mm wide and "
+        f"{mm * one.thickness:.3g} mm thick",
+        "right: a slender beam clamped at 0, drawn through the tip's deflection",
+        3.6,
+    )
+    left, right = figure.subplots(1, 2)
+    layers = [
+        ("ceramic", one.ceramic_thickness, style.BLUE),
+        ("shim", one.shim_thickness, "0.55"),
+        ("ceramic", one.ceramic_thickness, style.BLUE),
+    ]
+    bottom = -mm * sum(thickness for _, thickness, _ in layers) / 2
+    for number, (name, thickness, colour) in enumerate(layers):
+        left.add_patch(
+            Rectangle(
+                (-mm * one.width / 2, bottom), mm * one.width, mm * thickness,
+                facecolor=colour, alpha=0.55, edgecolor="black", lw=0.8,
+                label=name if number < 2 else None,
+            )
+        )  # fmt: skip
+        bottom += mm * thickness
+    half = mm * one.width / 2
+    left.set(
+        xlabel="across (mm)", ylabel="height (mm)", aspect="equal", xlim=(-1.15 * half, 1.15 * half)
+    )
+    left.set_ylim(1.25 * -bottom, 1.25 * bottom)
+    style.legend_below(left, columns=2)
+    share = np.linspace(0, 1, 200)
+    bent, pushed = share**2, 1.5 * share**2 - 0.5 * share**3
+    free = um * found.free_deflection
+    back = {"free": 0.0, "on the skin": free - um * tip.deflection, "blocked": free}
+    for (name, less), colour in zip(back.items(), (style.BLUE, style.ORANGE, "black"), strict=True):
+        right.plot(mm * one.length * share, free * bent - less * pushed, color=colour, label=name)
+    right.set(xlabel="from the clamp (mm)", ylabel=f"deflection at {found.voltage:.3g} V (µm)")
+    style.legend_below(right, columns=3)
     return figure
 
 

@@ -13,6 +13,7 @@ from squeezefilm.actuators.motor.assembled import Working
 from squeezefilm.actuators.motor.averaged import no_load_speed, stall_force
 from squeezefilm.analysis.actuators.motor import MotorAnalysis, analyze_motor
 from squeezefilm.errors import OutOfRangeError
+from squeezefilm.report.actuators.motor import motor_rows
 
 DESCRIBED = load_actuator("biet2008-motor")
 
@@ -77,3 +78,30 @@ def test_a_preload_that_stalls_is_refused_before_anything_long() -> None:
     pressed = dataclasses.replace(motor, cradle=dataclasses.replace(motor.cradle, preload=400.0))
     with pytest.raises(OutOfRangeError, match="the motor stalls"):
         analyze_motor(dataclasses.replace(DESCRIBED, motor=pressed))
+
+
+@pytest.mark.slow
+def test_a_second_plate_sets_the_slider_free_in_the_plane(found: MotorAnalysis) -> None:
+    assert found.plane is None
+    plate = DESCRIBED.motor.plate
+    strips = tuple(
+        dataclasses.replace(
+            plate.patches[0], x=0.0, y=k * 12.25e-3 + 0.5e-3, length=plate.length,
+            width=11.25e-3, polarity=way,
+        )
+        for k, way in enumerate((1, -1, -1, 1))
+    )  # fmt: skip
+    other = dataclasses.replace(plate, patches=strips, lines_across="width", nodal_lines=4)
+    # Feet on both sides of the middle, at the same distance, would push each other sideways.
+    feet = tuple(dataclasses.replace(one, y=one.y + 2e-3) for one in DESCRIBED.motor.feet)
+    motor = dataclasses.replace(DESCRIBED.motor, second_plate=other, feet=feet)
+    described = dataclasses.replace(DESCRIBED, motor=motor)
+    both = analyze_motor(described)
+    assert both.plane is not None
+    along, sideways = both.summary()["velocity_in_the_plane_m_per_s"]
+    assert abs(along) > 1e-3
+    assert abs(sideways) > 1e-3
+    rows = {row[0]: row[1] for row in motor_rows(both)}
+    assert rows["Free in the plane"].count("mm/s") == 2
+    assert both.plane.energy_residual < 1e-2
+    json.dumps(both.summary(), allow_nan=False)

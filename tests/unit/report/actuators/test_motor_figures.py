@@ -10,11 +10,13 @@ from squeezefilm.actuators.motor.causal import averaged_graph, causal_graph
 from squeezefilm.actuators.motor.closed_loop import TrackedForce
 from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
 from squeezefilm.actuators.motor.in_time import simulate
+from squeezefilm.actuators.motor.plane import simulate_plane
 from squeezefilm.report.actuators.motor_figures import (
     causal_figure,
     foot_figure,
     force_step_figure,
     map_figure,
+    plane_figure,
     speed_force_figure,
 )
 
@@ -49,3 +51,10 @@ def test_a_step_of_force_says_how_near_it_ends() -> None:
     wanted, force = np.array([1.0, 1.0, 2.0, 2.0]), np.array([0.5, 1.0, 1.5, 1.96])
     tracked = TrackedForce(time, wanted, force, 1e-6 * force, 10 * force, 0)
     assert "ends 2 % from the force" in words(force_step_figure(tracked))
+
+
+def test_the_way_in_the_plane_is_drawn() -> None:
+    moved = simulate_plane(motor(), WORKING, periods=20, steps=32, traced=20)
+    said = words(plane_figure(moved))
+    assert "sideways (µm)" in said
+    assert f"ends at {1e3 * moved.final_velocity[0]:.3g} mm/s along" in said
