@@ -100,8 +100,8 @@ def test_a_second_plate_sets_the_slider_free_in_the_plane(found: MotorAnalysis) 
     assert both.plane is not None
     along, sideways = both.summary()["velocity_in_the_plane_m_per_s"]
     assert abs(along) > 1e-3
-    assert abs(sideways) > 1e-3
+    assert abs(sideways) > 1e-4
     rows = {row[0]: row[1] for row in motor_rows(both)}
-    assert rows["Free in the plane"].count("mm/s") == 2
+    assert rows["Free in the plane"].count("m/s") == 2
     assert both.plane.energy_residual < 1e-2
     json.dumps(both.summary(), allow_nan=False)
