@@ -17,6 +17,7 @@ from squeezefilm.actuators.motor.averaged import (
 )
 from squeezefilm.actuators.motor.description import Motor
 from squeezefilm.actuators.motor.in_time import simulate
+from squeezefilm.actuators.motor.stator import FaceMode
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.progress import CountProgress
@@ -136,15 +137,6 @@ def models_compared(
 
 
 @si.checked_numbers
-def over_frequency(
-    motor: AssembledMotor, working: Working, frequencies: Annotated[si.HertzArray, si.Above(0.0)]
-) -> tuple[AveragedMotor, ...]:
-    """The motor at rest under its voltage at frequencies (Hz). Raises as `averaged`."""
-    si.require("frequencies", frequencies, si.Unit("Hz"), axes=1)
-    return tuple(averaged(motor, replace(working, frequency=one)) for one in frequencies.tolist())
-
-
-@si.checked_numbers
 def over_foot_position(
     motor: Motor, working: Working, shifts: si.MetreArray, theory: PlateTheory = "solid"
 ) -> tuple[AveragedMotor | None, ...]:
@@ -154,6 +146,7 @@ def over_foot_position(
     """
     si.require("shifts", shifts, si.Unit("m"), axes=1)
     along_width = motor.plate.lines_across == "width"
+    modes: tuple[FaceMode, ...] | None = None
     found: list[AveragedMotor | None] = []
     for shift in shifts.tolist():
         feet = tuple(
@@ -162,7 +155,9 @@ def over_foot_position(
         )
         moved = replace(motor, feet=feet)
         try:
-            found.append(averaged(assembled(moved, theory), working))
+            there = assembled(moved, theory, modes)
+            modes = there.modes
+            found.append(averaged(there, working))
         except OutOfRangeError as error:
             if error.quantity != "feet":
                 raise

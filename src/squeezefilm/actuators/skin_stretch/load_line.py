@@ -78,8 +78,10 @@ def loaded_tip(bender: Bender, load: FingerpadDynamics, voltage: si.Volt) -> Loa
 
     Whether the voltage undoes the poling is asked of `Bimorph.require_voltage`.
     """
-    x = bender.deflection_per_volt * voltage
-    x *= bender.stiffness / (bender.stiffness + load.stiffness)
+    free = bender.deflection_per_volt * voltage
+    x = math.copysign(
+        float(loaded_deflection(abs(free), bender.stiffness, load.stiffness)) if free else 0.0, free
+    )
     stiffness, mass = bender.stiffness + load.stiffness, bender.effective_mass + load.mass
     square = stiffness / mass
     damping = (load.damping / mass) ** 2

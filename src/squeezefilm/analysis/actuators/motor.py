@@ -13,19 +13,25 @@ from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
 from squeezefilm.actuators.motor.averaged import (
     AveragedMotor,
+    averaged,
     free_amplitude,
     no_load_speed,
     stall_force,
 )
 from squeezefilm.actuators.motor.causal import CausalGraph, averaged_graph
 from squeezefilm.actuators.motor.closed_loop import TrackedForce, inverted_law, track_force
-from squeezefilm.actuators.motor.curves import MotorMap, motor_map, speed_force_curve
+from squeezefilm.actuators.motor.curves import (
+    MotorMap,
+    motor_map,
+    over_foot_position,
+    speed_force_curve,
+)
 from squeezefilm.actuators.motor.description import MotorDescription
 from squeezefilm.actuators.motor.in_time import MotorMotion, simulate
 from squeezefilm.actuators.motor.plane import PlaneMotion, simulate_plane
 from squeezefilm.analysis.actuators.drawn import DrawnAnswers, Usual, drawn_answers
 from squeezefilm.analysis.actuators.effects import Effect, effects
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, UnreachableError
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import Result, to_json
 
@@ -33,6 +39,7 @@ from squeezefilm.results import Result, to_json
 _APART = 0.05
 _MAP, _RESOLVED = 10, 5
 _PERIODS, _TRACED = 600, 3
+_DETUNED, _POINTS = 0.04, 29
 _FREE, _FREE_STEPS = 4000, 64
 _STEP = (0.3, 0.7)
 _STEPS = 60
@@ -70,6 +77,9 @@ class MotorAnalysis(Result):
             commanded.
         effects: what each assumed value does to stall force and speed without a load.
         drawn: those two where what is uncertain is drawn together.
+        tuned: at rest, at frequencies about the resonance.
+        shifts, shifted: of all feet along the wave (m), and the motor at rest there; None over a
+            node, or beside the plate.
         plane: the slider free in the plane from rest, both plates at the voltage; None without a
             second one.
         warnings: in sentences.
@@ -87,6 +97,9 @@ class MotorAnalysis(Result):
     tracked: TrackedForce | None
     effects: tuple[Effect, ...]
     drawn: DrawnAnswers
+    tuned: tuple[AveragedMotor, ...]
+    shifts: si.MetreArray
+    shifted: tuple[AveragedMotor | None, ...]
     plane: PlaneMotion | None
     warnings: tuple[str, ...]
     _shown: ClassVar[str] = "described.name voltage stall_force no_load_speed"
@@ -167,6 +180,18 @@ class MotorAnalysis(Result):
             ],
             "effects": to_json(self.effects),
             "drawn": to_json(self.drawn),
+            "over_frequency": [
+                {
+                    "frequency_Hz": one.working.frequency,
+                    "force_N": one.force,
+                    "amplitude_m": one.amplitude,
+                }
+                for one in self.tuned
+            ],
+            "over_place_of_the_feet": [
+                {"shift_m": shift, "force_N": None if one is None else one.force}
+                for shift, one in zip(self.shifts.tolist(), self.shifted, strict=True)
+            ],
             "velocity_in_the_plane_m_per_s": None
             if self.plane is None
             else self.plane.final_velocity.tolist(),
@@ -207,6 +232,9 @@ def analyze_motor(
         amplitude * np.linspace(0.2, 2.0, _MAP),
         progress=lambda done, of: None if done % _MAP else tell(f"{done} of {of} points"),
     )
+    tell("frequency and place of the feet")
+    tuned = _tuned(motor, volts)
+    shifts, shifted = _shifted(motor, amplitude)
     tell("force law")
     tracked, why_not = _step(motor, best.speed, amplitude)
     tell("what assumed values do")
@@ -232,10 +260,37 @@ def analyze_motor(
         tracked,
         moved,
         sure,
+        tuned,
+        shifts,
+        shifted,
         _plane(motor, volts),
         (),
     )
     return dataclasses.replace(found, warnings=tuple(_warnings(found, why_not)))
+
+
+def _tuned(motor: AssembledMotor, voltage: si.Volt) -> tuple[AveragedMotor, ...]:
+    """About the resonance, as far as the drive moves the plate under the slider."""
+    found = []
+    for share in np.linspace(1 - _DETUNED, 1 + _DETUNED, _POINTS).tolist():
+        working = Working(voltage=voltage, frequency=share * motor.resonance_frequency)
+        try:
+            found.append(averaged(motor, working))
+        except UnreachableError:
+            continue
+    return tuple(found)
+
+
+def _shifted(
+    motor: AssembledMotor, amplitude: si.Metre
+) -> tuple[si.MetreArray, tuple[AveragedMotor | None, ...]]:
+    """Feet moved by up to half a wave to either side, at the amplitude that the motor has."""
+    described, half = motor.motor, motor.modes[0].working.half_wavelength
+    along_width = described.plate.lines_across == "width"
+    places = [foot.y if along_width else foot.x for foot in described.feet]
+    span = described.plate.width if along_width else described.plate.length
+    shifts = np.linspace(max(-half, -min(places)), min(half, span - max(places)), 2 * _POINTS)
+    return shifts, over_foot_position(described, Working(amplitude=amplitude), shifts)
 
 
 def _plane(motor: AssembledMotor, voltage: si.Volt) -> PlaneMotion | None:

@@ -127,6 +127,10 @@ def _figures(found: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
                 (found.map, found.motor.motor.cradle.preload, found.rest.amplitude)
             ),
         ),
+        "frequency-and-place": (
+            "Frequency, and the place of the feet",
+            motor_figures.tuning_figure(found),
+        ),
         "foot": (
             "The way of a foot",
             motor_figures.foot_figure((found.motion, feet.across[0], feet.along[0])),

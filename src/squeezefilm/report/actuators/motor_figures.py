@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from squeezefilm.actuators.motor.curves import MotorMap
     from squeezefilm.actuators.motor.in_time import MotorMotion
     from squeezefilm.actuators.motor.plane import PlaneMotion
+    from squeezefilm.analysis.actuators.motor import MotorAnalysis
 
 
 def _floors(graph: CausalGraph) -> dict[str, int]:
@@ -230,4 +231,29 @@ def plane_figure(found: PlaneMotion) -> Figure:
         right.plot(time, 1e3 * found.period_velocity[:, k], color=colour, lw=1, label=name)
     right.set(xlabel="time (ms)", ylabel="velocity (mm/s)")
     style.legend_below(right, columns=2)
+    return figure
+
+
+@style.drawn
+def tuning_figure(found: MotorAnalysis) -> Figure:
+    """The force at rest over the frequency of the drive (with the resonance without a slider), and
+    over the shift of all feet along the wave."""
+    motors, resonance = found.tuned, found.motor.resonance_frequency
+    shifts, shifted = found.shifts, found.shifted
+    figure = style.new_figure(
+        "The force at rest by the frequency of the drive, and by the place of the feet",
+        "averaged; left at the voltage, right at the amplitude that the motor has; gaps: nodes",
+        4.0,
+    )
+    left, right = figure.subplots(1, 2)
+    at = [1e-3 * (one.working.frequency or resonance) for one in motors]
+    left.plot(at, [one.force for one in motors], color=style.BLUE)
+    left.axvline(1e-3 * resonance, color=style.ORANGE, lw=1, label="resonance without a slider")
+    left.set(xlabel="frequency (kHz)", ylabel="force at rest (N)")
+    style.legend_below(left)
+    forces = [np.nan if one is None else one.force for one in shifted]
+    right.plot(1e3 * shifts, forces, color=style.BLUE)
+    right.axvline(0.0, color=style.ORANGE, lw=1, label="where they stand")
+    right.set(xlabel="shift of the feet along the wave (mm)", ylabel="force at rest (N)")
+    style.legend_below(right)
     return figure

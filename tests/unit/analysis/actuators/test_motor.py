@@ -81,6 +81,24 @@ def test_a_preload_that_stalls_is_refused_before_anything_long() -> None:
 
 
 @pytest.mark.slow
+def test_frequency_and_place_go_through_the_motor_as_it_is(found: MotorAnalysis) -> None:
+    at = [one.working.frequency for one in found.tuned]
+    assert min(at) < found.motor.resonance_frequency < max(at)
+    forces = np.array([one.force for one in found.tuned])
+    assert np.interp(found.motor.resonance_frequency, at, forces) == pytest.approx(
+        found.stall_force, rel=0.01
+    )
+    # Below the resonance under the slider the plate hardly moves, and feet stick.
+    assert forces[0] < 0.5 * found.stall_force
+    pairs = zip(found.shifts.tolist(), found.shifted, strict=True)
+    stand = [(shift, one.force) for shift, one in pairs if one is not None]
+    assert np.interp(0.0, *zip(*stand, strict=True)) == pytest.approx(found.stall_force, rel=0.1)
+    # Half a wave further on the other side of an antinode, they push back.
+    assert min(force for _, force in stand) < 0
+    assert None in found.shifted
+
+
+@pytest.mark.slow
 def test_a_second_plate_sets_the_slider_free_in_the_plane(found: MotorAnalysis) -> None:
     assert found.plane is None
     plate = DESCRIBED.motor.plate

@@ -115,11 +115,6 @@ class VoltageSweepsFit:
         bent = {by: self.backbone.value * share**power}
         return FreePlate(**bent, loss_rise=max(0.0, rise.value) * share)
 
-    def resonance_at(self, amplitude: si.Metre) -> si.Hertz:
-        """The backbone: the resonance frequency (Hz) at an amplitude (m)."""
-        power = 2 if self.law == "quadratic" else 1
-        return self.frequency.value * (1 + self.backbone.value * amplitude**power)
-
 
 @guarded_fit
 def fit_voltage_sweeps(
