@@ -24,8 +24,14 @@ from squeezefilm.chain.played_texture import (
     require_on_image,
     single_period,
 )
-from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.chain.standing_wave import WAVES, UnderPad, Wave, resonance_with_finger
+from squeezefilm.chain.prediction import Prediction
+from squeezefilm.chain.standing_wave import (
+    WAVES,
+    UnderPad,
+    Wave,
+    at_largest_amplitude,
+    resonance_with_finger,
+)
 from squeezefilm.contact.sliding.march import Sliding, slide
 from squeezefilm.contact.sliding.skin_vibration import SkinVibration, first_pass_vibration
 from squeezefilm.display import Display, NamedDisplay
@@ -228,8 +234,9 @@ class RenderRequest:
     seed: int = 0
     progress: SayProgress | None = None
 
-    def prediction(self) -> Prediction:
-        """What the display does at its largest amplitude; refused where it changes no friction."""
+    def at_largest_amplitude(self) -> tuple[Prediction, UnderPad]:
+        """What the display does at its largest amplitude, and what the pad meets of it; refused
+        where it changes no friction."""
         if self.place is not None and self.wave != "ignored":
             raise InputError(
                 f"--place keeps the finger at one place of the plate, and with --wave {self.wave} "
@@ -239,20 +246,15 @@ class RenderRequest:
                 'antinode: --stroke "60 mm/s over 4 cm, from 5 mm"',
                 quantity="place",
             )
-        p = predict(
+        return at_largest_amplitude(
             self.display,
-            voltage=self.voltage,
-            normal_force=self.normal_force,
-            surface=self.surface,
-            model=self.model,
-            place=self.place,
+            self.voltage,
+            self.normal_force,
+            self.surface,
+            self.model,
+            self.place,
+            cast(Wave, self.wave),
         )
-        if p.vibration_amplitude <= 0.0 or p.relative_friction >= 1.0:
-            raise InputError(
-                f"display '{self.display.name}' changes no friction at {p.voltage or 0.0:g} V, so "
-                "it renders no texture; give it a voltage"
-            )
-        return p
 
 
 @reads_text
@@ -290,8 +292,7 @@ def render_texture(asked: RenderRequest) -> RenderAnalysis:
     require_on_display(display.actuator, finger)
     require_on_image(texture.texture, finger)
     tell("the display at its largest amplitude")
-    p = asked.prediction()
-    under = UnderPad.of(display, p, cast(Wave, asked.wave))
+    p, under = asked.at_largest_amplitude()
     played = _played(texture, motion, finger, p, under)
     tau = float(envelope_time_constant(*resonance_with_finger(p)))
     tell("the loop along the stroke")

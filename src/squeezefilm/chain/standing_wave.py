@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.friction_models import MODEL_KINDS
+from squeezefilm.chain.friction_models import MODEL_KINDS, FrictionModel
 from squeezefilm.chain.friction_table import FrictionTable
+from squeezefilm.chain.pad_place import FacePlace
 from squeezefilm.chain.played_texture import FingerMotion
-from squeezefilm.chain.prediction import Prediction
+from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.contact.sliding.dry_friction import SpeedFriction
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
@@ -128,3 +130,32 @@ class UnderPad:
         if self.factors is None:
             return np.ones(finger.time.size)
         return self.factors.factor(finger.x, finger.y) / self.centred
+
+
+# A study plays many textures under one finger of one display, and all need the same.
+@functools.lru_cache(maxsize=8)
+def at_largest_amplitude(
+    display: Display,
+    voltage: si.Volt | None,
+    normal_force: si.Newton | None,
+    surface: str | None,
+    model: FrictionModel | None,
+    place: FacePlace | None,
+    wave: Wave,
+) -> tuple[Prediction, UnderPad]:
+    """What a display does at its largest amplitude, arguments as of `predict`, and what the pad
+    meets of it. Raises `InputError` where it changes no friction."""
+    p = predict(
+        display,
+        voltage=voltage,
+        normal_force=normal_force,
+        surface=surface,
+        model=model,
+        place=place,
+    )
+    if p.vibration_amplitude <= 0.0 or p.relative_friction >= 1.0:
+        raise InputError(
+            f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so "
+            "it renders no texture; give it a voltage"
+        )
+    return p, UnderPad.of(display, p, wave)

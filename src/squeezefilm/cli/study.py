@@ -1,6 +1,7 @@
 """Verbs of the lab, and of a study: plan, run, look, export, merge, take somebody out."""
 
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -80,6 +81,11 @@ def presets(as_json: AsJson = False) -> None:
             typer.echo(f"{one['name']}: {one['title']}")
 
 
+def _load_chain() -> None:
+    """What a second process needs before it takes fingers."""
+    import_module("squeezefilm.study.simulated.chain_tables")
+
+
 @study.command()
 def simulate(
     design: Design,
@@ -96,12 +102,13 @@ def simulate(
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.report.study.simulated_page import write_simulated
     from squeezefilm.report.study.terminal_identification import show_simulated
+    from squeezefilm.second_process import second_process
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.chain_tables import chain_tables
     from squeezefilm.study.simulated.participants import simulate_participants
 
     planned, people = load_design(design), load_observer(observer)
-    with working(as_json) as step:
+    with second_process(_load_chain), working(as_json) as step:
         tables = chain_tables(planned, people, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables)
         written = None if out is None else write_simulated(found, out, step)

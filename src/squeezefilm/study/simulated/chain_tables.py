@@ -1,7 +1,8 @@
 """What every finger class gets of every surface of a study, and why a stimulus is confused: the
-slow part, computed once.
+slow part, computed once and kept on disk.
 
-Noise and decisions (`simulated`) need only these tables, so ten thousand people cost seconds.
+Noise and decisions (`participants`, `judgements`) need only these tables, so ten thousand people
+cost seconds.
 """
 
 from __future__ import annotations
@@ -11,14 +12,17 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+import squeezefilm
 from squeezefilm import quantities as si
 from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
+from squeezefilm.kept_arrays import KeptArrays
 from squeezefilm.perception.observer import FingerClass, Observer
 from squeezefilm.perception.percepts import (
     Apparatus,
@@ -30,7 +34,13 @@ from squeezefilm.perception.percepts import (
 from squeezefilm.perception.senses import Candidates, line_amplitudes, line_periods
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.progress import SayProgress
+from squeezefilm.results import config_hash
+from squeezefilm.second_process import later, values
 from squeezefilm.study.design.study_design import StudyDesign
+
+
+_AT_ONCE = 6
+"""Fingers between two words of progress: of fewer, one of two processes waits for the other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,14 +77,16 @@ class Causes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ChainTables:
-    """Percepts of a match-to-sample study before any noise.
+    """Percepts of a study's surfaces before any noise.
 
     Attributes:
         design, observer: the inputs.
         fingers: the finger classes.
         apparatus: how each display was run, by the design's displays.
+        plates: the displays themselves, likewise.
         virtual: candidates of shape (displays, fingers, stimuli, candidates).
-        real: candidates of shape (fingers, alternatives, candidates).
+        real: candidates of shape (fingers, alternatives, candidates); no alternatives but in a
+            match-to-sample study.
         virtual_rhythm: evidence (d′) by period, shape (displays, fingers, stimuli, periods).
         real_rhythm: likewise, shape (fingers, alternatives, periods).
         causes: of each display and stimulus, one per finger.
@@ -84,11 +96,24 @@ class ChainTables:
     observer: Observer
     fingers: tuple[FingerClass, ...]
     apparatus: tuple[Apparatus, ...]
+    plates: tuple[Display, ...]
     virtual: Candidates
     real: Candidates
     virtual_rhythm: si.DimensionlessArray
     real_rhythm: si.DimensionlessArray
     causes: tuple[tuple[tuple[Causes, ...], ...], ...]
+
+    def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
+        """Candidates of a surface that is not among the design's stimuli, such as a comparison
+        that an adaptive method chose, shape (candidates,)."""
+        found = _virtual(
+            self.plates[display],
+            stimulus,
+            self.observer,
+            self.fingers[finger],
+            self.apparatus[display],
+        )
+        return found.candidates
 
     def explain(self, display: int = 0) -> dict[str, Causes]:
         """The reasons by stimulus on one of the displays: medians over fingers."""
@@ -108,22 +133,16 @@ def chain_tables(
     """The chain for every display, finger class and surface; cached within the process.
 
     Args:
-        design: a match-to-sample study.
+        design: the study; surfaces of its catch trials and adaptive series are felt when asked.
         observer: whose senses and fingers.
         apparatus: how displays are run: one for all, or one for each.
         displays: in place of those the design names, in its order.
         progress: is told each step.
 
     Raises:
-        InputError: another task, or as many displays or apparatus as the design has not.
+        InputError: as many displays or apparatus as the design has not.
     """
     tell = progress or (lambda _: None)
-    if design.task != "match-to-sample":
-        raise InputError(
-            f"task = '{design.task}' has no simulated participants yet; simulate a match-to-sample "
-            "design",
-            quantity="task",
-        )
     plates = tuple(load_display(one) for one in design.displays) if displays is None else displays
     runs = apparatus if isinstance(apparatus, tuple) else (apparatus or Apparatus(),) * len(plates)
     if len(plates) != len(design.displays) or len(runs) != len(plates):
@@ -133,38 +152,87 @@ def chain_tables(
         )
     fingers = observer.fingers()
     real = [[_real(one, observer, finger) for one in design.alternatives] for finger in fingers]
-    virtual, why = [], []
-    for plate, run in zip(plates, runs, strict=True):
-        by_finger = []
-        for number, finger in enumerate(fingers):
-            tell(f"{plate.name}: finger {number + 1} of {len(fingers)}")
-            by_finger.append([_virtual(plate, s, observer, finger, run) for s in design.stimuli])
-        virtual.append([[found for found, _ in row] for row in by_finger])
-        why.append(tuple(tuple(row[s][1] for row in by_finger) for s in range(len(design.stimuli))))
+    pieces = [
+        later(_of_finger, plate, design.stimuli, observer, one, run)
+        for plate, run in zip(plates, runs, strict=True)
+        for one in fingers
+    ]
+    found: list[list[_Felt]] = []
+    for first in range(0, len(pieces), _AT_ONCE):
+        plate, number = plates[first // len(fingers)], first % len(fingers)
+        tell(f"{plate.name}: finger {number + 1} of {len(fingers)}")
+        found += values(*pieces[first : first + _AT_ONCE])
+    virtual = [found[k : k + len(fingers)] for k in range(0, len(found), len(fingers))]
     return ChainTables(
         design=design,
         observer=observer,
         fingers=fingers,
         apparatus=tuple(runs),
+        plates=plates,
         virtual=_competing(virtual),
         real=_competing(real),
-        virtual_rhythm=_gathered(virtual, lambda one: one.evidence.rhythm),
-        real_rhythm=_gathered(real, lambda one: one.evidence.rhythm),
-        causes=tuple(why),
+        virtual_rhythm=_gathered(virtual, lambda one: one.rhythm),
+        real_rhythm=_gathered(real, lambda one: one.rhythm),
+        causes=tuple(
+            tuple(tuple(row[s].causes for row in by_finger) for s in range(len(design.stimuli)))
+            for by_finger in virtual
+        ),
     )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Felt:
+    """What the tables hold of one surface under one finger; of a real grating there are no causes."""
+
+    candidates: Candidates
+    rhythm: si.DimensionlessArray
+    causes: Causes
+
+
+def _of_finger(
+    plate: Display,
+    stimuli: tuple[Stimulus, ...],
+    observer: Observer,
+    finger: FingerClass,
+    run: Apparatus,
+) -> list[_Felt]:
+    return [_virtual(plate, one, observer, finger, run) for one in stimuli]
+
+
+_KEPT = KeptArrays("percepts", [Path(squeezefilm.__file__).parent])
+_REASONS = len(dataclasses.fields(Causes))
+_NO_CAUSES: Causes = Causes(*(math.nan,) * _REASONS)
 
 
 @functools.lru_cache(maxsize=4096)
 def _virtual(
     display: Display, stimulus: Stimulus, observer: Observer, finger: FingerClass, run: Apparatus
-) -> tuple[Percept, Causes]:
+) -> _Felt:
+    surface = stimulus.surface()
+    # Two kinds of texture may have the same numbers, and the text of an image leaves out pixels.
+    asked = f"{_hash((display, observer, finger, run))} {surface!r} {config_hash(surface)} "
+    asked += repr(stimulus.period)
+    count, lines = observer.candidates, line_periods().size
+    kept = _KEPT.get(asked, 2 * count + lines + _REASONS)
+    if kept is not None:
+        parts = np.split(kept, np.cumsum([count, count, lines]))
+        return _Felt(Candidates(parts[0], parts[1]), parts[2], Causes(*parts[3].tolist()))
     found, played = percept(display, stimulus, observer, finger, run)
-    return found, causes(stimulus, found, played, observer, finger)
+    why = causes(stimulus, found, played, observer, finger)
+    one, rhythm = found.candidates, found.evidence.rhythm
+    _KEPT.put(asked, np.concatenate([one.period, one.d_prime, rhythm, dataclasses.astuple(why)]))
+    return _Felt(one, rhythm, why)
+
+
+@functools.lru_cache(maxsize=256)
+def _hash(inputs: tuple[Display, Observer, FingerClass, Apparatus]) -> str:
+    return config_hash(inputs)
 
 
 @functools.lru_cache(maxsize=4096)
-def _real(grating: Grating, observer: Observer, finger: FingerClass) -> Percept:
-    return grating_percept(grating, observer, finger)
+def _real(grating: Grating, observer: Observer, finger: FingerClass) -> _Felt:
+    found = grating_percept(grating, observer, finger)
+    return _Felt(found.candidates, found.evidence.rhythm, _NO_CAUSES)
 
 
 def _competing(tree: Any) -> Candidates:
@@ -174,7 +242,7 @@ def _competing(tree: Any) -> Candidates:
     )
 
 
-def _gathered(tree: Any, part: Callable[[Percept], si.FloatArray]) -> si.FloatArray:
+def _gathered(tree: Any, part: Callable[[_Felt], si.FloatArray]) -> si.FloatArray:
     """One array of every percept in nested lists, which become its first axes."""
 
     def gather(one: Any) -> Any:

@@ -38,6 +38,7 @@ def tables(d_prime: float, observer: Observer = EXACT, design: StudyDesign = DES
         observer=observer,
         fingers=observer.fingers(),
         apparatus=(Apparatus(),),
+        plates=(),
         virtual=Candidates(period[None], np.full((1, 1, 5, 1), d_prime)),
         real=Candidates(period, np.full((1, 5, 1), 1e6)),
         virtual_rhythm=np.zeros((1, 1, 5, 1)),
