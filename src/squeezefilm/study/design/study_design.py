@@ -53,7 +53,8 @@ class StudyDesign:
         alternatives: real gratings; for match-to-sample only, where they are the answers.
         reference: name of the stimulus every other is compared with (tasks of two surfaces), or
             of the one that is worth `modulus` (magnitude estimation).
-        judged: what two-interval answers are right about.
+        judged: what two-interval answers are right about, same-different answers tell apart and
+            magnitudes are of.
         modulus: number given to the reference in magnitude estimation (1); 0 for free numbers.
         question: what the participant is asked.
         order: "williams" (each condition follows each other equally often), "latin-square"
@@ -195,13 +196,14 @@ class StudyDesign:
         if self.task == "same-different":
             alike = {(one.texture, one.surface()) for one in (first, second)}
             return "same" if len(alike) == 1 else "different"
-        a, b = (
-            one.period if self.judged == "spatial_period" else one.amount(self.judged)
-            for one in (first, second)
-        )
+        a, b = self.judged_value(first), self.judged_value(second)
         if a == b:
             return ""
         return "first" if a > b else "second"
+
+    def judged_value(self, one: Stimulus) -> float:
+        """How much (SI) a stimulus has of what is judged; of a period the whole one."""
+        return one.period if self.judged == "spatial_period" else one.amount(self.judged)
 
     def catch_condition(self, catch: CatchTrial) -> Condition:
         """What a catch trial presents: its stimulus, in tasks of two surfaces with the reference

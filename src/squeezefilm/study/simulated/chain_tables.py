@@ -38,7 +38,6 @@ from squeezefilm.results import config_hash
 from squeezefilm.second_process import later, values
 from squeezefilm.study.design.study_design import StudyDesign
 
-
 _AT_ONCE = 6
 """Fingers between two words of progress: of fewer, one of two processes waits for the other."""
 
@@ -83,25 +82,25 @@ class ChainTables:
         design, observer: the inputs.
         fingers: the finger classes.
         apparatus: how each display was run, by the design's displays.
-        plates: the displays themselves, likewise.
         virtual: candidates of shape (displays, fingers, stimuli, candidates).
         real: candidates of shape (fingers, alternatives, candidates); no alternatives but in a
             match-to-sample study.
         virtual_rhythm: evidence (d′) by period, shape (displays, fingers, stimuli, periods).
         real_rhythm: likewise, shape (fingers, alternatives, periods).
         causes: of each display and stimulus, one per finger.
+        plates: the displays themselves, by the design's displays.
     """
 
     design: StudyDesign
     observer: Observer
     fingers: tuple[FingerClass, ...]
     apparatus: tuple[Apparatus, ...]
-    plates: tuple[Display, ...]
     virtual: Candidates
     real: Candidates
     virtual_rhythm: si.DimensionlessArray
     real_rhythm: si.DimensionlessArray
     causes: tuple[tuple[tuple[Causes, ...], ...], ...]
+    plates: tuple[Display, ...] = ()
 
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
         """Candidates of a surface that is not among the design's stimuli, such as a comparison
@@ -182,7 +181,7 @@ def chain_tables(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Felt:
-    """What the tables hold of one surface under one finger; of a real grating there are no causes."""
+    """What the tables hold of one surface under one finger; a real grating has no causes."""
 
     candidates: Candidates
     rhythm: si.DimensionlessArray

@@ -22,7 +22,8 @@ from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
 from squeezefilm.perception.observer import NamedObserver, Observer
-from squeezefilm.perception.senses import D_PRIME_OF_75
+from squeezefilm.perception.perceived import perceived
+from squeezefilm.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import trials
@@ -252,15 +253,17 @@ def _answers(
     display, stimulus, number = display[:count], stimulus[:count], number[:count]
     skill = 1.0 + observer.learning_excess * np.exp(-number / observer.learning_trials)
     shown, touched = tables.virtual, tables.real
-    u, d = (table[display, finger[:, None], stimulus] for table in (shown.period, shown.d_prime))
-    virtual, felt = _perceived(u, d, skill, sigma[:, None], observer, random, (_CHUNK, asked))
-    ru, rd = (table[finger][:, None] for table in (touched.period, touched.d_prime))
+    places = display, finger[:, None], stimulus
+    felt_now = Candidates(shown.period[places], shown.d_prime[places])
+    virtual, felt = _perceived(felt_now, skill, sigma[:, None], observer, random, (_CHUNK, asked))
     gratings = touched.period.shape[1]
     shape = (_CHUNK, asked, gratings)
-    within = (count, asked, gratings, ru.shape[-1])
+    within = (count, asked, gratings, touched.period.shape[-1])
+    again = (
+        np.broadcast_to(one[finger][:, None], within) for one in (touched.period, touched.d_prime)
+    )
     real, real_felt = _perceived(
-        np.broadcast_to(ru, within),
-        np.broadcast_to(rd, within),
+        Candidates(*again),
         skill[:, :, None],
         sigma[:, None, None],
         observer,
@@ -281,8 +284,7 @@ def _answers(
 
 
 def _perceived(
-    period: si.FloatArray,
-    d_prime: si.FloatArray,
+    surface: Candidates,
     skill: si.DimensionlessArray,
     sigma: si.DimensionlessArray,
     observer: Observer,
@@ -290,15 +292,11 @@ def _perceived(
     shape: tuple[int, ...],
 ) -> tuple[si.FloatArray, NDArray[np.bool_]]:
     """Logarithm of the period perceived and whether anything was, over the last axis."""
-    count = period.shape[0]
-    noise = random.standard_normal((*shape, period.shape[-1]))[:count]
-    strength = d_prime + skill[..., None] * noise
-    best = np.argmax(strength, axis=-1)[..., None]
-    pick = [np.take_along_axis(one, best, -1)[..., 0] for one in (strength, period, d_prime)]
-    felt = pick[0] > observer.detection_criterion
-    clear = np.where(felt, np.maximum(pick[2], 0.05), np.inf)
-    blur = sigma * skill * np.sqrt(1.0 + 1.0 / clear**2)
-    return np.log(pick[1]) + blur * random.standard_normal(shape)[:count], felt
+    count = surface.period.shape[0]
+    noise = random.standard_normal((*shape, surface.period.shape[-1]))[:count]
+    blur = random.standard_normal(shape)[:count]
+    found = perceived(surface, observer, skill, sigma, noise, blur)
+    return found.log_period, found.felt
 
 
 def _doubt(away: si.FloatArray, sigma: si.DimensionlessArray) -> si.DimensionlessArray:

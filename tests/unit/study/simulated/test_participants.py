@@ -38,7 +38,6 @@ def tables(d_prime: float, observer: Observer = EXACT, design: StudyDesign = DES
         observer=observer,
         fingers=observer.fingers(),
         apparatus=(Apparatus(),),
-        plates=(),
         virtual=Candidates(period[None], np.full((1, 1, 5, 1), d_prime)),
         real=Candidates(period, np.full((1, 5, 1), 1e6)),
         virtual_rhythm=np.zeros((1, 1, 5, 1)),
@@ -118,9 +117,8 @@ def test_what_cannot_be_simulated_is_refused() -> None:
         run(2.0, 0)
     with pytest.raises(InputError, match="another design"):
         simulate_participants(DESIGN, load_observer(), 2, 0, tables(1.0))
-    other = dataclasses.replace(DESIGN, task="magnitude-estimation", alternatives=())
-    with pytest.raises(InputError, match="match-to-sample"):
-        chain_tables(other, EXACT)
+    with pytest.raises(InputError, match="1 displays"):
+        chain_tables(DESIGN, EXACT, displays=())
 
 
 def test_two_people_are_enough_to_draw_from_and_one_is_not() -> None:

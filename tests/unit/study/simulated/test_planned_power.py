@@ -45,7 +45,6 @@ def displays(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, ...]]:
             observer=observer,
             fingers=observer.fingers(),
             apparatus=(Apparatus(),),
-            plates=(),
             virtual=Candidates(period[None], np.full((1, 1, 5, 1), felt)),
             real=Candidates(period, np.full((1, 5, 1), 1e6)),
             virtual_rhythm=np.zeros((1, 1, 5, 1)),

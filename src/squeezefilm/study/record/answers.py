@@ -1,0 +1,147 @@
+"""Answers as arrays, one row a trial: what analyses start from, whoever answered."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.tables import origin_of, trial_table
+
+EXPLORED = ("mean_speed_m_per_s", "mean_normal_force_N", "path_length_m")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Answers:
+    """Answered trials of a study; arrays of shape (trials,), in each person's order.
+
+    Attributes:
+        design: what was asked.
+        origin: whose answers these are, like "people".
+        people: pseudonyms, by number.
+        surfaces: every virtual surface that was presented, by number.
+        participant: number of the person.
+        number: of the trial within the person, from 1.
+        phase: "practice", "main" or "catch".
+        display: number in the design's order.
+        series: number of the adaptive series, −1 for none.
+        first, second: number of the surface, or surfaces; `second` is −1 where there is one.
+        intensity: of an adaptive series' comparison, in parts of the reference (1); else NaN.
+        choice, right: numbers among the design's answers; −1 for none.
+        estimate: number given (1); NaN for none.
+        response_time: (s); NaN for none.
+        exploration: quantity with its unit → values; NaN for none.
+    """
+
+    design: StudyDesign
+    origin: str
+    people: tuple[str, ...]
+    surfaces: tuple[Stimulus, ...]
+    participant: si.IntArray
+    number: si.IntArray
+    phase: NDArray[np.str_]
+    display: si.IntArray
+    series: si.IntArray
+    first: si.IntArray
+    second: si.IntArray
+    intensity: si.DimensionlessArray
+    choice: si.IntArray
+    right: si.IntArray
+    estimate: si.DimensionlessArray
+    response_time: si.SecondArray
+    exploration: Mapping[str, si.FloatArray] = dataclasses.field(default_factory=dict)
+
+    @property
+    def trials(self) -> int:
+        """How many."""
+        return int(self.participant.size)
+
+    @property
+    def values(self) -> si.FloatArray:
+        """How much (SI) each surface has of what is judged, shape (surfaces,)."""
+        return np.array([self.design.judged_value(one) for one in self.surfaces])
+
+    @property
+    def correct(self) -> si.DimensionlessArray:
+        """1 where the answer was right, 0 where not, NaN where nothing is right."""
+        return np.where(self.right < 0, np.nan, (self.choice == self.right).astype(float))
+
+    def take(self, rows: NDArray[np.bool_]) -> Answers:
+        """Some of the trials, with all people and surfaces."""
+        arrays = {
+            one.name: getattr(self, one.name)[rows]
+            for one in dataclasses.fields(self)
+            if isinstance(getattr(self, one.name), np.ndarray)
+        }
+        explored = {key: values[rows] for key, values in self.exploration.items()}
+        return dataclasses.replace(self, **arrays, exploration=explored)
+
+    def main(self, display: int) -> Answers:
+        """The main trials on a display."""
+        return self.take((self.display == display) & (self.phase == "main"))
+
+
+def recorded_answers(store: StudyStore) -> Answers:
+    """The answered trials of a study's file, without those that were only felt.
+
+    Raises `RecordError` if the file cannot be read.
+    """
+    design = store.design
+    rows = [row for row in trial_table(store) if row["phase"] != "familiarisation"]
+    known: dict[tuple[str, object], int] = {}
+    surfaces: list[Stimulus] = []
+
+    def surface(name: str, row: Mapping[str, object]) -> int:
+        if not name:
+            return -1
+        key = name, row["intensity"] if row["adaptive_series"] else None
+        if key not in known:
+            try:
+                found = design.stimulus(name)
+            except InputError:
+                # Not one of the design's: what an adaptive series chose.
+                series = next(s for s in design.adaptive if s.name == row["adaptive_series"])
+                found = design.comparison(series, float(str(row["intensity"])))
+            known[key] = len(surfaces)
+            surfaces.append(found)
+        return known[key]
+
+    people = tuple(dict.fromkeys(str(row["participant_id"]) for row in rows))
+    place = {name: number for number, name in enumerate(people)}
+    displays = {name: number for number, name in enumerate(design.displays)}
+    series = {one.name: number for number, one in enumerate(design.adaptive)}
+    names = {name: number for number, name in enumerate(design.answers)}
+
+    def whole(found: list[int]) -> si.IntArray:
+        return np.array(found, dtype=np.int64)
+
+    def column(key: str) -> si.FloatArray:
+        return np.array([row[key] for row in rows], dtype=float)
+
+    return Answers(
+        design=design,
+        origin=origin_of(store),
+        people=people,
+        participant=whole([place[str(row["participant_id"])] for row in rows]),
+        number=whole([int(str(row["trial"])) for row in rows]),
+        phase=np.array([str(row["phase"]) for row in rows], dtype=np.str_),
+        display=whole([displays[str(row["display"])] for row in rows]),
+        series=whole([series.get(str(row["adaptive_series"]), -1) for row in rows]),
+        first=whole([surface(str(row["stimulus"]), row) for row in rows]),
+        second=whole([surface(str(row["second_stimulus"]), row) for row in rows]),
+        surfaces=tuple(surfaces),
+        intensity=column("intensity"),
+        choice=whole([names.get(str(row["choice"]), -1) for row in rows]),
+        right=whole([names.get(str(row["answer"]), -1) for row in rows]),
+        estimate=column("estimate"),
+        response_time=column("response_time_s"),
+        exploration={key: values for key in EXPLORED if np.isfinite(values := column(key)).any()},
+    )

@@ -1,0 +1,396 @@
+"""Simulated participants of two-interval, same-different and magnitude tasks, trial by trial.
+
+Senses and noise are those of match-to-sample (`perception.perceived`): every surface is perceived
+anew on every trial. What the tasks add is how an answer follows from what was perceived. None of
+that was measured, none was tuned, and `ASSUMED` says each in a sentence that results repeat.
+
+Trials go in their order, all people at once, so that an adaptive series meets the answers that it
+asks for. **Every number that comes out is simulated.**
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import Observer
+from squeezefilm.perception.perceived import Perceived, perceived
+from squeezefilm.perception.senses import D_PRIME_OF_75, FINEST_PERIOD, Candidates
+from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method
+from squeezefilm.study.design.study_design import StudyDesign, Task
+from squeezefilm.study.design.trials import Trial, trials
+from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.simulated.chain_tables import ChainTables
+
+_CHUNK = 60
+"""People whose noise is drawn together; orders of more people repeat those of the first so many."""
+_STREAM = 31
+_FAINTEST = 0.05
+"""Strength (d′) below which magnitudes fall no further."""
+_OWN_SCALE, _OWN_MIDDLE = 0.5, 10.0
+"""People without a modulus: spread of ln of their scales, and the middle of them."""
+
+ASSUMED: dict[Task, tuple[str, ...]] = {
+    "two-interval": (
+        "The coarser surface is the one whose clearest rhythm has the longer period, the deeper "
+        "one the one whose clearest rhythm is the more evident.",
+        "A person who does not feel both rhythms guesses which is coarser.",
+    ),
+    "same-different": (
+        "Two surfaces are called different where their perceived periods (or strengths) differ by "
+        "more than one standard deviation of that difference, the observer's criterion, or where "
+        "only one of two rhythms is felt.",
+    ),
+    "magnitude-estimation": (
+        "Numbers are in proportion to the perceived period (or strength): an exponent of 1 for "
+        "clear rhythms, rounded to two digits.",
+        "A surface on which no rhythm is felt gets the number of the finest period.",
+        "The reference is remembered with one error a person; people without a modulus have "
+        "scales that spread by a factor of 1.65.",
+    ),
+    "match-to-sample": (),
+}
+"""What simulated answers assume beyond the observer's own file, by task."""
+
+_JUDGED = ("spatial_period", "friction_depth")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _People:
+    """Up to sixty people and all their noise; arrays begin with the person."""
+
+    finger: si.IntArray
+    spread: si.DimensionlessArray
+    lapse: si.DimensionlessArray
+    scale: si.DimensionlessArray
+    memory: si.DimensionlessArray
+    noise: si.FloatArray
+    blur: si.FloatArray
+    blind: si.DimensionlessArray
+    guess: si.DimensionlessArray
+    slowness: si.FloatArray
+
+    @classmethod
+    def drawn(cls, observer: Observer, fingers: int, asked: int, seed: int, chunk: int) -> _People:
+        """Whoever is in a chunk; nobody depends on how many there are."""
+        random = np.random.default_rng([seed, _STREAM, chunk])
+        normal, among = random.standard_normal, random.random
+        weber = math.log1p(observer.period_weber_fraction) / D_PRIME_OF_75
+        return cls(
+            finger=random.integers(0, fingers, _CHUNK),
+            spread=weber * np.exp(observer.period_spread * normal(_CHUNK)),
+            lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(_CHUNK)),
+            scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(_CHUNK)),
+            memory=normal(_CHUNK),
+            noise=normal((asked, 2, _CHUNK, observer.candidates)),
+            blur=normal((asked, 2, _CHUNK)),
+            blind=among((asked, _CHUNK)),
+            guess=among((asked, _CHUNK)),
+            slowness=normal((asked, _CHUNK)),
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Given:
+    """Answers to one trial of everybody: numbers of answers, or estimates; and how sure."""
+
+    choice: si.IntArray
+    estimate: si.DimensionlessArray
+    doubt: si.DimensionlessArray
+
+
+def simulate_judgements(
+    design: StudyDesign,
+    observer: Observer,
+    participants: int,
+    seed: int,
+    tables: ChainTables,
+    progress: Callable[[str], None] | None = None,
+) -> Answers:
+    """Answers of simulated participants to every trial that asks, practice and catch included.
+
+    A participant's answers depend on the seed and their number alone. See the module.
+
+    Args:
+        design: of two-interval, same-different or magnitude estimation.
+        observer: what people are made of.
+        participants: how many, at least 1.
+        seed: the same seed gives the same answers.
+        tables: of `chain_tables` for design and observer.
+        progress: is told how many have answered.
+
+    Raises:
+        InputError: another task, or a design that judges what the observer has no sense of.
+    """
+    si.require("participants", participants, at_least=1)
+    if design.task == "match-to-sample":
+        raise InputError("match-to-sample has real gratings; take simulate_participants")
+    if design.judged not in _JUDGED:
+        raise InputError(
+            f"judged = '{design.judged}': simulated participants judge {' or '.join(_JUDGED)}; "
+            "their senses know nothing else",
+            quantity="judged",
+        )
+    tell = progress or (lambda _: None)
+    room = _Room(design, observer, tables)
+    schedules = [
+        [one for one in trials(design, person, seed) if one.asks]
+        for person in range(min(participants, _CHUNK))
+    ]
+    parts = []
+    for first in range(0, participants, _CHUNK):
+        count = min(_CHUNK, participants - first)
+        people = _People.drawn(
+            observer, len(tables.fingers), len(schedules[0]), seed, first // _CHUNK
+        )
+        parts.append(_chunk(room, people, schedules[:count], first))
+        tell(f"{first + count} of {participants} simulated participants")
+    return _together(design, participants, room, parts)
+
+
+class _Room:
+    """What a surface gives each finger, felt when first asked for."""
+
+    def __init__(self, design: StudyDesign, observer: Observer, tables: ChainTables) -> None:
+        self.design, self.observer, self.tables = design, observer, tables
+        self.surfaces: list[Stimulus] = [
+            *design.stimuli,
+            *(one.stimulus for one in design.catch),
+        ]
+        self.place = {one.name: number for number, one in enumerate(self.surfaces)}
+        self.display = {name: number for number, name in enumerate(design.displays)}
+        self._chosen: dict[tuple[str, float], int] = {}
+        self._felt: dict[tuple[int, int, int], tuple[si.FloatArray, si.FloatArray]] = {}
+
+    def chosen(self, series: str, intensity: float) -> int:
+        """The number of what an adaptive series presents at an intensity."""
+        key = series, intensity
+        if key not in self._chosen:
+            one = next(s for s in self.design.adaptive if s.name == series)
+            self._chosen[key] = len(self.surfaces)
+            self.surfaces.append(self.design.comparison(one, intensity))
+        return self._chosen[key]
+
+    def felt(self, display: int, finger: int, surface: int) -> tuple[si.FloatArray, si.FloatArray]:
+        """Candidates of a surface under a finger: periods (m) and d′."""
+        key = display, finger, surface
+        if key not in self._felt:
+            known, shown = self.tables.virtual, len(self.design.stimuli)
+            if surface < shown:
+                found = known.period[key], known.d_prime[key]
+            else:
+                one = self.tables.felt(display, finger, self.surfaces[surface])
+                found = one.period, one.d_prime
+            self._felt[key] = found
+        return self._felt[key]
+
+    def presented(
+        self, display: si.IntArray, finger: si.IntArray, surface: si.IntArray
+    ) -> Candidates:
+        """What everybody gets, shape (people, candidates)."""
+        found = [
+            self.felt(d, f, s)
+            for d, f, s in zip(display.tolist(), finger.tolist(), surface.tolist(), strict=True)
+        ]
+        return Candidates(np.array([one for one, _ in found]), np.array([one for _, one in found]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Part:
+    """What a chunk of people was presented and answered, shape (people, trials)."""
+
+    participant: si.IntArray
+    schedules: list[list[Trial]]
+    first: si.IntArray
+    second: si.IntArray
+    intensity: si.FloatArray
+    choice: si.IntArray
+    estimate: si.FloatArray
+    time: si.SecondArray
+
+
+def _chunk(room: _Room, people: _People, schedules: list[list[Trial]], begin: int) -> _Part:
+    design, observer = room.design, room.observer
+    count, asked = len(schedules), len(schedules[0])
+    pairs, answers = design.two_surfaces, design.answers
+    methods: dict[tuple[int, str, str], AdaptiveMethod] = {}
+    shape = count, asked
+    first, second, choice = (np.full(shape, -1, dtype=np.int64) for _ in range(3))
+    intensity, estimate, time = (np.full(shape, np.nan) for _ in range(3))
+    display = np.array([[room.display[one.display] for one in row] for row in schedules])
+    judge = _judge(room, people)
+    for at in range(asked):
+        for person, row in enumerate(schedules):
+            trial = row[at]
+            shown = [room.place[name] for name in trial.stimuli]
+            if trial.adaptive:
+                method = _standing(methods, design, person, trial)
+                intensity[person, at] = method.next_stimulus()
+                one = room.chosen(trial.adaptive, float(intensity[person, at]))
+                shown = [room.place[design.reference], one]
+                shown = shown if trial.reference_first else shown[::-1]
+            first[person, at] = shown[0]
+            second[person, at] = shown[1] if pairs else -1
+        skill = 1.0 + observer.learning_excess * math.exp(-at / observer.learning_trials)
+        felt = [
+            perceived(
+                room.presented(display[:, at], people.finger[:count], column[:, at]),
+                observer,
+                np.full(count, skill),
+                people.spread[:count],
+                people.noise[at, place, :count],
+                people.blur[at, place, :count],
+            )
+            for place, column in enumerate((first, second)[: 2 if pairs else 1])
+        ]
+        given = judge(felt, skill, at, count)
+        choice[:, at], estimate[:, at] = given.choice, given.estimate
+        time[:, at] = (observer.response_time + observer.doubt_time * given.doubt) * np.exp(
+            observer.response_time_spread * people.slowness[at, :count]
+        )
+        for person, row in enumerate(schedules):
+            if row[at].adaptive:
+                right = answers[choice[person, at]] == row[at].answer
+                method = _standing(methods, design, person, row[at])
+                method.update(float(intensity[person, at]), bool(right))
+    who = begin + np.arange(count)
+    return _Part(who, schedules, first, second, intensity, choice, estimate, time)
+
+
+def _standing(
+    methods: dict[tuple[int, str, str], AdaptiveMethod],
+    design: StudyDesign,
+    person: int,
+    trial: Trial,
+) -> AdaptiveMethod:
+    key = person, trial.display, trial.adaptive
+    if key not in methods:
+        series = next(one for one in design.adaptive if one.name == trial.adaptive)
+        methods[key] = adaptive_method(series)
+    return methods[key]
+
+
+_Judge = Callable[[list[Perceived], float, int, int], _Given]
+
+
+def _judge(room: _Room, people: _People) -> _Judge:
+    """How answers follow from what was perceived, by the design's task."""
+    task = room.design.task
+    if task == "magnitude-estimation":
+        return functools.partial(_number, room, people)
+    return functools.partial(_which if task == "two-interval" else _alike, room, people)
+
+
+def _judged(
+    room: _Room, people: _People, felt: Perceived, skill: float
+) -> tuple[si.FloatArray, si.FloatArray]:
+    """What is judged on a scale, and the standard deviation of one percept on it."""
+    if room.design.judged == "friction_depth":
+        return felt.strength, np.full(felt.strength.shape, skill)
+    return felt.log_period, people.spread[: felt.log_period.size] * skill
+
+
+def _compared(
+    room: _Room, people: _People, felt: list[Perceived], skill: float
+) -> tuple[si.FloatArray, NDArray[np.bool_], NDArray[np.bool_]]:
+    """First minus second over the deviation of that difference, whether both and one are felt."""
+    (a, deviation), (b, _) = (_judged(room, people, one, skill) for one in felt)
+    both, either = felt[0].felt & felt[1].felt, felt[0].felt | felt[1].felt
+    if room.design.judged == "friction_depth":
+        # How strong a surface is can be said of one that is hardly felt.
+        both = either = np.ones(a.shape, dtype=bool)
+    return (a - b) / (math.sqrt(2.0) * deviation), both, either & ~both
+
+
+def _which(
+    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+) -> _Given:
+    apart, both, _ = _compared(room, people, felt, skill)
+    blind = ~both | (people.blind[at, :count] < people.lapse[:count])
+    guess = (people.guess[at, :count] < 0.5).astype(np.int64)
+    choice = np.where(blind, guess, np.where(apart > 0, 0, 1))
+    return _Given(choice, np.full(count, np.nan), np.where(blind, 1.0, np.exp(-np.abs(apart))))
+
+
+def _alike(
+    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+) -> _Given:
+    apart, both, one_only = _compared(room, people, felt, skill)
+    limit = room.observer.detection_criterion
+    different = one_only | (both & (np.abs(apart) > limit))
+    blind = people.blind[at, :count] < people.lapse[:count]
+    guess = people.guess[at, :count] < 0.5
+    choice = np.where(blind, guess, different).astype(np.int64)
+    doubt = np.where(both & ~blind, np.exp(-np.abs(np.abs(apart) - limit)), 1.0)
+    return _Given(choice, np.full(count, np.nan), doubt)
+
+
+def _number(
+    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+) -> _Given:
+    design = room.design
+    values = np.array([design.judged_value(one) for one in design.stimuli])
+    middle = math.exp(float(np.mean(np.log(np.maximum(values, 1e-12)))))
+    here = design.judged_value(design.stimulus(design.reference)) if design.reference else middle
+    (one,) = felt
+    if design.judged == "friction_depth":
+        # Strength has no unit of its own: that of the reference is felt as often as it likes.
+        place = room.place[design.reference] if design.reference else 0
+        known = room.tables.virtual.d_prime[0, people.finger[:count], place, 0]
+        level = np.log(np.maximum(one.strength, _FAINTEST))
+        known = np.log(np.maximum(known, _FAINTEST))
+        error = people.memory[:count] / np.exp(known)
+    else:
+        level = np.where(one.felt, one.log_period, math.log(FINEST_PERIOD))
+        known, error = np.full(count, math.log(here)), people.spread * people.memory
+        error = error[:count]
+    scale = design.modulus or people.scale[:count]
+    number = scale * np.exp(level - known - error)
+    blind = people.blind[at, :count] < people.lapse[:count]
+    least, most = float(values.min()) / here, float(values.max()) / here
+    anything = scale * least * (most / least) ** people.guess[at, :count]
+    number = np.where(blind, anything, number)
+    digits = 10.0 ** (np.floor(np.log10(number)) - 1.0)
+    doubt = np.where(one.felt & ~blind, 0.3, 1.0)
+    none = np.full(count, -1, dtype=np.int64)
+    return _Given(none, np.round(number / digits) * digits, doubt)
+
+
+def _together(design: StudyDesign, participants: int, room: _Room, parts: list[_Part]) -> Answers:
+    names = {name: number for number, name in enumerate(design.answers)}
+    series = {one.name: number for number, one in enumerate(design.adaptive)}
+    rows = [trial for part in parts for row in part.schedules for trial in row]
+    asked = len(parts[0].schedules[0])
+
+    def joined(of: str) -> si.FloatArray:
+        return np.concatenate([getattr(part, of).ravel() for part in parts])
+
+    def whole(found: list[int]) -> si.IntArray:
+        return np.array(found, dtype=np.int64)
+
+    return Answers(
+        design=design,
+        origin="simulated",
+        people=tuple(f"simulated-{person + 1}" for person in range(participants)),
+        surfaces=tuple(room.surfaces),
+        participant=np.repeat(np.arange(participants), asked),
+        number=whole([one.number for one in rows]),
+        phase=np.array([one.phase for one in rows], dtype=np.str_),
+        display=whole([room.display[one.display] for one in rows]),
+        series=whole([series.get(one.adaptive, -1) for one in rows]),
+        first=joined("first").astype(np.int64),
+        second=joined("second").astype(np.int64),
+        intensity=joined("intensity"),
+        choice=joined("choice").astype(np.int64),
+        right=whole([names.get(one.answer, -1) for one in rows]),
+        estimate=joined("estimate"),
+        response_time=joined("time"),
+    )
