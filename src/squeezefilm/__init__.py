@@ -54,8 +54,8 @@ _NAMES = {
     # Studies
     "plan_study": "study.design.plan",
     "run_study": "report.study.session",
-    "simulate_participants": "study.simulated.participants",
-    "analyze_study": "study.identification.recorded",
+    "simulate_participants": "study.simulated.answers",
+    "analyze_study": "study.tasks.analyze",
     "AdaptiveDesign": "study.adaptive.bayesian",
     "BayesianAdaptive": "study.adaptive.bayesian",
     "fit_psychometric": "study.psychometric.fit",

@@ -124,7 +124,6 @@ if TYPE_CHECKING:
     from squeezefilm.study.conduct.trial_by_trial import Examiner
     from squeezefilm.study.design.plan import StudyPlan
     from squeezefilm.study.design.study_design import NamedDesign
-    from squeezefilm.study.identification.recorded import analyze_study as analyze_study
     from squeezefilm.study.psychometric.fit import PsychometricFit
     from squeezefilm.study.psychometric.function import (
         Axis,
@@ -136,6 +135,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.psychometric.prior import PsychometricPrior as PsychometricPrior
     from squeezefilm.study.simulated.chain_tables import ChainTables
     from squeezefilm.study.simulated.participants import SimulatedStudy
+    from squeezefilm.study.tasks.analyze import analyze_study as analyze_study
     from squeezefilm.texture_file import (
         NamedTexture,
     )

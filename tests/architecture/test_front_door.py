@@ -56,7 +56,7 @@ NAMES = (
     "run_study",
     "save_texture",
     "score_prediction",
-    "simulate_participants",
+    "simulate_matches",
     "solve_film",
     "solve_plate",
     "speed",

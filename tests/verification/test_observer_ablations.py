@@ -15,7 +15,7 @@ from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.participants import SimulatedStudy, simulate_participants
+from squeezefilm.study.simulated.participants import SimulatedStudy, simulate_matches
 
 PEOPLE = 1000
 # Trials of one stimulus: the standard error of a proportion is at most 0.5 % of 100.
@@ -35,7 +35,7 @@ def design_on(name: str, **changed: object) -> StudyDesign:
 
 
 def answers(tables: ChainTables) -> SimulatedStudy:
-    return simulate_participants(tables.design, tables.observer, PEOPLE, 7, tables)
+    return simulate_matches(tables.design, tables.observer, PEOPLE, 7, tables)
 
 
 def right(study: SimulatedStudy) -> np.ndarray:
@@ -127,7 +127,7 @@ def test_a_finger_across_the_stroke_meets_more_of_the_wave() -> None:
 @pytest.mark.nightly
 def test_the_documented_tables_of_both_displays() -> None:
     design, observer = load_design("biet2008-gratings"), load_observer()
-    study = simulate_participants(design, observer, 12, 7)
+    study = simulate_matches(design, observer, 12, 7)
     # A last digit of the chain may tip single answers on another machine: five of 600.
     for index, documented in enumerate((0.702, 0.627)):
         assert study.proportion_correct(index) == pytest.approx(documented, abs=5 / 600)

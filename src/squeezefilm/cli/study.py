@@ -98,19 +98,19 @@ def simulate(
     observer: Observer = "fingertip",
     as_json: AsJson = False,
 ) -> None:
-    """Let simulated participants do a match-to-sample study; every number is simulated."""
+    """Let simulated participants do a study; every number is simulated."""
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.report.study.simulated_page import write_simulated
-    from squeezefilm.report.study.terminal_identification import show_simulated
+    from squeezefilm.report.study.terminal_analysis import show_simulated
     from squeezefilm.second_process import second_process
     from squeezefilm.study.design.study_design import load_design
+    from squeezefilm.study.simulated.answers import simulate_participants
     from squeezefilm.study.simulated.chain_tables import chain_tables
-    from squeezefilm.study.simulated.participants import simulate_participants
 
     planned, people = load_design(design), load_observer(observer)
     with second_process(_load_chain), working(as_json) as step:
         tables = chain_tables(planned, people, progress=step)
-        found = simulate_participants(planned, people, participants, seed, tables)
+        found = simulate_participants(planned, people, participants, seed, tables, step)
         written = None if out is None else write_simulated(found, out, step)
     answer(as_json, found, show_simulated, page=written)
 
@@ -138,7 +138,7 @@ class PowerOptions:
 def power(asked: PowerOptions) -> None:
     """How many people are needed to tell two stimuli apart, by simulated participants."""
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report.study.terminal_identification import show_power
+    from squeezefilm.report.study.terminal_analysis import show_power
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.planned_power import planned_power
 
@@ -305,31 +305,34 @@ def analyze(
         written_to("Folder for numbers, figures and a page per display."),
     ] = None,
     mixed: Annotated[
-        bool, typer.Option("--mixed", help="Mixed models too (needs the extra 'models').")
+        bool,
+        typer.Option(
+            "--mixed",
+            help="Mixed models of statsmodels too, of match-to-sample (needs the extra 'models').",
+        ),
     ] = False,
     seed: Annotated[int, typer.Option(help="Of the bootstraps.")] = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Analyse what was recorded: confusions, intervals, information transfer, sensitivity."""
-    from squeezefilm.report.study.terminal_identification import show_analyses
-    from squeezefilm.study.identification.recorded import analyze_study
+    """Analyse what was recorded: thresholds, sensitivity, exponents or confusions, with
+    intervals, and how people worked."""
+    from squeezefilm.report.study.terminal_analysis import show_analyses
     from squeezefilm.study.record.store import StudyStore
+    from squeezefilm.study.tasks.analyze import analyze_study
 
     with (
         StudyStore.open(store) as found,
         working(as_json) as step,
     ):
         analyses = analyze_study(found, mixed=mixed, seed=seed, progress=step)
-        pages = []
+        page = None
         if out is not None:
-            from squeezefilm.report.study.page import write_study
+            from squeezefilm.report.study.page import write_overview
 
-            pages = [
-                write_study(one, out / display, progress=step) for display, one in analyses.items()
-            ]
+            page = write_overview(analyses, out, step)
     if as_json:
         print_json({display: one.summary() for display, one in analyses.items()})
         return
     show_analyses(analyses)
-    for page in pages:
+    if page is not None:
         typer.echo(f"page: {page}")

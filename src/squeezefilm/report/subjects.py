@@ -37,7 +37,7 @@ from squeezefilm.report.played import figures as played
 from squeezefilm.report.played.page import write_play
 from squeezefilm.report.study import time_figures
 from squeezefilm.report.study.page import FIGURES as FIGURES_OF_STUDY
-from squeezefilm.report.study.page import write_study
+from squeezefilm.report.study.page import TASK_FIGURES, write_study
 from squeezefilm.report.study.simulated_page import FIGURES as FIGURES_OF_SIMULATED
 from squeezefilm.report.study.simulated_page import write_simulated
 from squeezefilm.report.sweep.figures import sweep_figure
@@ -48,8 +48,10 @@ from squeezefilm.report.textures.page import write_render
 from squeezefilm.search.swept import Sweep
 from squeezefilm.study.identification.analysis import IdentificationAnalysis
 from squeezefilm.study.psychometric.fit import PsychometricFit
+from squeezefilm.study.simulated.answers import SimulatedAnswers
 from squeezefilm.study.simulated.participants import SimulatedStudy
 from squeezefilm.study.simulated.planned_power import PlannedPower
+from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.texture_file import TextureFile
 
 if TYPE_CHECKING:
@@ -94,7 +96,9 @@ SUBJECTS: Mapping[type, _Subject] = {
     PlayResult: _Subject({key: _of_session(draw) for key, draw in _PLAYED.items()}, write_play),
     FolderCalibration: _Subject(_by_key(calibration_figures.FIGURES), write_calibration),
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
+    TaskAnalysis: _Subject(_by_key(TASK_FIGURES), write_study),
     SimulatedStudy: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
+    SimulatedAnswers: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
     PlannedPower: _Subject({"power": lambda one: time_figures.power(one.curve)}),
     PsychometricFit: _Subject({"function": time_figures.psychometric_function}),
 }

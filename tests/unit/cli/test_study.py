@@ -77,8 +77,8 @@ def test_simulated_people_are_shown_and_written_where_asked(
     stands_in: StandsIn, tmp_path: Path
 ) -> None:
     tables = stands_in("study.simulated.chain_tables:chain_tables", "the tables")
-    people = stands_in("study.simulated.participants:simulate_participants", ANSWER)
-    shown = stands_in("report.study.terminal_identification:show_simulated")
+    people = stands_in("study.simulated.participants:simulate_matches", ANSWER)
+    shown = stands_in("report.study.terminal_analysis:show_simulated")
     written = stands_in("report.study.simulated_page:write_simulated", tmp_path / "index.html")
     done = run("simulate", PRESET)
     assert done.returncode == 0, done.stderr
@@ -103,7 +103,7 @@ def test_simulated_people_are_shown_and_written_where_asked(
 
 def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path: Path) -> None:
     asked = stands_in("study.simulated.planned_power:planned_power", ANSWER)
-    shown = stands_in("report.study.terminal_identification:show_power")
+    shown = stands_in("report.study.terminal_analysis:show_power")
     drawn = stands_in("report.study.time_figures:power", "the figure")
     stands_in("report.kit.style:png", b"a picture")
     done = run("power", PRESET, "8 mm", "10 mm")
@@ -244,7 +244,7 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
 ) -> None:
     found = {"one": ANSWER, "two": ANSWER}
     asked = stands_in("study.identification.recorded:analyze_study", found)
-    shown = stands_in("report.study.terminal_identification:show_analyses")
+    shown = stands_in("report.study.terminal_analysis:show_analyses")
     written = stands_in("report.study.page:write_study", tmp_path / "index.html")
     done = run("analyze", store)
     assert asked.given[0].path == store

@@ -9,14 +9,16 @@ import base64
 from pathlib import Path
 from typing import Any
 
-from squeezefilm.study.identification.recorded import analyze_study
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.tasks.analyze import StudyAnalysis, analyze_study
+from squeezefilm.study.tasks.findings import TaskAnalysis
 
 
 def analysis_of(path: Path) -> dict[str, Any]:
     """The analysis of what was answered so far, by display: tables, numbers, figures."""
     from squeezefilm.report.kit.style import png
-    from squeezefilm.report.study.page import key_rows, study_figures
+    from squeezefilm.report.study.page import study_figures
+    from squeezefilm.report.study.words import key_rows, read_first
 
     with StudyStore.open(path) as store:
         answers = sum(one["answered"] for one in store.participants())
@@ -27,13 +29,10 @@ def analysis_of(path: Path) -> dict[str, Any]:
             {
                 "display": display,
                 "numbers": [list(row) for row in key_rows(one)],
+                "first": read_first(one),
                 "notes": list(one.notes),
-                "confusion": {
-                    "display": display,
-                    "rows": list(one.matrix.answers),
-                    "columns": list(one.matrix.stimuli),
-                    "counts": one.matrix.counts.tolist(),
-                },
+                "methods": one.methods,
+                **_tables(display, one),
                 "figures": [
                     {"title": title, "png": base64.b64encode(png(figure)).decode()}
                     for key, (title, figure) in study_figures(one).items()
@@ -43,6 +42,31 @@ def analysis_of(path: Path) -> dict[str, Any]:
             for display, one in found.items()
         ],
     }
+
+
+def _tables(display: str, one: StudyAnalysis) -> dict[str, Any]:
+    """Answers by stimulus and by person, or confusions."""
+    from squeezefilm.report.study.words import (
+        CONDITION_HEAD,
+        PERSON_HEAD,
+        condition_rows,
+        person_rows,
+    )
+
+    if isinstance(one, TaskAnalysis):
+        tables = []
+        if one.conditions:
+            tables.append({"title": "Stimuli", "head": CONDITION_HEAD, "rows": condition_rows(one)})
+        tables.append({"title": "People", "head": PERSON_HEAD, "rows": person_rows(one)})
+        return {"tables": tables, "confusion": None}
+    matrix = one.matrix
+    confusion = {
+        "display": display,
+        "rows": list(matrix.answers),
+        "columns": list(matrix.stimuli),
+        "counts": matrix.counts.tolist(),
+    }
+    return {"tables": [], "confusion": confusion}
 
 
 def rehearsed(path: Path, participants: int) -> dict[str, Any]:
@@ -57,10 +81,9 @@ def rehearsed(path: Path, participants: int) -> dict[str, Any]:
 
 def report_of(path: Path) -> dict[str, Any]:
     """The analysis written as pages beside the study's file."""
-    from squeezefilm.report.study.page import write_study
+    from squeezefilm.report.study.page import write_overview
 
     with StudyStore.open(path) as store:
         found = analyze_study(store)
-    folder = path.with_suffix(".results")
-    pages = [write_study(one, folder / display) for display, one in found.items()]
-    return {"pages": [str(page.relative_to(path.parent.parent)) for page in pages]}
+    page = write_overview(found, path.with_suffix(".results"))
+    return {"pages": [str(page.relative_to(path.parent.parent))]}

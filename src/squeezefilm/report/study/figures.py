@@ -18,14 +18,15 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.choice_model import ChoiceModel
     from squeezefilm.study.identification.confusion import ConfusionMatrix
     from squeezefilm.study.identification.sensitivity import OrderedSensitivity
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
-def data_of(analysis: IdentificationAnalysis) -> str:
+def data_of(analysis: StudyAnalysis) -> str:
     """The small print of every figure: whose answers, how many."""
     people = analysis.participants
     return (
         f"{style.plain(analysis.origin, 40)} answers, {style.plain(analysis.name, 40)}; "
-        f"{people} participant{'s' if people != 1 else ''}, {analysis.matrix.trials} trials"
+        f"{people} participant{'s' if people != 1 else ''}, {analysis.trials} trials"
     )
 
 

@@ -1,17 +1,17 @@
-"""`write_study`: identification.json, figures and a page of an identification study."""
+"""`write_study`: numbers, figures and a page of a study's analysis on one display."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm import quantities as si
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
-from squeezefilm.report.kit.numbers import printable, shown
+from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import (
     FigureOf,
+    as_html,
     bullets,
     drawn_figures,
     links,
@@ -23,36 +23,67 @@ from squeezefilm.report.kit.page_style import (
     text_table,
 )
 from squeezefilm.report.study import figures as draw
+from squeezefilm.report.study import task_figures
 from squeezefilm.report.study import time_figures as times
+from squeezefilm.report.study.words import (
+    CONDITION_HEAD,
+    PERSON_HEAD,
+    condition_rows,
+    key_rows,
+    person_rows,
+    read_first,
+)
+from squeezefilm.study.tasks.findings import TaskAnalysis
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
     from squeezefilm.study.identification.power import PowerCurve
-    from squeezefilm.study.identification.proportions import Interval
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
+_TIMES = FigureOf(
+    "times", "Response times", times.response_times, has=lambda one: one.response_times
+)
+_EXPLORATION = FigureOf(
+    "exploration", "Exploration", times.exploration, has=lambda one: one.exploration
+)
 FIGURES = (
     FigureOf("confusion", "Confusion matrix", draw.confusion),
     FigureOf("correct", "Right answers", draw.proportion_correct),
     FigureOf("information", "Information transfer", draw.information),
     FigureOf("sensitivity", "Sensitivity along the stimuli", draw.sensitivity),
     FigureOf("similarities", "Similarities and biases", draw.similarities, file="similarity"),
-    FigureOf("times", "Response times", times.response_times, has=lambda one: one.response_times),
-    FigureOf("exploration", "Exploration", times.exploration, has=lambda one: one.exploration),
+    _TIMES,
+    _EXPLORATION,
 )
 """The figures of an identification study."""
 
+TASK_FIGURES = (
+    FigureOf("answers", "What was answered", task_figures.answers),
+    FigureOf("persons", "Each person", task_figures.persons, has=lambda one: one.persons),
+    FigureOf(
+        "sensitivity",
+        "Sensitivity",
+        task_figures.sensitivity,
+        has=lambda one: [c for c in one.conditions if c.d_prime is not None],
+    ),
+    _TIMES,
+    _EXPLORATION,
+)
+"""The figures of two-interval, same-different and magnitude studies."""
+
 
 def write_study(
-    analysis: IdentificationAnalysis,
+    analysis: StudyAnalysis,
     folder: Path,
     *,
     power: PowerCurve | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Path:
-    """Write numbers, figures and the page of a study into `folder`; the path of index.html.
+    """Write numbers, figures and the page of a study's display into `folder`; the path of
+    index.html.
 
     All is made in memory before the first file is written.
 
@@ -67,25 +98,56 @@ def write_study(
     summary = analysis.summary()
     if power is not None:
         summary["power"] = power
-    files["identification.json"] = json_text(summary)
+    files[_numbers_file(analysis)] = json_text(summary)
     files["index.html"] = study_page(analysis, figures, summary["provenance"])
     tell("writing the report")
     write_folder(folder, files)
     return folder / "index.html"
 
 
+def write_overview(
+    analyses: Mapping[str, StudyAnalysis],
+    folder: Path,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write a page per display, each in its own folder, and one to read first above them."""
+    folder = require_folder(folder)
+    for display, one in analyses.items():
+        write_study(one, folder / display, progress=progress)
+    sections, name = "", ""
+    for display, one in analyses.items():
+        name = printable(one.name).removesuffix(f", {display}")
+        link = f'<p><a href="{escape(display)}/index.html">All numbers and figures</a></p>'
+        sections += section(escape(printable(display)), bullets(read_first(one)) + link)
+    origin = next(iter(analyses.values())).origin
+    text = page(
+        escape(f"{name}: what to read first"),
+        escape(name),
+        f"<b>{escape(printable(origin))}</b> answers, analysed by squeezefilm",
+        sections,
+        "What to read first, by display.",
+    )
+    write_folder(folder, {"index.html": text})
+    return folder / "index.html"
+
+
 def study_figures(
-    analysis: IdentificationAnalysis, power: PowerCurve | None = None
+    analysis: StudyAnalysis, power: PowerCurve | None = None
 ) -> dict[str, tuple[str, Figure]]:
     """The figures by key: heading and drawing. What was not measured has none."""
-    found = drawn_figures(FIGURES, analysis)
+    known = TASK_FIGURES if isinstance(analysis, TaskAnalysis) else FIGURES
+    found = drawn_figures(known, analysis)
     if power is not None:
         found["power"] = ("How many people a study needs", times.power(power))
     return found
 
 
+def _numbers_file(analysis: StudyAnalysis) -> str:
+    return "analysis.json" if isinstance(analysis, TaskAnalysis) else "identification.json"
+
+
 def study_page(
-    analysis: IdentificationAnalysis,
+    analysis: StudyAnalysis,
     figures: dict[str, tuple[str, Figure]],
     provenance: dict[str, Any],
 ) -> str:
@@ -93,87 +155,73 @@ def study_page(
     title = escape(printable(analysis.name))
     head = ("Quantity", "Value", "Remark")
     numbers = text_table(f"{analysis.origin} answers", head, key_rows(analysis))
+    details = _task if isinstance(analysis, TaskAnalysis) else _identification
     sections = (
-        section("Numbers", numbers)
+        section("Read first", bullets(read_first(analysis)))
+        + section("Numbers", numbers)
         + picture_sections(_named(figures))
-        + section("Confusions in numbers", _confusion(analysis))
-        + section("Information transfer by every estimator", _information(analysis))
-        + (section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
-        + section("What could not be computed", bullets(analysis.notes, "Nothing."))
+        + details(analysis)
+        + _worked(analysis)
+        + section("What could not be computed, or needs care", bullets(analysis.notes, "Nothing."))
     )
+    kind = "identification study" if not isinstance(analysis, TaskAnalysis) else analysis.task
     return page(
-        f"{title}: identification study",
+        f"{title}: {kind}",
         title,
         f"<b>{escape(printable(analysis.origin))}</b> answers, analysed by squeezefilm",
         sections,
         f"{stamped(provenance, 'SHA-256 of the answers')} ·\n"
         f"seed of the resampling {escape(str(provenance['seed']))}.\n"
-        f"All numbers: {links(['identification.json'])}.",
+        f"All numbers: {links([_numbers_file(analysis)])}.",
     )
+
+
+def _task(analysis: Any) -> str:
+    found = ""
+    if analysis.conditions:
+        caption = "Answers by stimulus; intervals as the numbers say"
+        found += section(
+            "Stimuli in numbers",
+            text_table(caption, CONDITION_HEAD, condition_rows(analysis)),
+        )
+    caption = f"{analysis.measure} of each person"
+    found += section("People in numbers", text_table(caption, PERSON_HEAD, person_rows(analysis)))
+    if analysis.assumed:
+        found += section("What the simulated answers assume", bullets(analysis.assumed))
+    return found
+
+
+def _identification(analysis: Any) -> str:
+    return (
+        section("Confusions in numbers", _confusion(analysis))
+        + section("Information transfer by every estimator", _information(analysis))
+        + (section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
+    )
+
+
+def _worked(analysis: StudyAnalysis) -> str:
+    """Who attended, and the methods section."""
+    found = ""
+    if analysis.course is not None and analysis.course.attention:
+        rows = [
+            (one.person, f"{one.right} of {one.asked}", f"{one.p_value:.2g}", _judged(one.attended))
+            for one in analysis.course.attention
+        ]
+        caption = "Catch trials; p of no more right answers from a person who gets 95 % right"
+        head = ("Participant", "Right", "p", "Judged")
+        found += section("Attention", text_table(caption, head, rows))
+    if analysis.methods:
+        found += section("Methods, for a paper", f"<p>{as_html(analysis.methods)}</p>")
+    return found
+
+
+def _judged(attended: bool) -> str:
+    return "attended" if attended else "doubtful"
 
 
 def _named(figures: dict[str, tuple[str, Figure]]) -> dict[str, tuple[str, Figure]]:
     """The figures by the name of their file."""
     return {f"study-{key}": one for key, one in figures.items()}
-
-
-def _between(interval: Interval | None, scale: float = 1.0, unit: str = "") -> str:
-    if interval is None:
-        return "–"
-    low, high = scale * interval.low, scale * interval.high
-    return f"{low:.3g} to {high:.3g}{unit} ({interval.method}, {100 * interval.level:g} %)"
-
-
-def key_rows(analysis: IdentificationAnalysis) -> list[tuple[str, str, str]]:
-    """The main numbers: what, value, remark; for the page and for a terminal."""
-    best, fit = analysis.information.best, analysis.sensitivity
-    posterior = analysis.posterior.proportion_correct
-    rows = [
-        ("Participants", f"{analysis.participants}", f"{analysis.matrix.trials} trials"),
-        *(
-            (
-                "Proportion correct",
-                f"{100 * analysis.proportion_correct:.3g} %",
-                _between(interval, 100, " %"),
-            )
-            for interval in (*analysis.intervals, posterior)
-            if interval is not None
-        ),
-        ("Guessing", f"{100 * analysis.matrix.chance:.3g} %", ""),
-        ("p against guessing", f"{analysis.chance_p:.2g}", "exact binomial, one-sided"),
-        (
-            "p against unrelated answers",
-            f"{analysis.permutation_p:.2g}",
-            "permutation within participants, one-sided",
-        ),
-        (
-            "Information transfer",
-            f"{best.estimate:.3g} bit of {analysis.information.greatest:.3g}",
-            f"{best.name}; {_between(best.interval)}",
-        ),
-    ]
-    if fit is not None:
-        rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", "equal-variance Thurstone model"))
-        rows += [
-            (
-                f"d′ {one} – {other}",
-                f"{d:.2f}",
-                f"{low:.2f} to {high:.2f} ({fit.interval_method}, {100 * fit.level:g} %)",
-            )
-            for one, other, d, low, high in zip(
-                analysis.matrix.stimuli[:-1],
-                analysis.matrix.stimuli[1:],
-                fit.d_prime,
-                fit.low,
-                fit.high,
-                strict=True,
-            )
-        ]
-    if analysis.ex_gaussian is not None:
-        g = analysis.ex_gaussian
-        texts = [shown(value, si.Unit("s"), 3) for value in (g.mean, g.spread, g.tail)]
-        rows.append(("Response time μ, σ, τ", ", ".join(texts), "ex-Gaussian, all trials"))
-    return rows
 
 
 def _confusion(analysis: IdentificationAnalysis) -> str:

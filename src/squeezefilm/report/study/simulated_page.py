@@ -7,8 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from squeezefilm.errors import InputError
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import (
@@ -24,6 +23,7 @@ from squeezefilm.report.kit.page_style import (
 )
 from squeezefilm.report.study import observer_figures
 from squeezefilm.study.record.tables import Column, csv_text
+from squeezefilm.study.simulated.answers import SimulatedAnswers
 from squeezefilm.study.simulated.participants import SimulatedStudy
 
 if TYPE_CHECKING:
@@ -45,6 +45,18 @@ COLUMNS = (
     Column("choice", "Name of the grating answered"),
     Column("felt", "Whether anything was felt", kind="truth"),
     Column("response_time_s", "Of a model with assumed numbers", "s", "number"),
+)
+ANSWER_COLUMNS = (
+    *COLUMNS[:2],
+    *COLUMNS[3:5],
+    Column("phase", "practice, main or catch"),
+    COLUMNS[5],
+    Column("second_stimulus", "Name of the second stimulus, if there are two"),
+    Column("intensity", "Of an adaptive comparison, in parts of the reference", "", "number"),
+    Column("choice", "What was answered"),
+    Column("estimate", "Number given", "", "number"),
+    Column("correct", "1 where it was right, 0 where not", "", "number"),
+    COLUMNS[8],
 )
 REASONS = (
     "Simulated",
@@ -76,15 +88,21 @@ FIGURES = (
 
 
 def write_simulated(
-    study: SimulatedStudy, folder: Path, progress: Callable[[str], None] | None = None
+    study: SimulatedStudy | SimulatedAnswers,
+    folder: Path,
+    progress: Callable[[str], None] | None = None,
 ) -> Path:
     """Write simulated.json, trials.csv, two figures and a page; the path of index.html.
 
+    Of another task than match-to-sample the page is the one of its analysis, with each display's
+    in a folder of its own.
     For each display whose gratings and stimuli pair up, its folder holds the full analysis.
     Raises `InputError` for a folder that cannot be written to.
     """
     tell = progress or (lambda _: None)
     folder = require_folder(folder)
+    if isinstance(study, SimulatedAnswers):
+        return _write_answers(study, folder, tell)
     summary = study.summary()
     tell("figures")
     figures = drawn_figures(FIGURES, study)
@@ -98,32 +116,35 @@ def write_simulated(
     return folder / "index.html"
 
 
+def _write_answers(study: SimulatedAnswers, folder: Path, tell: Callable[[str], None]) -> Path:
+    from squeezefilm.report.study.page import write_overview
+
+    tell("psychometric functions and figures")
+    page = write_overview(study.analyses, folder, tell)
+    rows = [{"origin": "simulated", **row} for row in study.rows()]
+    files = {
+        **picture_files(drawn_figures(FIGURES, study)),
+        "simulated.json": json_text(study.summary()),
+        "trials.csv": csv_text(rows, ANSWER_COLUMNS),
+    }
+    write_folder(folder, files)
+    return page
+
+
 def _analyses(study: SimulatedStudy, folder: Path, tell: Callable[[str], None]) -> dict[str, str]:
     from squeezefilm.report.study.page import write_study
-    from squeezefilm.study.identification.analysis import analyze_identification
-    from squeezefilm.study.simulated.participants import right_answers
+    from squeezefilm.study.simulated.answers import answers_of
+    from squeezefilm.study.tasks.analyze import analyze_answers
 
     design = study.tables.design
-    right, names = right_answers(design), [one.name for one in design.stimuli]
-    if len(design.alternatives) != len(names) or sorted(right) != list(range(len(names))):
+    try:
+        analyses = analyze_answers(answers_of(study), design.name, seed=study.seed, progress=tell)
+    except InputError:
+        # Gratings and stimuli do not pair up: nothing is right or wrong.
         return {}
-    place = {int(answer): stimulus for stimulus, answer in enumerate(right)}
     found = {}
-    for index, name in enumerate(design.displays):
-        tell(f"analysis of {name}")
-        here = study.display == index
-        who = np.nonzero(here)[0]
-        analysis = analyze_identification(
-            who,
-            study.stimulus[here],
-            [place[int(one)] for one in study.choice[here]],
-            names,
-            name=f"{design.name}, {name}",
-            origin=study.origin,
-            response_time=study.response_time[here],
-            seed=study.seed,
-        )
-        page = write_study(analysis, folder / f"display-{index + 1}")
+    for name, analysis in analyses.items():
+        page = write_study(analysis, folder / f"display-{design.displays.index(name) + 1}")
         found[name] = f"{page.parent.name}/{page.name}"
     return found
 
@@ -160,7 +181,7 @@ def confusion_rows(study: SimulatedStudy, index: int) -> tuple[list[str], list[l
     return ["Answered \\ simulated", *matrix.stimuli], rows
 
 
-def reason_rows(study: SimulatedStudy, index: int) -> list[list[str]]:
+def reason_rows(study: SimulatedStudy | SimulatedAnswers, index: int) -> list[list[str]]:
     """What the model sees of each stimulus on a display, as texts."""
     return [
         [

@@ -12,13 +12,13 @@ from squeezefilm.report.study.figures import data_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.study.identification.analysis import IdentificationAnalysis
     from squeezefilm.study.identification.power import PowerCurve
     from squeezefilm.study.psychometric.fit import PsychometricFit
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
 @style.drawn
-def response_times(analysis: IdentificationAnalysis) -> Figure:
+def response_times(analysis: StudyAnalysis) -> Figure:
     """Response times by stimulus, and the ex-Gaussian of all."""
     found = analysis.response_times
     if not found:
@@ -55,7 +55,7 @@ def response_times(analysis: IdentificationAnalysis) -> Figure:
 
 
 @style.drawn
-def exploration(analysis: IdentificationAnalysis) -> Figure:
+def exploration(analysis: StudyAnalysis) -> Figure:
     """Each quantity of exploration by stimulus, means over people with intervals."""
     found = {key: rows for key, rows in analysis.exploration.items() if rows}
     if not found:

@@ -20,6 +20,7 @@ from squeezefilm.study.identification.choice_model import (
     perceptual_map,
 )
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
+from squeezefilm.study.identification.course import Course
 from squeezefilm.study.identification.exploration import ConditionMean, condition_means
 from squeezefilm.study.identification.information import InformationTransfer, information_transfer
 from squeezefilm.study.identification.mixed_models import MixedModel, mixed_model
@@ -78,6 +79,8 @@ class IdentificationAnalysis(Result):
         mixed: mixed models; None if not asked for.
         notes: what could not be computed, and why.
         seed: of all resampling.
+        course: response times, drift and attention; None of trials without a design.
+        methods: the methods section; empty likewise.
     """
 
     name: str
@@ -100,12 +103,19 @@ class IdentificationAnalysis(Result):
     mixed: MixedModel | None
     notes: tuple[str, ...]
     seed: int
+    course: Course | None = None
+    methods: str = ""
     _shown: ClassVar[str] = "name origin participants proportion_correct"
 
     @property
     def participants(self) -> int:
         """How many people answered."""
         return int(self.counts.shape[0])
+
+    @property
+    def trials(self) -> int:
+        """How many main trials."""
+        return int(self.matrix.trials)
 
     @property
     def proportion_correct(self) -> si.Dimensionless:
@@ -154,6 +164,8 @@ class IdentificationAnalysis(Result):
             "ex_gaussian": self.ex_gaussian,
             "exploration": self.exploration,
             "mixed_model": self.mixed,
+            "course": self.course,
+            "methods": self.methods,
             "notes": self.notes,
             "provenance": stamp(
                 {"name": self.name, "origin": self.origin, "counts": self.counts}, self.seed

@@ -19,13 +19,12 @@ from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
-from squeezefilm.perception.observer import NamedObserver, Observer
+from squeezefilm.perception.observer import Observer
 from squeezefilm.perception.perceived import perceived
 from squeezefilm.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.results import Result, stamp, to_json
-from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
+from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
 from squeezefilm.study.identification.power import ParticipantSimulator
@@ -160,10 +159,9 @@ class SimulatedStudy(Result):
         ]
 
 
-@reads_text
-def simulate_participants(
-    design: NamedDesign,
-    observer: NamedObserver,
+def simulate_matches(
+    design: StudyDesign,
+    observer: Observer,
     participants: int,
     seed: int,
     tables: ChainTables | None = None,
@@ -184,11 +182,12 @@ def simulate_participants(
     Raises:
         InputError: a number out of range, another task, or tables of another design or observer.
     """
-    si.require("participants", participants, at_least=1, at_most=_MOST_PEOPLE)
-    si.require("seed", seed, at_least=0)
-    most = int(SIMULATED_TRIALS.most // design.most_trials)
-    enough = f"of {design.most_trials} trials each, at most {most} people are simulated"
-    require_within(SIMULATED_TRIALS, participants * design.most_trials, enough=enough)
+    require_people(design, participants, seed)
+    if design.task != "match-to-sample":
+        raise InputError(
+            f"task = '{design.task}' has no gratings to match; take simulate_participants",
+            quantity="task",
+        )
     found = chain_tables(design, observer) if tables is None else tables
     if found.design != design or found.observer != observer:
         raise InputError("the tables are of another design or observer; leave them out")
@@ -203,6 +202,16 @@ def simulate_participants(
     return SimulatedStudy(
         found, seed, display[rows], stimulus[rows], choice, number[rows], felt, times, finger
     )
+
+
+def require_people(design: StudyDesign, participants: int, seed: int) -> None:
+    """Refuse a number of people or a seed out of range, and more trials than are simulated at once.
+    Raises `InputError`."""
+    si.require("participants", participants, at_least=1, at_most=_MOST_PEOPLE)
+    si.require("seed", seed, at_least=0)
+    most = int(SIMULATED_TRIALS.most // design.most_trials)
+    enough = f"of {design.most_trials} trials each, at most {most} people are simulated"
+    require_within(SIMULATED_TRIALS, participants * design.most_trials, enough=enough)
 
 
 def right_answers(design: StudyDesign) -> si.IntArray:

@@ -14,7 +14,7 @@ from squeezefilm.results import stamp, to_json
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.power import PowerCurve, distinction, power_curve
 from squeezefilm.study.simulated.chain_tables import chain_tables
-from squeezefilm.study.simulated.participants import right_answers, simulate_participants
+from squeezefilm.study.simulated.participants import right_answers, simulate_matches
 
 SIZES = (2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32, 48)
 POOL = 4000
@@ -80,7 +80,7 @@ def planned_power(
     tell = progress or (lambda _: None)
     tables = chain_tables(alone, observer, progress=tell)
     tell(f"{POOL} simulated participants")
-    pool = simulate_participants(alone, observer, POOL, seed, tables)
+    pool = simulate_matches(alone, observer, POOL, seed, tables)
     curve = power_curve(
         pool.people(),
         lambda counts: distinction(counts, a, b).p_value,

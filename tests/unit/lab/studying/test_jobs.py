@@ -19,9 +19,9 @@ from squeezefilm.report.kit import style
 from squeezefilm.report.study import page
 from squeezefilm.report.study.page import key_rows
 from squeezefilm.study.conduct import rehearsal
-from squeezefilm.study.identification.recorded import analyze_study
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import trial_table
+from squeezefilm.study.tasks.analyze import analyze_study
 
 from ...study.scripted import gratings, run_through
 

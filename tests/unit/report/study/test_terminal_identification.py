@@ -8,7 +8,7 @@ from tests.unit.report.printed import printed
 
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.study.page import key_rows
-from squeezefilm.report.study.terminal_identification import show_analyses, show_power
+from squeezefilm.report.study.terminal_analysis import show_analyses, show_power
 from squeezefilm.study.identification.analysis import (
     IdentificationAnalysis,
     analyze_identification,

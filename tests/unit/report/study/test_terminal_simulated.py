@@ -9,7 +9,7 @@ from squeezefilm.perception.observer import load_observer
 from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.perception.senses import Candidates
 from squeezefilm.report.study.simulated_page import LEGEND, REMARK
-from squeezefilm.report.study.terminal_identification import show_simulated
+from squeezefilm.report.study.terminal_analysis import show_simulated
 from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
 from squeezefilm.study.simulated.participants import SimulatedStudy
 

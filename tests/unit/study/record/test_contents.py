@@ -15,13 +15,13 @@ from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
-from squeezefilm.study.identification.recorded import analyze_study
 from squeezefilm.study.record.contents import is_trace, require_identifier
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import FORMATS, export_study
 from squeezefilm.study.record.merge import merge
 from squeezefilm.study.record.schema import TABLES
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.tasks.analyze import analyze_study
 
 from ..scripted import Bench, Script, gratings, run_through, session, staircase
 

@@ -17,7 +17,6 @@ from squeezefilm.errors import InputError, RecordError
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
-from squeezefilm.study.identification.recorded import analyze_study
 from squeezefilm.study.record import database as database_module
 from squeezefilm.study.record import store as store_module
 from squeezefilm.study.record.database import (
@@ -35,6 +34,7 @@ from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.merge import merge
 from squeezefilm.study.record.schema import APPLICATION_ID, VERSION
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.tasks.analyze import analyze_study
 
 from ..scripted import Script, gratings, run_through, session
 

@@ -15,7 +15,7 @@ from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated.chain_tables import Causes, ChainTables, chain_tables
-from squeezefilm.study.simulated.participants import right_answers, simulate_participants
+from squeezefilm.study.simulated.participants import right_answers, simulate_matches
 
 PERIODS = np.array([0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3])
 DESIGN = dataclasses.replace(load_design("biet2008-gratings"), displays=("biet2008-stator",))
@@ -47,7 +47,7 @@ def tables(d_prime: float, observer: Observer = EXACT, design: StudyDesign = DES
 
 
 def run(d_prime: float, people: int = 600, seed: int = 3, observer: Observer = EXACT):  # type: ignore[no-untyped-def]
-    return simulate_participants(DESIGN, observer, people, seed, tables(d_prime, observer))
+    return simulate_matches(DESIGN, observer, people, seed, tables(d_prime, observer))
 
 
 def test_8_against_10_mm_as_three_independent_percepts_have_it() -> None:
@@ -116,7 +116,7 @@ def test_what_cannot_be_simulated_is_refused() -> None:
     with pytest.raises(InputError, match="participants"):
         run(2.0, 0)
     with pytest.raises(InputError, match="another design"):
-        simulate_participants(DESIGN, load_observer(), 2, 0, tables(1.0))
+        simulate_matches(DESIGN, load_observer(), 2, 0, tables(1.0))
     with pytest.raises(InputError, match="1 displays"):
         chain_tables(DESIGN, EXACT, displays=())
 

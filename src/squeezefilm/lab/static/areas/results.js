@@ -10,7 +10,7 @@ export async function show(place, lab) {
 const EXPLAINED = [
   ["Participants", "participants"], ["Proportion correct", "proportion_correct"], ["Guessing", "guessing"],
   ["p against guessing", "chance_p"], ["p against unrelated", "permutation_p"], ["Information transfer", "information_transfer"],
-  ["Total sensitivity", "total_sensitivity"], ["d′", "d_prime"], ["Response time", "response_time"],
+  ["Weber fraction", "weber_fraction"], ["Exponent", "exponent"], ["Drift", "drift"], ["Catch trials", "catch_trials"], ["Total sensitivity", "total_sensitivity"], ["d′", "d_prime"], ["Response time", "response_time"],
 ];
 
 /** The glossary's entry for a row of the analysis. */
@@ -123,15 +123,23 @@ class ResultsView {
   }
 
   display(one) {
-    const table = confusionCard(one.confusion);
-    table.querySelector("h2").textContent = `Confusions, ${one.display}`;
-    return [table,
+    const first = element("section", { class: "card first" }, element("h2", { text: `Read first, ${one.display}` }),
+      element("ul", {}, ...one.first.map((text) => element("li", { text }))));
+    const tables = one.tables.map(({ title, head, rows }) => element("section", { class: "card" }, element("h2", { text: `${title}, ${one.display}` }),
+      element("div", { class: "scroll" }, element("table", {}, element("tr", {}, ...head.map((text) => element("th", { text }))),
+        ...rows.map((row) => element("tr", {}, ...row.map((text, place) => element(place ? "td" : "th", { text }))))))));
+    if (one.confusion) {
+      tables.push(confusionCard(one.confusion));
+      tables.at(-1).querySelector("h2").textContent = `Confusions, ${one.display}`;
+    }
+    const methods = one.methods ? [element("section", { class: "card" }, element("h2", { text: "Methods, for a paper" }), element("p", { text: one.methods }))] : [];
+    return [first, ...tables,
       element("section", { class: "card" }, element("h2", { text: `Numbers, ${one.display}` }),
         element("div", { class: "scroll" }, element("table", {}, ...one.numbers.map(([name, value, note]) => element("tr", {},
           element("th", { text: name, tabindex: "0", "data-tip": explained(name) }), element("td", { text: value }), element("td", { class: "muted", text: note }))))),
         ...one.notes.map((text) => element("p", { class: "warning", text }))),
       element("section", { class: "card figures" }, element("h2", { text: `Figures, ${one.display}` }),
-        ...one.figures.map(({ title, png }) => element("figure", {}, element("img", { src: `data:image/png;base64,${png}`, alt: title }), element("figcaption", { text: title }))))];
+        ...one.figures.map(({ title, png }) => element("figure", {}, element("img", { src: `data:image/png;base64,${png}`, alt: title }), element("figcaption", { text: title })))), ...methods];
   }
 
   showPeople(study) {

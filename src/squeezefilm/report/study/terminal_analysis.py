@@ -1,4 +1,4 @@
-"""What the terminal shows of an analysed identification study, and of simulated participants."""
+"""What the terminal shows of an analysed study, and of simulated participants."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from squeezefilm.report.kit.terminal import heading, plain_console, table
-from squeezefilm.report.study.page import key_rows
 from squeezefilm.report.study.simulated_page import (
     LEGEND,
     REASONS,
@@ -14,32 +13,61 @@ from squeezefilm.report.study.simulated_page import (
     confusion_rows,
     reason_rows,
 )
+from squeezefilm.report.study.words import (
+    CONDITION_HEAD,
+    PERSON_HEAD,
+    condition_rows,
+    key_rows,
+    person_rows,
+    read_first,
+)
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.simulated.answers import SimulatedAnswers
     from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.study.simulated.planned_power import PlannedPower
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
+
+_SHOWN_PEOPLE = 24
+"""Of more people the terminal shows the population only."""
 
 
-def show_analyses(analyses: Mapping[str, IdentificationAnalysis]) -> None:
-    """Print confusion table and main numbers of each display."""
+def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
+    """Print what to read first of each display, its answers and its main numbers."""
+    from squeezefilm.study.tasks.findings import TaskAnalysis
+
     console = plain_console()
     for display, one in analyses.items():
-        matrix = one.matrix
         heading(console, f"{display}: answers of {one.origin}")
-        percent = matrix.percent
-        table(
-            console,
-            ("grating chosen", *matrix.stimuli),
-            [
-                (answer, *(f"{percent[i, j]:.0f} %" for j in range(len(matrix.stimuli))))
-                for i, answer in enumerate(matrix.answers)
-            ],
-            fixed=(0,),
-        )
+        for sentence in read_first(one):
+            console.print(sentence, highlight=False)
+        if isinstance(one, TaskAnalysis):
+            if one.conditions:
+                table(console, CONDITION_HEAD, condition_rows(one), fixed=(0,))
+            if len(one.persons) <= _SHOWN_PEOPLE:
+                table(console, PERSON_HEAD, person_rows(one), fixed=(0,))
+        else:
+            _show_confusion(console, one)
         table(console, ("", "", ""), key_rows(one), fixed=(0,))
         for note in one.notes:
             console.print(f"  {note}", style="dim", highlight=False)
+
+
+def _show_confusion(console: Console, one: IdentificationAnalysis) -> None:
+    matrix = one.matrix
+    percent = matrix.percent
+    table(
+        console,
+        ("grating chosen", *matrix.stimuli),
+        [
+            (answer, *(f"{percent[i, j]:.0f} %" for j in range(len(matrix.stimuli))))
+            for i, answer in enumerate(matrix.answers)
+        ],
+        fixed=(0,),
+    )
 
 
 def show_power(found: PlannedPower) -> None:
@@ -68,9 +96,22 @@ def show_power(found: PlannedPower) -> None:
     )
 
 
-def show_simulated(study: SimulatedStudy) -> None:
-    """Print each display's table of answers and the model's reasons."""
+def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
+    """Print each display's answers and the model's reasons, or what their analysis says."""
+    from squeezefilm.study.simulated.answers import SimulatedAnswers
+    from squeezefilm.study.simulated.judgements import ASSUMED
+
     console = plain_console()
+    if isinstance(study, SimulatedAnswers):
+        show_analyses(study.analyses)
+        console.print("SIMULATED: nobody answered. Assumed beyond the observer's file:")
+        for said in ASSUMED[study.answers.design.task]:
+            console.print(f"  {said}", highlight=False)
+        for display, rows in ((d, reason_rows(study, i)) for i, d in enumerate(study.analyses)):
+            heading(console, f"{display}: what the model sees of each stimulus")
+            table(console, REASONS, rows)
+        console.print(LEGEND)
+        return
     for index, name in enumerate(study.tables.design.displays):
         heading(
             console,

@@ -1,0 +1,301 @@
+"""An analysed study in words: what to read first, and the main numbers, for page and terminal."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from squeezefilm import quantities as si
+from squeezefilm.report.kit.numbers import shown
+
+if TYPE_CHECKING:
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.course import Course
+    from squeezefilm.study.identification.proportions import Interval
+    from squeezefilm.study.identification.response_times import ExGaussian
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
+    from squeezefilm.study.tasks.findings import Estimate, TaskAnalysis
+
+Rows = list[tuple[str, str, str]]
+_SURE = 0.05
+
+
+def read_first(analysis: StudyAnalysis) -> list[str]:
+    """What somebody with a minute should know, in sentences."""
+    from squeezefilm.study.tasks.findings import TaskAnalysis
+
+    people = f"{analysis.participants} {_people(analysis)}"
+    said = [f"{people} answered {analysis.trials} main trials."]
+    if isinstance(analysis, TaskAnalysis):
+        said += _task_first(analysis)
+    else:
+        said += _identification_first(analysis)
+    if analysis.course is not None:
+        said += _course_first(analysis.course)
+    if analysis.notes:
+        count = len(analysis.notes)
+        said.append(
+            f"{count} {'remark stands' if count == 1 else 'remarks stand'} at the end: read "
+            f"{'it' if count == 1 else 'them'} before quoting anything."
+        )
+    return said
+
+
+def _people(analysis: StudyAnalysis) -> str:
+    kind = "simulated participant" if "simulated" in analysis.origin else "participant"
+    return kind if analysis.participants == 1 else f"{kind}s"
+
+
+def _identification_first(analysis: IdentificationAnalysis) -> list[str]:
+    interval, best = analysis.interval, analysis.information.best
+    low, high = 100 * interval.low, 100 * interval.high
+    chance = 100 * analysis.matrix.chance
+    above = "above" if interval.low > analysis.matrix.chance else "not surely above"
+    return [
+        f"{100 * analysis.proportion_correct:.3g} % of the answers are right ({low:.3g} to "
+        f"{high:.3g} % at {100 * interval.level:g} %), which is {above} guessing ({chance:.3g} %).",
+        f"The answers carry {best.estimate:.2g} of {analysis.information.greatest:.3g} bit about "
+        "the stimulus.",
+    ]
+
+
+def _task_first(analysis: TaskAnalysis) -> list[str]:
+    if analysis.pooled is None:
+        return [f"No {analysis.measure} could be computed."]
+    found = analysis.pooled
+    if analysis.measure == "exponent":
+        meaning = (
+            f"Numbers grow with {_JUDGED[analysis.judged]} to the power of {estimate_words(found)}."
+        )
+    else:
+        meaning = (
+            f"A typical person tells a difference of {estimate_words(found, 100, ' %')} in "
+            f"{_JUDGED[analysis.judged]} in 75 % of two intervals: the Weber fraction."
+        )
+    said = [meaning]
+    if analysis.spread is not None:
+        spread = analysis.spread
+        what = "exponents" if analysis.measure == "exponent" else "logarithms of it"
+        said.append(
+            f"People differ: their {what} spread by {spread.value:.2g} ({spread.low:.2g} to "
+            f"{spread.high:.2g})."
+        )
+    return said
+
+
+_JUDGED = {
+    "spatial_period": "spatial period",
+    "friction_depth": "friction change",
+    "ridge_share": "ridge share",
+    "orientation": "orientation",
+}
+
+
+def _course_first(course: Course) -> list[str]:
+    said = []
+    for one in course.drift:
+        if one.p_value < _SURE:
+            word = "rises" if one.change > 0 else "falls"
+            said.append(
+                f"The {one.quantity} {word} by {abs(one.change):.2g} over the session "
+                f"(p = {one.p_value:.1g}): people learned, or tired."
+            )
+    if course.attention:
+        missed = sum(not one.attended for one in course.attention)
+        said.append(
+            f"{missed} of {len(course.attention)} people missed more catch trials than one who "
+            "attends."
+            if missed
+            else "Everybody's catch trials are those of people who attend."
+        )
+    return said
+
+
+def estimate_words(found: Estimate, scale: float = 1.0, unit: str = "") -> str:
+    """Like "0.12 (0.1 to 0.15 at 95 %)"."""
+    value = f"{scale * found.value:.3g}{unit}"
+    if math.isnan(found.low):
+        return f"{value} (no interval)"
+    low, high = scale * found.low, scale * found.high
+    return f"{value} ({low:.3g} to {high:.3g}{unit} at {100 * found.level:g} %)"
+
+
+def key_rows(analysis: StudyAnalysis) -> Rows:
+    """The main numbers: what, value, remark."""
+    from squeezefilm.study.tasks.findings import TaskAnalysis
+
+    rows = [("Participants", f"{analysis.participants}", f"{analysis.trials} main trials")]
+    if isinstance(analysis, TaskAnalysis):
+        rows += _task_rows(analysis)
+    else:
+        rows += _identification_rows(analysis)
+    if analysis.ex_gaussian is not None:
+        rows.append(_time_row(analysis.ex_gaussian))
+    return rows + course_rows(analysis.course)
+
+
+def _time_row(fit: ExGaussian) -> tuple[str, str, str]:
+    texts = [shown(value, si.Unit("s"), 3) for value in (fit.mean, fit.spread, fit.tail)]
+    return "Response time μ, σ, τ", ", ".join(texts), "ex-Gaussian, all trials"
+
+
+def course_rows(course: Course | None) -> Rows:
+    """Drift and attention, as `key_rows` has rows."""
+    if course is None:
+        return []
+    rows = []
+    for one in course.drift:
+        value = f"{one.change:+.2g}"
+        said = "one person: no interval"
+        if not math.isnan(one.low):
+            said = f"{one.low:+.2g} to {one.high:+.2g}, p = {one.p_value:.2g} (t over people)"
+        rows.append((f"Drift of the {one.quantity}", value, said))
+    if course.attention:
+        right = sum(one.right for one in course.attention)
+        asked = sum(one.asked for one in course.attention)
+        missed = [one.person for one in course.attention if not one.attended]
+        rows.append(
+            (
+                "Catch trials right",
+                f"{right} of {asked}",
+                f"doubtful: {', '.join(missed) or 'nobody'}",
+            )
+        )
+    return rows
+
+
+def _task_rows(analysis: TaskAnalysis) -> Rows:
+    percent = analysis.measure == "Weber fraction"
+    scale, unit = (100.0, " %") if percent else (1.0, "")
+    rows = []
+    for name, found in (
+        (analysis.measure.capitalize(), analysis.pooled),
+        *analysis.more.items(),
+    ):
+        if found is None:
+            continue
+        s, u = (scale, unit) if name.lower() == analysis.measure.lower() else _scale_of(name)
+        low, high = s * found.low, s * found.high
+        between = f"{low:.3g} to {high:.3g}{u}" if not math.isnan(low) else "no interval"
+        rows.append(
+            (
+                name[0].upper() + name[1:],
+                f"{s * found.value:.3g}{u}",
+                f"{between} ({found.method}, {100 * found.level:g} %)",
+            )
+        )
+    if analysis.spread is not None:
+        spread = analysis.spread
+        what = "ln(Weber fraction)" if percent else "the exponent"
+        rows.append(
+            (
+                f"Spread of {what} over people",
+                f"{spread.value:.2g}",
+                f"{spread.low:.2g} to {spread.high:.2g} "
+                f"({spread.method}, {100 * spread.level:g} %)",
+            )
+        )
+    return rows
+
+
+def _scale_of(name: str) -> tuple[float, str]:
+    """Shares and differences in parts are shown in per cent, other numbers as they are."""
+    parts = ("bias", "point", "reversals", "false alarms")
+    return (100.0, " %") if name.startswith(parts) else (1.0, "")
+
+
+def between(interval: Interval | None, scale: float = 1.0, unit: str = "") -> str:
+    """Both ends, the method and the level; a dash for none."""
+    if interval is None:
+        return "–"
+    low, high = scale * interval.low, scale * interval.high
+    return f"{low:.3g} to {high:.3g}{unit} ({interval.method}, {100 * interval.level:g} %)"
+
+
+def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
+    best, fit = analysis.information.best, analysis.sensitivity
+    posterior = analysis.posterior.proportion_correct
+    rows = [
+        *(
+            (
+                "Proportion correct",
+                f"{100 * analysis.proportion_correct:.3g} %",
+                between(interval, 100, " %"),
+            )
+            for interval in (*analysis.intervals, posterior)
+            if interval is not None
+        ),
+        ("Guessing", f"{100 * analysis.matrix.chance:.3g} %", ""),
+        ("p against guessing", f"{analysis.chance_p:.2g}", "exact binomial, one-sided"),
+        (
+            "p against unrelated answers",
+            f"{analysis.permutation_p:.2g}",
+            "permutation within participants, one-sided",
+        ),
+        (
+            "Information transfer",
+            f"{best.estimate:.3g} bit of {analysis.information.greatest:.3g}",
+            f"{best.name}; {between(best.interval)}",
+        ),
+    ]
+    if fit is not None:
+        rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", "equal-variance Thurstone model"))
+        rows += [
+            (
+                f"d′ {one} – {other}",
+                f"{d:.2f}",
+                f"{low:.2f} to {high:.2f} ({fit.interval_method}, {100 * fit.level:g} %)",
+            )
+            for one, other, d, low, high in zip(
+                analysis.matrix.stimuli[:-1],
+                analysis.matrix.stimuli[1:],
+                fit.d_prime,
+                fit.low,
+                fit.high,
+                strict=True,
+            )
+        ]
+    return rows
+
+
+CONDITION_HEAD = ("Stimulus", "Value", "Trials", "People", "Answers", "d′")
+"""Of `condition_rows`."""
+
+
+def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
+    """Each comparison or stimulus: its answers with their interval, and d′."""
+    unit = si.Unit({"spatial_period": "m", "orientation": "rad"}.get(analysis.judged, "1"))
+    rows: list[tuple[str, ...]] = []
+    for one in analysis.conditions:
+        answers = one.magnitude or one.share
+        scale, said = (1.0, "") if one.magnitude is not None else (100.0, " %")
+        rows.append(
+            (
+                one.name,
+                shown(one.value, unit, 3),
+                f"{one.trials}",
+                f"{one.participants}",
+                "–" if answers is None else estimate_words(answers, scale, said),
+                "–" if one.d_prime is None else estimate_words(one.d_prime),
+            )
+        )
+    return rows
+
+
+PERSON_HEAD = ("Participant", "Estimate", "Interval", "Trials", "Remark")
+"""Of `person_rows`."""
+
+
+def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
+    """Each person's Weber fraction or exponent."""
+    scale, unit = (100.0, " %") if analysis.measure == "Weber fraction" else (1.0, "")
+    return [
+        (
+            one.person,
+            f"{scale * one.estimate.value:.3g}{unit}",
+            f"{scale * one.estimate.low:.3g} to {scale * one.estimate.high:.3g}{unit}",
+            f"{one.trials}",
+            "not bounded by the answers alone" if one.bounded else "",
+        )
+        for one in analysis.persons
+    ]

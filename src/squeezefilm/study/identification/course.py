@@ -1,0 +1,115 @@
+"""How people worked: drift over the session, and whether they attended."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from squeezefilm import quantities as si
+from squeezefilm.study.record.answers import Answers
+
+ATTENDS: si.Dimensionless = 0.95
+"""Share of catch trials that a person who attends gets right; assumed."""
+_DOUBTFUL = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """How something changed from a person's first trial to their last, over people.
+
+    Attributes:
+        quantity: what changed, in words.
+        change: mean over people of each one's slope by least squares, over the whole session, in
+            the quantity's unit.
+        low, high: its t interval over people at `level`; NaN for one person.
+        p_value: of no change, two-sided; NaN for one person.
+        participants: with ten trials or more.
+    """
+
+    quantity: str
+    change: float
+    low: float
+    high: float
+    level: si.Dimensionless
+    p_value: si.Dimensionless
+    participants: int
+
+
+@dataclass(frozen=True, slots=True)
+class Attention:
+    """One person's catch trials.
+
+    `p_value` is the probability of no more right ones from a person who gets 95 % of them right;
+    `attended` says that it is 5 % or more.
+    """
+
+    person: str
+    right: int
+    asked: int
+    p_value: si.Dimensionless
+    attended: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """How people worked on one display: what drifted, and who attended; empty where nothing was
+    recorded."""
+
+    drift: tuple[Drift, ...]
+    attention: tuple[Attention, ...]
+
+
+def course_of(answers: Answers, display: int) -> Course:
+    """The course of the main trials on a display (number in the design's order), and its catch
+    trials."""
+    main, drifts = answers.main(display), []
+    if not np.isnan(main.correct).all() and not (main.series >= 0).any():
+        drifts.append(drift(main, main.correct, "share of right answers"))
+    times = main.response_time
+    if np.isfinite(times).any():
+        drifts.append(drift(main, np.log(np.where(times > 0, times, np.nan)), "ln response time"))
+    caught = answers.take((answers.display == display) & (answers.phase == "catch"))
+    return Course(tuple(one for one in drifts if one is not None), attention(caught))
+
+
+def drift(
+    main: Answers, values: si.FloatArray, quantity: str, level: si.Dimensionless = 0.95
+) -> Drift | None:
+    """The change of a quantity over each person's trials; None where nobody has ten.
+
+    Place in the session runs from 0 at a person's first main trial to 1 at the last.
+    """
+    slopes = []
+    for person in np.unique(main.participant):
+        mine = main.participant == person
+        mine &= np.isfinite(values)
+        if np.count_nonzero(mine) < 10:
+            continue
+        place = main.number[mine] - main.number[mine].min()
+        slopes.append(float(np.polyfit(place / place.max(), values[mine], 1)[0]))
+    if not slopes:
+        return None
+    mean, count = float(np.mean(slopes)), len(slopes)
+    low = high = p = math.nan
+    if count > 1 and (error := float(np.std(slopes, ddof=1)) / math.sqrt(count)) > 0:
+        reach = float(stats.t.isf((1 - level) / 2, count - 1)) * error
+        low, high = mean - reach, mean + reach
+        p = float(2 * stats.t.sf(abs(mean) / error, count - 1))
+    return Drift(quantity, mean, low, high, level, p, count)
+
+
+def attention(caught: Answers) -> tuple[Attention, ...]:
+    """Each person's catch trials, judged."""
+    found = []
+    for person in np.unique(caught.participant):
+        right = caught.correct[caught.participant == person]
+        right = right[np.isfinite(right)]
+        if not right.size:
+            continue
+        hits = int(right.sum())
+        p = float(stats.binom.cdf(hits, right.size, ATTENDS))
+        found.append(Attention(caught.people[person], hits, right.size, p, p >= _DOUBTFUL))
+    return tuple(found)

@@ -1,0 +1,335 @@
+"""A study's answers analysed, display by display: what its task allows."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
+from squeezefilm.study.identification.course import course_of
+from squeezefilm.study.identification.exploration import ConditionMean, condition_means
+from squeezefilm.study.identification.response_times import (
+    ExGaussian,
+    ResponseTimeSummary,
+    fit_ex_gaussian,
+    response_time_summary,
+)
+from squeezefilm.study.psychometric.fit import PsychometricFit
+from squeezefilm.study.record.answers import Answers, recorded_answers
+from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.tasks.findings import (
+    ConditionFinding,
+    Estimate,
+    PersonEstimate,
+    TaskAnalysis,
+    of_population,
+)
+from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions, require_magnitudes
+from squeezefilm.study.tasks.methods import methods_text
+from squeezefilm.study.tasks.population import PersonLikelihood, Population
+from squeezefilm.study.tasks.same_different import (
+    same_different_conditions,
+    same_different_fractions,
+    same_different_numbers,
+)
+from squeezefilm.study.tasks.two_interval import (
+    two_interval_conditions,
+    two_interval_numbers,
+    weber_fractions,
+)
+
+StudyAnalysis = IdentificationAnalysis | TaskAnalysis
+Tell = Callable[[str], None]
+_POPULATION = "posterior, mixed model"
+
+
+def analyze_study(
+    store: StudyStore | str | Path,
+    *,
+    mixed: bool = False,
+    resamples: int = 1000,
+    seed: int = 0,
+    progress: Tell | None = None,
+) -> dict[str, StudyAnalysis]:
+    """The analysis of a study's answers, by display.
+
+    `store` is the study, or the path of its file. Main trials are analysed; practice and
+    familiarisation are left out, catch trials say who attended. Results say whose answers they
+    are. `mixed` adds statsmodels' mixed models to match-to-sample, whose stimuli must each have the
+    grating of their own period among the answers; `resamples` are its bootstraps'.
+
+    Raises:
+        InputError: stimuli that have no right answer, or no answer yet.
+        RecordError: the file is damaged.
+    """
+    if not isinstance(store, StudyStore):
+        with StudyStore.open(store) as opened:
+            return analyze_study(
+                opened, mixed=mixed, resamples=resamples, seed=seed, progress=progress
+            )
+    if store.design.task == "match-to-sample":
+        stimuli_and_answers(store.design)
+    store.require_whole()
+    answers = recorded_answers(store)
+    if not (answers.phase == "main").any():
+        raise InputError(f"{store.path} has no answered main trial yet; run some first")
+    return analyze_answers(
+        answers,
+        str(store.study["name"]),
+        mixed=mixed,
+        resamples=resamples,
+        seed=seed,
+        progress=progress,
+    )
+
+
+def analyze_answers(
+    answers: Answers,
+    name: str,
+    *,
+    assumed: tuple[str, ...] = (),
+    mixed: bool = False,
+    resamples: int = 1000,
+    level: si.Dimensionless = 0.95,
+    seed: int = 0,
+    progress: Tell | None = None,
+) -> dict[str, StudyAnalysis]:
+    """The same of answers in memory, like those of simulated participants, which `assumed` says
+    what they rest on. Displays without a main trial are left out.
+
+    Raises `InputError` for a task of match-to-sample without a right answer to each stimulus.
+    """
+    tell = progress or (lambda _: None)
+    found: dict[str, StudyAnalysis] = {}
+    for number, display in enumerate(answers.design.displays):
+        main = answers.main(number)
+        if not main.trials:
+            continue
+        said = f"{name}, {display}"
+        if answers.design.task == "match-to-sample":
+            found[display] = _matches(answers, number, said, mixed, resamples, level, seed, tell)
+        else:
+            found[display] = _judgements(answers, number, said, assumed, level, seed, tell)
+    return found
+
+
+def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:
+    """Names of a match-to-sample design's stimuli and their right answers. Raises `InputError`
+    where the answers are not each the right one to a stimulus."""
+    stimuli = [one.name for one in design.stimuli]
+    right = [design.answer_to(one) for one in design.stimuli]
+    if sorted(right) != sorted(design.answers):
+        raise InputError(
+            "an identification needs one right answer for each stimulus and no other answers; "
+            f"stimuli: {', '.join(stimuli)}; answers: {', '.join(design.answers)}"
+        )
+    return stimuli, right
+
+
+def _matches(
+    answers: Answers,
+    display: int,
+    name: str,
+    mixed: bool,
+    resamples: int,
+    level: float,
+    seed: int,
+    tell: Tell,
+) -> IdentificationAnalysis:
+    design, main = answers.design, answers.main(display)
+    stimuli, right = stimuli_and_answers(design)
+    kind = np.array([stimuli.index(main.surfaces[k].name) for k in main.first])
+    order = np.array([right.index(one) for one in design.answers])
+    times = main.response_time
+    found = analyze_identification(
+        np.array(main.people)[main.participant],
+        kind,
+        order[main.choice],
+        right,
+        name=name,
+        origin=answers.origin,
+        response_time=times if np.isfinite(times).any() else None,
+        exploration=main.exploration,
+        mixed=mixed,
+        level=level,
+        resamples=resamples,
+        seed=seed,
+        progress=tell,
+    )
+    course = course_of(answers, display)
+    return dataclasses.replace(found, course=course, methods=methods_text(answers, display))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Found:
+    """What a task's own analysis gives."""
+
+    measure: str
+    persons: list[PersonEstimate]
+    pooled: Estimate | None
+    spread: Estimate | None
+    conditions: tuple[ConditionFinding, ...]
+    more: dict[str, Estimate]
+    fits: dict[str, PsychometricFit]
+    notes: list[str]
+
+
+def _judgements(
+    answers: Answers,
+    display: int,
+    name: str,
+    assumed: tuple[str, ...],
+    level: float,
+    seed: int,
+    tell: Tell,
+) -> TaskAnalysis:
+    design, main = answers.design, answers.main(display)
+    of = {
+        "two-interval": _two_interval,
+        "same-different": _same_different,
+        "magnitude-estimation": _magnitudes,
+    }[design.task]
+    found = of(main, level, seed, tell)
+    tell("response times and drift")
+    condition, names = _conditions(main)
+    course = course_of(answers, display)
+    times, ex_gaussian = _times(main, condition, names, level, seed, found.notes)
+    explored = _explored(main, condition, names, level)
+    bounded = [one.person for one in found.persons if one.bounded]
+    notes = [*found.notes]
+    if bounded:
+        notes.append(
+            f"the answers of {len(bounded)} of {len(found.persons)} people do not bound their "
+            f"{found.measure}: an end of its interval is where the prior ends, and more trials "
+            "near the threshold are wanted"
+        )
+    unattended = [one.person for one in course.attention if not one.attended]
+    if unattended:
+        notes.append(
+            f"{len(unattended)} of {len(course.attention)} people missed more catch trials than "
+            f"one who attends would ({', '.join(unattended)}); nobody was left out"
+        )
+    here = design.judged_value(design.stimulus(design.reference)) if design.reference else math.nan
+    return TaskAnalysis(
+        name=name,
+        origin=answers.origin,
+        task=design.task,
+        judged=design.judged,
+        measure=found.measure,
+        people=tuple(main.people[one] for one in np.unique(main.participant)),
+        trials=main.trials,
+        standard=here,
+        persons=tuple(found.persons),
+        pooled=found.pooled,
+        spread=found.spread,
+        conditions=found.conditions,
+        more=found.more,
+        fits=found.fits,
+        response_times=times,
+        ex_gaussian=ex_gaussian,
+        course=course,
+        exploration=explored,
+        assumed=assumed,
+        notes=tuple(notes),
+        methods=methods_text(answers, display),
+        seed=seed,
+    )
+
+
+def _pooled(people: list[PersonLikelihood], level: float) -> tuple[Estimate, Estimate | None]:
+    mean, spread = of_population(Population(people).estimate(level), _POPULATION)
+    return mean, spread
+
+
+def _of_fractions(
+    persons: list[PersonEstimate],
+    people: list[PersonLikelihood],
+    level: float,
+    notes: list[str],
+) -> tuple[Estimate | None, Estimate | None]:
+    if len(persons) > 1:
+        return _pooled(people, level)
+    notes.append("one participant: the population's interval is theirs, and says nothing of others")
+    return persons[0].estimate, None
+
+
+def _two_interval(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
+    notes: list[str] = []
+    persons, people, fits = weber_fractions(main, level, tell)
+    tell("mixed model over people")
+    pooled, spread = _of_fractions(persons, people, level, notes)
+    conditions: tuple[ConditionFinding, ...] = ()
+    if not (main.series >= 0).any():
+        conditions = two_interval_conditions(main, level, seed)
+    more = two_interval_numbers(main, fits, level)
+    return _Found("Weber fraction", persons, pooled, spread, conditions, more, fits, notes)
+
+
+def _same_different(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
+    notes: list[str] = []
+    tell("differencing model of each person")
+    persons, people, criteria = same_different_fractions(main, level)
+    pooled, spread = _of_fractions(persons, people, level, notes)
+    conditions = same_different_conditions(main, level, seed)
+    more = same_different_numbers(main, criteria, level)
+    return _Found("Weber fraction", persons, pooled, spread, conditions, more, {}, notes)
+
+
+def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> _Found:
+    require_magnitudes(main)
+    tell("power law of each person")
+    persons, pooled, spread = exponents(main, level)
+    conditions, notes = magnitude_conditions(main, level)
+    if spread is None:
+        notes.append("one participant: the interval is of their own line, and not of a population")
+    return _Found("exponent", persons, pooled, spread, conditions, {}, {}, notes)
+
+
+def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
+    """What response times are told apart by: the comparison, the difference or the stimulus."""
+    if (main.series >= 0).any():
+        return main.series, tuple(one.name for one in main.design.adaptive)
+    names = tuple(one.name for one in main.surfaces)
+    if main.design.two_surfaces:
+        here = main.design.judged_value(main.design.stimulus(main.design.reference))
+        return np.where(main.values[main.first] != here, main.first, main.second), names
+    return main.first, names
+
+
+def _times(
+    main: Answers,
+    condition: si.IntArray,
+    names: tuple[str, ...],
+    level: float,
+    seed: int,
+    notes: list[str],
+) -> tuple[tuple[ResponseTimeSummary, ...], ExGaussian | None]:
+    # A time of 0 is what a clock of milliseconds makes of a slip of the hand.
+    times = np.where(main.response_time > 0, main.response_time, np.nan)
+    if not np.isfinite(times).any():
+        return (), None
+    person = np.unique(main.participant, return_inverse=True)[1]
+    summaries = response_time_summary(person, condition, times, names, level)
+    try:
+        return summaries, fit_ex_gaussian(times, seed)
+    except (InputError, ConvergenceError) as error:
+        notes.append(f"ex-Gaussian: {error}")
+        return summaries, None
+
+
+def _explored(
+    main: Answers, condition: si.IntArray, names: tuple[str, ...], level: float
+) -> dict[str, tuple[ConditionMean, ...]]:
+    person = np.unique(main.participant, return_inverse=True)[1]
+    return {
+        key: condition_means(person, condition, values, names, level)
+        for key, values in main.exploration.items()
+    }

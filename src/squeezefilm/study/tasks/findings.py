@@ -1,0 +1,181 @@
+"""What the analysis of a task other than match-to-sample finds: one result for all of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from squeezefilm import quantities as si
+from squeezefilm.perception.stimuli import Varied
+from squeezefilm.results import Result, stamp, to_json
+from squeezefilm.study.design.study_design import Task
+from squeezefilm.study.identification.course import Course
+from squeezefilm.study.identification.exploration import ConditionMean
+from squeezefilm.study.identification.response_times import ExGaussian, ResponseTimeSummary
+from squeezefilm.study.psychometric.fit import PsychometricFit
+from squeezefilm.study.tasks.population import PopulationEstimate
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A number with its interval of `level`; `low` and `high` are NaN where there is none."""
+
+    value: float
+    low: float
+    high: float
+    level: si.Dimensionless
+    method: str
+
+
+@dataclass(frozen=True, slots=True)
+class PersonEstimate:
+    """One person's Weber fraction or exponent.
+
+    `bounded` says that the answers alone do not bound it: an end of the interval is the prior's.
+    """
+
+    person: str
+    estimate: Estimate
+    trials: int
+    bounded: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionFinding:
+    """What was answered to one comparison or stimulus.
+
+    Attributes:
+        name: of the stimulus, or of the pair.
+        value: of what is judged (SI).
+        trials, participants: that have answers.
+        share: of answers "the comparison has more", or "different", with Wilson's interval over
+            trials; None for magnitudes.
+        d_prime: from the reference: mean over people of the task's model, with its t interval
+            (Jeffreys' for one person); None for magnitudes and for the reference itself.
+        magnitude: geometric mean of the numbers with people's scales taken out, with its t
+            interval over people; None for other tasks.
+    """
+
+    name: str
+    value: float
+    trials: int
+    participants: int
+    share: Estimate | None = None
+    d_prime: Estimate | None = None
+    magnitude: Estimate | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class TaskAnalysis(Result):
+    """What the answers of a two-interval, same-different or magnitude task say on one display.
+
+    Attributes:
+        name: of the study and the display.
+        origin: whose answers these are; every figure repeats it.
+        task, judged: of the design.
+        measure: what `persons` and `pooled` are: "Weber fraction" or "exponent".
+        people: pseudonyms.
+        trials: main trials.
+        standard: the reference's value of what is judged (SI); NaN without a reference.
+        persons: of each person.
+        pooled: of the population, see `population` and `fit_power_law`.
+        spread: standard deviation over people of ln(Weber fraction), or of the exponent.
+        conditions: by comparison or stimulus.
+        more: other numbers by name, such as the bias for an interval.
+        fits: each person's psychometric function, where there is one.
+        response_times, ex_gaussian: by condition and of all; empty and None without times.
+        course: drift and attention.
+        exploration: quantity (with unit in its key) → means by condition.
+        assumed: what simulated answers rest on; empty for people.
+        notes: what could not be computed, or needs care, and why.
+        methods: the methods section of a paper.
+        seed: of resampling.
+    """
+
+    name: str
+    origin: str
+    task: Task
+    judged: Varied
+    measure: str
+    people: tuple[str, ...]
+    trials: int
+    standard: float
+    persons: tuple[PersonEstimate, ...]
+    pooled: Estimate | None
+    spread: Estimate | None
+    conditions: tuple[ConditionFinding, ...]
+    more: Mapping[str, Estimate]
+    fits: Mapping[str, PsychometricFit]
+    response_times: tuple[ResponseTimeSummary, ...]
+    ex_gaussian: ExGaussian | None
+    course: Course
+    exploration: Mapping[str, tuple[ConditionMean, ...]]
+    assumed: tuple[str, ...]
+    notes: tuple[str, ...]
+    methods: str
+    seed: int
+    _shown: ClassVar[str] = "name origin measure participants trials"
+
+    @property
+    def participants(self) -> int:
+        """How many people answered."""
+        return len(self.people)
+
+    def summary(self) -> dict[str, Any]:
+        """All numbers as plain JSON values, units in the keys."""
+        unit = {"spatial_period": "_m", "orientation": "_rad"}.get(self.judged, "")
+        values = {
+            "name": self.name,
+            "origin": self.origin,
+            "task": self.task,
+            "judged": self.judged,
+            "participants": self.participants,
+            "trials": self.trials,
+            f"standard{unit}": self.standard,
+            "measure": self.measure,
+            "pooled": self.pooled,
+            "spread_over_people": self.spread,
+            "persons": self.persons,
+            "conditions": self.conditions,
+            "more": self.more,
+            "psychometric_functions": {key: one.summary() for key, one in self.fits.items()},
+            "response_times": self.response_times,
+            "ex_gaussian": self.ex_gaussian,
+            "course": self.course,
+            "exploration": self.exploration,
+            "assumed": self.assumed,
+            "notes": self.notes,
+            "methods": self.methods,
+            "provenance": stamp({"name": self.name, "persons": self.persons}, self.seed),
+        }
+        plain: dict[str, Any] = to_json(values)
+        return plain
+
+    def _table(self) -> Any:
+        """One row a condition."""
+        return [
+            {
+                "condition": one.name,
+                "value": one.value,
+                "trials": one.trials,
+                "share": None if one.share is None else one.share.value,
+                "d_prime": None if one.d_prime is None else one.d_prime.value,
+                "magnitude": None if one.magnitude is None else one.magnitude.value,
+            }
+            for one in self.conditions
+        ]
+
+
+def through(found: Estimate, rising: Callable[[float], float]) -> Estimate:
+    """An estimate on another scale, by a rising function of it."""
+    value, low, high = (rising(one) for one in (found.value, found.low, found.high))
+    return Estimate(value, low, high, found.level, found.method)
+
+
+def of_population(found: PopulationEstimate, method: str) -> tuple[Estimate, Estimate]:
+    """A population of logarithms as a typical person's value, and the spread of the logarithm."""
+    mean = Estimate(found.mean, found.low, found.high, found.level, method)
+    spread = Estimate(found.spread, found.spread_low, found.spread_high, found.level, method)
+    return through(mean, math.exp), spread

@@ -1,0 +1,103 @@
+"""Magnitude estimation: Stevens' exponents of people and population, and the scale itself."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy import stats
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.study.psychometric.magnitude_estimation import fit_power_law
+from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.tasks.findings import ConditionFinding, Estimate, PersonEstimate, through
+from squeezefilm.study.tasks.two_interval import t_interval
+
+
+def exponents(
+    main: Answers, level: si.Dimensionless
+) -> tuple[list[PersonEstimate], Estimate | None, Estimate | None]:
+    """Each person's exponent with the t interval of their own line; the population's mean with
+    that over people; the spread over people, which holds each one's own error too."""
+    people = np.unique(main.participant)
+    persons = []
+    for person in people:
+        mine = main.participant == person
+        x, y = np.log(main.values[main.first[mine]]), np.log(main.estimate[mine])
+        dx = x - x.mean()
+        if not np.any(dx) or x.size < 3:
+            continue
+        slope = float(dx @ y / (dx @ dx))
+        residual = float(np.sum((y - y.mean() - slope * dx) ** 2)) / (x.size - 2)
+        reach = float(stats.t.isf((1 - level) / 2, x.size - 2)) * math.sqrt(residual / (dx @ dx))
+        estimate = Estimate(slope, slope - reach, slope + reach, level, "t, own line")
+        persons.append(PersonEstimate(main.people[person], estimate, x.size, False))
+    if len(persons) < 2:
+        return persons, persons[0].estimate if persons else None, None
+    kept = np.isin(main.participant, [main.people.index(one.person) for one in persons])
+    law = fit_power_law(
+        main.values[main.first[kept]],
+        main.estimate[kept],
+        np.array(main.people)[main.participant[kept]],
+        level=level,
+    )
+    spread = float(law.exponents.std(ddof=1))
+    free = law.exponents.size - 1
+    low, high = (
+        spread * math.sqrt(free / float(stats.chi2.ppf(share, free)))
+        for share in (0.5 * (1 + level), 0.5 * (1 - level))
+    )
+    low_mean, high_mean = (float(one) for one in law.interval)
+    pooled = Estimate(law.exponent, low_mean, high_mean, level, "t, over people")
+    return persons, pooled, Estimate(spread, low, high, level, "χ², over people")
+
+
+def magnitude_conditions(
+    main: Answers, level: si.Dimensionless
+) -> tuple[tuple[ConditionFinding, ...], list[str]]:
+    """Geometric mean of the numbers given to each stimulus, people's own scales taken out; and what
+    needs care."""
+    logs, people = np.log(main.estimate), np.unique(main.participant)
+    own = np.full(main.trials, math.nan)
+    counts = []
+    for person in people:
+        mine = main.participant == person
+        own[mine] = logs[mine].mean()
+        counts.append(np.bincount(main.first[mine], minlength=len(main.surfaces)).tolist())
+    notes = []
+    if any(one != counts[0] for one in counts):
+        notes.append(
+            "people have not judged the stimuli equally often, so that their scales cannot be "
+            "taken out exactly; the exponents do not suffer from it"
+        )
+    logs = logs - own + float(np.mean([own[main.participant == one][0] for one in people]))
+    found = []
+    for one in sorted(np.unique(main.first), key=lambda s: main.values[s]):
+        here = main.first == one
+        means = np.array(
+            [
+                logs[here & (main.participant == person)].mean()
+                for person in np.unique(main.participant[here])
+            ]
+        )
+        found.append(
+            ConditionFinding(
+                main.surfaces[one].name,
+                float(main.values[one]),
+                int(here.sum()),
+                means.size,
+                magnitude=through(t_interval(means, level), math.exp),
+            )
+        )
+    return tuple(found), notes
+
+
+def require_magnitudes(main: Answers) -> None:
+    """Refuse stimuli without an amount, which have no logarithm. Raises `InputError`."""
+    for one in np.unique(main.first):
+        if not main.values[one] > 0.0:
+            raise InputError(
+                f"stimulus '{main.surfaces[one].name}' has {main.design.judged} 0; a power law "
+                "needs amounts above 0. Leave it out of the design, or judge something else"
+            )

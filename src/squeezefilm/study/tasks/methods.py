@@ -1,0 +1,148 @@
+"""The methods section of a paper, written out from what a study did, with its citations."""
+
+from __future__ import annotations
+
+from squeezefilm import __version__
+from squeezefilm import quantities as si
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.record.answers import Answers
+
+_TASKS = {
+    "match-to-sample": (
+        "On each trial one virtual surface was presented, and the participant named the one of "
+        "{alternatives} real gratings that it felt like"
+    ),
+    "two-interval": (
+        "On each trial two surfaces were presented one after the other, one of them the reference "
+        "({reference}), and the participant said which had the greater {judged}"
+    ),
+    "same-different": (
+        "On each trial two surfaces were presented one after the other, and the participant said "
+        "whether they were the same or different; the reference was {reference}"
+    ),
+    "magnitude-estimation": (
+        "On each trial one surface was presented, and the participant gave a number for its "
+        "{judged}"
+    ),
+}
+_ORDERS = {
+    "williams": "in the order of a Williams square (Williams 1949, 10.1071/CH9490149)",
+    "latin-square": "in the order of a Latin square",
+    "shuffled": "in random order",
+}
+_ANALYSES = {
+    "match-to-sample": (
+        "Proportions correct have intervals by a bootstrap over participants; information transfer "
+        "is corrected for its bias. Sensitivity is the equal-variance Thurstone model's."
+    ),
+    "two-interval": (
+        "Each participant's answers were fitted with a cumulative Gaussian of the logarithm of "
+        "the comparison, with lapses (Schütt et al. 2016, 10.1016/j.visres.2016.02.002); Weber "
+        "fractions are half the distance of its quartiles. The population is a mixed model: "
+        "logarithms of Weber fractions are normal over participants, whose likelihoods were "
+        "integrated on a grid (compare Moscatelli et al. 2012, 10.1167/12.11.26). d′ follows "
+        "Macmillan and Creelman (2005)."
+    ),
+    "adaptive": (
+        "Each participant's answers of all series were fitted together with a logistic function of "
+        "the logarithm of the difference, guess rate 1/2, with lapses (Schütt et al. 2016, "
+        "10.1016/j.visres.2016.02.002); the Weber fraction is its threshold, and its interval is "
+        "the posterior's, which does not ask how differences were chosen. The population is a "
+        "mixed model: logarithms of Weber fractions are normal over participants, whose "
+        "likelihoods were integrated on a grid (compare Moscatelli et al. 2012, 10.1167/12.11.26)."
+    ),
+    "same-different": (
+        "Each participant's answers were fitted by the differencing model of Macmillan and "
+        "Creelman (2005), with a criterion and lapses; the Weber fraction is the difference with "
+        "d′ = 0.954, which is told in 75 % of two intervals. The population is a mixed model: "
+        "logarithms of Weber fractions are normal over participants, whose likelihoods were "
+        "integrated on a grid (compare Moscatelli et al. 2012, 10.1167/12.11.26)."
+    ),
+    "magnitude-estimation": (
+        "The exponent of Stevens' power law was fitted to each participant's logarithms, and its "
+        "mean has Student's interval over participants. Means of numbers are geometric, with the "
+        "scales of participants taken out (Lane, Catania and Stevens 1961, 10.1121/1.1908600)."
+    ),
+}
+_JUDGED = {
+    "spatial_period": "spatial period (coarseness)",
+    "friction_depth": "change of friction",
+    "ridge_share": "share of ridges",
+    "orientation": "orientation",
+}
+
+
+def methods_text(answers: Answers, display: int) -> str:
+    """What a paper says of a display's trials: participants, stimuli, task, orders, analysis.
+
+    Written from the design and from the answers that there are: of what was not recorded nothing
+    is said.
+    """
+    design, main = answers.design, answers.main(display)
+    people = len(set(main.participant.tolist()))
+    named = design.displays[display]
+    who = "simulated participants" if "simulated" in answers.origin else "participants"
+    parts = [
+        f"{people} {who} took part on the display '{named}'.",
+        _stimuli(design),
+        _TASKS[design.task].format(
+            alternatives=len(design.alternatives),
+            reference=design.reference or "none",
+            judged=_JUDGED[design.judged],
+        )
+        + f" (“{design.spoken_question}”).",
+        *_adaptive(design),
+        _trials(design, answers, display),
+        _ANALYSES["adaptive" if design.adaptive else design.task],
+        f"Orders and analysis were made with squeezefilm {__version__} "
+        f"(design SHA-256 {design.sha256[:12]}).",
+    ]
+    return " ".join(parts)
+
+
+def _stimuli(design: StudyDesign) -> str:
+    listed = []
+    for one in design.stimuli:
+        period = si.format_quantity(one.period, si.Unit("m"))
+        listed.append(f"{period} ({100 * one.friction_depth:.3g} % change of relative friction)")
+    shapes = " and ".join(sorted({one.waveform for one in design.stimuli}))
+    return f"Stimuli were {shapes} gratings of friction with the periods {', '.join(listed)}."
+
+
+def _adaptive(design: StudyDesign) -> list[str]:
+    said = []
+    for one in design.adaptive:
+        if one.method == "staircase":
+            target = 100 * 0.5 ** (1 / one.down)
+            how = (
+                f"a staircase, {one.down} down and 1 up, that settles at {target:.1f} % correct "
+                f"(Levitt 1971, 10.1121/1.1912375), from {100 * one.start:g} %"
+            )
+        else:
+            how = (
+                "a Bayesian choice of the most informative difference (Kontsevich and Tyler 1999, "
+                "10.1016/S0042-6989(98)00285-5)"
+            )
+        said.append(
+            f"The series '{one.name}' of {one.count} trials chose the comparison by {how}, within "
+            f"{100 * one.lowest:g} and {100 * one.highest:g} % of the reference."
+        )
+    if len(design.adaptive) > 1:
+        said.append("The series were interleaved at random.")
+    return said
+
+
+def _trials(design: StudyDesign, answers: Answers, display: int) -> str:
+    here = answers.take(answers.display == display)
+    people = max(len(set(here.participant.tolist())), 1)
+    counts = {phase: int((here.phase == phase).sum()) for phase in ("practice", "main", "catch")}
+    said = f"There were {counts['main'] / people:.4g} trials a participant"
+    extra = [
+        f"{counts[phase] / people:.3g} {words}"
+        for phase, words in (("practice", "of practice with feedback"), ("catch", "catch trials"))
+        if counts[phase]
+    ]
+    said += f" beside {' and '.join(extra)}" if extra else ""
+    order = "" if design.adaptive else f", {_ORDERS[design.order]}"
+    blocks = f" in {design.blocks} blocks" if design.blocks > 1 else ""
+    return f"{said}{blocks}{order}."

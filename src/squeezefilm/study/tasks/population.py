@@ -1,0 +1,119 @@
+"""A quantity of people, from what each one's answers say of it: a mixed model on grids.
+
+Each person has a value x of their own (here the logarithm of a Weber fraction). Over people x is
+normal, with the mean μ and the standard deviation τ of the population. What a person's answers say
+of x is a likelihood on a grid, however skewed or cut off, with everything else of that person
+(bias, lapses) integrated out; integrated over x it says how likely the answers are under μ and τ.
+Products over people, with flat priors of μ and of τ, give the posterior of the population. That is
+a generalised linear mixed model of the answers (Moscatelli, Mezzetti and Lacquaniti 2012,
+10.1167/12.11.26) with lapses, integrated exactly instead of by Laplace's method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+
+_MEANS, _SPREADS = 161, 41
+_WIDEST = 2.0
+"""Greatest standard deviation over people of a logarithm that is held possible (1)."""
+_NARROWEST = 1e-3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PersonLikelihood:
+    """What one person's answers say of x; arrays of shape (cells,).
+
+    Attributes:
+        x: the middle of each cell, rising, in the population's unit.
+        width: of each cell, likewise.
+        likelihood: of the answers at x, up to a factor.
+    """
+
+    x: si.FloatArray
+    width: si.FloatArray
+    likelihood: si.FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class PopulationEstimate:
+    """Mean and spread over people of a quantity, with central credible intervals.
+
+    `mean` is the posterior's median of μ, `spread` that of τ, both in the unit of x.
+    """
+
+    mean: float
+    low: float
+    high: float
+    spread: float
+    spread_low: float
+    spread_high: float
+    level: si.Dimensionless
+    participants: int
+
+
+class Population:
+    """People's likelihoods on one grid of μ and τ, from which any group of them is estimated."""
+
+    def __init__(self, people: Sequence[PersonLikelihood]) -> None:
+        if not people:
+            raise InputError("a population needs at least one person")
+        low = min(float(one.x[0]) for one in people)
+        high = max(float(one.x[-1]) for one in people)
+        self._means = np.linspace(low, high, _MEANS)
+        # Denser where few people differ little: flat in τ by the cells' widths.
+        edges = _NARROWEST + (_WIDEST - _NARROWEST) * np.linspace(0.0, 1.0, _SPREADS + 1) ** 2
+        self._spreads, self._widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+        self._edges = edges
+        self._logs = np.array([self._log_likelihood(one) for one in people])
+
+    def _log_likelihood(self, one: PersonLikelihood) -> si.FloatArray:
+        """ln of a person's likelihood under each μ and τ, shape (means, spreads)."""
+        weight = one.likelihood * one.width
+        weight = weight / weight.sum()
+        found = np.empty((self._means.size, self._spreads.size))
+        away = (one.x[None, :] - self._means[:, None]) ** 2
+        for at, spread in enumerate(self._spreads):
+            # A spread below the cells' width would fall between them: it is their width at least.
+            wide = np.hypot(spread, 0.5 * one.width)
+            density = np.exp(-0.5 * away / wide**2) / wide
+            found[:, at] = density @ weight
+        return np.log(np.maximum(found, 1e-300))
+
+    @property
+    def size(self) -> int:
+        """How many people."""
+        return int(self._logs.shape[0])
+
+    def estimate(
+        self, level: si.Dimensionless = 0.95, people: si.IntArray | None = None
+    ) -> PopulationEstimate:
+        """Mean and spread over people, of all or of those of the numbers `people`.
+
+        With one person τ is only what the prior says, and the interval of μ is wide.
+        Raises `InputError` for a level not between 0 and 1.
+        """
+        si.require("level", level, above=0.0, below=1.0)
+        logs = self._logs if people is None else self._logs[people]
+        total = logs.sum(axis=0)
+        weight = np.exp(total - total.max()) * self._widths
+        weight /= weight.sum()
+        tails = 0.5 * (1.0 - level), 0.5, 0.5 * (1.0 + level)
+        step = self._means[1] - self._means[0]
+        middle = np.append(self._means - step / 2, self._means[-1] + step / 2)
+        low, mean, high = _quantiles(middle, weight.sum(axis=1), tails)
+        least, spread, most = _quantiles(self._edges, weight.sum(axis=0), tails)
+        return PopulationEstimate(mean, low, high, spread, least, most, level, logs.shape[0])
+
+
+def _quantiles(
+    edges: si.FloatArray, probability: si.FloatArray, shares: tuple[float, float, float]
+) -> tuple[float, float, float]:
+    heights = np.concatenate([[0.0], np.cumsum(probability)])
+    a, b, c = np.interp(shares, heights / heights[-1], edges)
+    return float(a), float(b), float(c)
