@@ -66,9 +66,10 @@ def percepts(tables: ChainTables) -> Figure:
     )
     period = 1e3 * line_periods()
     real = len(design.displays)
-    heads = [*(style.plain(one, 24) for one in design.displays), "real gratings"]
+    heads = [style.plain(one, 24) for one in design.displays]
+    heads += ["real gratings"] if design.alternatives else []
     axes = figure.subplots(
-        max(len(design.stimuli), len(design.alternatives)), real + 1, sharex=True, squeeze=False
+        max(len(design.stimuli), len(design.alternatives)), len(heads), sharex=True, squeeze=False
     )
     highest = 1.15 * max(float(clearest.max()), observer.detection_criterion)
     for column, head in enumerate(heads):
@@ -77,9 +78,10 @@ def percepts(tables: ChainTables) -> Figure:
             if row >= len(surfaces):
                 cell.set_axis_off()
                 continue
-            found, color = tables.real_rhythm[:, row], style.INK
             if column < real:
                 found, color = tables.virtual_rhythm[column, :, row], _DISPLAYS[column % 2]
+            else:
+                found, color = tables.real_rhythm[:, row], style.INK
             cell.plot(period, found.T, color=color, lw=0.6, alpha=0.35)
             cell.plot(period, np.median(found, axis=0), color=color, lw=1.7)
             cell.axhline(observer.detection_criterion, color=style.MUTED, lw=0.9, ls=(0, (4, 2)))

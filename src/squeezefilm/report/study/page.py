@@ -109,8 +109,10 @@ def write_overview(
     analyses: Mapping[str, StudyAnalysis],
     folder: Path,
     progress: Callable[[str], None] | None = None,
+    more: str = "",
 ) -> Path:
-    """Write a page per display, each in its own folder, and one to read first above them."""
+    """Write a page per display, each in its own folder, and one to read first above them, with
+    `more` sections (HTML) below."""
     folder = require_folder(folder)
     for display, one in analyses.items():
         write_study(one, folder / display, progress=progress)
@@ -124,7 +126,7 @@ def write_overview(
         escape(f"{name}: what to read first"),
         escape(name),
         f"<b>{escape(printable(origin))}</b> answers, analysed by squeezefilm",
-        sections,
+        sections + more,
         "What to read first, by display.",
     )
     write_folder(folder, {"index.html": text})

@@ -119,14 +119,29 @@ def write_simulated(
 def _write_answers(study: SimulatedAnswers, folder: Path, tell: Callable[[str], None]) -> Path:
     from squeezefilm.report.study.page import write_overview
 
-    tell("psychometric functions and figures")
-    page = write_overview(study.analyses, folder, tell)
-    rows = [{"origin": "simulated", **row} for row in study.rows()]
+    tell("figures")
+    figures = drawn_figures(FIGURES, study)
+    reasons = f"Reasons the model sees. {LEGEND}"
+    more = "".join(
+        section(
+            f"What the model sees on {escape(printable(name))}",
+            text_table(reasons, REASONS, reason_rows(study, index)),
+        )
+        for index, name in enumerate(study.tables.design.displays)
+    )
     files = {
-        **picture_files(drawn_figures(FIGURES, study)),
+        **picture_files(figures),
         "simulated.json": json_text(study.summary()),
-        "trials.csv": csv_text(rows, ANSWER_COLUMNS),
+        "trials.csv": csv_text(
+            [{"origin": "simulated", **r} for r in study.rows()], ANSWER_COLUMNS
+        ),
     }
+    below = (
+        more
+        + picture_sections(figures)
+        + section("Files", f"<p>{links(['simulated.json', 'trials.csv'])}</p>")
+    )
+    page = write_overview(study.analyses, folder, tell, below)
     write_folder(folder, files)
     return page
 
