@@ -49,6 +49,10 @@ Store = Annotated[Path, typer.Argument(metavar="STUDY.sqlite", help="The study's
 NewStore = Annotated[Path, written_to("The study's file; made if not there.")]
 Consent = Annotated[bool, typer.Option("--consent", help="The participant has consented.")]
 Seed = Annotated[int, typer.Option(help="Of all orders.")]
+Display = Annotated[
+    str | None,
+    typer.Option(help="One of the design's, or any other by name or file, like mine.toml."),
+]
 Observer = Annotated[str, typer.Option(help="What people are made of: a preset or a TOML file.")]
 
 
@@ -96,6 +100,7 @@ def simulate(
         written_to("Folder for answers, tables, figures and a page."),
     ] = None,
     observer: Observer = "fingertip",
+    display: Display = None,
     as_json: AsJson = False,
 ) -> None:
     """Let simulated participants do a study; every number is simulated."""
@@ -106,8 +111,11 @@ def simulate(
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.answers import simulate_participants
     from squeezefilm.study.simulated.chain_tables import chain_tables
+    from squeezefilm.study.simulated.planned_power import on_one_display
 
     planned, people = load_design(design), load_observer(observer)
+    if display is not None:
+        planned = on_one_display(planned, display)
     with second_process(_load_chain), working(as_json) as step:
         tables = chain_tables(planned, people, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables, step)
@@ -120,11 +128,18 @@ class PowerOptions:
     """What `power` is asked for."""
 
     design: Design
-    first: Annotated[str, typer.Argument(help='A stimulus, like "8 mm".')]
-    second: Annotated[str, typer.Argument(help="The one to be told from it.")]
-    display: Annotated[
-        str | None, typer.Option(help="One of the design's; its first without it.")
+    first: Annotated[
+        str | None, typer.Argument(help='A stimulus, like "8 mm"; not with --precision.')
     ] = None
+    second: Annotated[str | None, typer.Argument(help="The one to be told from it.")] = None
+    precision: Annotated[
+        str | None,
+        typer.Option(
+            help="In place of two stimuli: half the 95 % interval that is wanted, like 20% (of a "
+            "Weber fraction) or 0.05 (of an exponent or a proportion correct)."
+        ),
+    ] = None
+    display: Display = None
     target: Annotated[float, typer.Option(help="Power asked for.")] = 0.8
     studies: Annotated[int, typer.Option(help="Simulated per number of people.")] = 400
     observer: Observer = "fingertip"
@@ -136,23 +151,42 @@ class PowerOptions:
 @study.command()
 @called_with(PowerOptions)
 def power(asked: PowerOptions) -> None:
-    """How many people are needed to tell two stimuli apart, by simulated participants."""
+    """How many people are needed to tell two stimuli apart, or to know a threshold, exponent or
+    share of right answers as precisely as asked; by simulated participants."""
+    from squeezefilm import quantities as si
+    from squeezefilm.errors import InputError
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report.study.terminal_analysis import show_power
+    from squeezefilm.report.kit.style import png
+    from squeezefilm.report.study.terminal_analysis import show_power, show_precision
+    from squeezefilm.report.subjects import plot
+    from squeezefilm.results import write_whole
+    from squeezefilm.second_process import second_process
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.planned_power import planned_power
+    from squeezefilm.study.simulated.planned_precision import planned_precision
 
-    with working(asked.as_json) as step:
-        design, people = load_design(asked.design), load_observer(asked.observer)
-        options = given(asked, leave="design observer first second out as_json")
-        found = planned_power(design, people, asked.first, asked.second, **options, progress=step)
+    design, people = load_design(asked.design), load_observer(asked.observer)
+    options = given(asked, leave="design observer first second precision out as_json")
+    with second_process(_load_chain), working(asked.as_json) as step:
+        if asked.precision is not None:
+            if asked.first is not None:
+                raise InputError("--precision asks of the whole design; leave the stimuli out")
+            wanted = si.parse_quantity(asked.precision, si.Unit("1"))
+            precise = planned_precision(design, people, wanted, **options, progress=step)
+        elif asked.first is None or asked.second is None:
+            names = ", ".join(f'"{one.name}"' for one in design.stimuli)
+            raise InputError(
+                f"name two stimuli of '{design.name}' to be told apart ({names}), or give "
+                "--precision 20%"
+            )
+        else:
+            found = planned_power(
+                design, people, asked.first, asked.second, **options, progress=step
+            )
+    result, show = (found, show_power) if asked.precision is None else (precise, show_precision)
     if asked.out is not None:
-        from squeezefilm.report.kit.style import png
-        from squeezefilm.report.study.time_figures import power as drawn
-        from squeezefilm.results import write_whole
-
-        write_whole(asked.out, png(drawn(found.curve)))
-    answer(asked.as_json, found, show_power)
+        write_whole(asked.out, png(plot(result)))
+    answer(asked.as_json, result, show)
 
 
 @study.command()

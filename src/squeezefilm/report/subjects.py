@@ -51,6 +51,7 @@ from squeezefilm.study.psychometric.fit import PsychometricFit
 from squeezefilm.study.simulated.answers import SimulatedAnswers
 from squeezefilm.study.simulated.participants import SimulatedStudy
 from squeezefilm.study.simulated.planned_power import PlannedPower
+from squeezefilm.study.simulated.planned_precision import PlannedPrecision
 from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.texture_file import TextureFile
 
@@ -100,6 +101,7 @@ SUBJECTS: Mapping[type, _Subject] = {
     SimulatedStudy: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
     SimulatedAnswers: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
     PlannedPower: _Subject({"power": lambda one: time_figures.power(one.curve)}),
+    PlannedPrecision: _Subject({"precision": time_figures.precision}),
     PsychometricFit: _Subject({"function": time_figures.psychometric_function}),
 }
 """Figures and report of every type of result."""

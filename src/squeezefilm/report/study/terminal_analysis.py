@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.simulated.answers import SimulatedAnswers
     from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.study.simulated.planned_power import PlannedPower
+    from squeezefilm.study.simulated.planned_precision import PlannedPrecision
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 _SHOWN_PEOPLE = 24
@@ -90,8 +91,55 @@ def show_power(found: PlannedPower) -> None:
     else:
         console.print(f"{curve.needed} people reach {100 * curve.target:.0f} % power.")
     console.print(
-        f"One-sided test over people at {curve.alpha:g}; {curve.studies} studies a size, of "
+        f"One-sided test over people at {curve.alpha:g}; the pool's own score is "
+        f"{found.difference:.3g} (0 for nothing); {curve.studies} studies a size, of "
         f"simulated participants '{found.observer}': what they assume, this assumes.",
+        highlight=False,
+    )
+
+
+def show_precision(found: PlannedPrecision) -> None:
+    """Print how many people make an answer precise, and what stopping early does."""
+    console = plain_console()
+    wanted = f"± {100 * found.precision:g} %"
+    if found.measure != "Weber fraction":
+        wanted = f"± {found.precision:g}"
+    heading(console, f"{found.measure} of {found.design} on {found.display}, SIMULATED")
+    table(
+        console,
+        ("people", f"studies within {wanted}", "95 % bounds", "intervals that hold the value"),
+        [
+            (
+                f"{n}",
+                f"{100 * share:.0f} %",
+                f"{100 * low:.0f} to {100 * high:.0f} %",
+                f"{100 * held:.0f} %",
+            )
+            for n, share, low, high, held in zip(
+                found.participants, found.reached, found.low, found.high, found.held, strict=True
+            )
+        ],
+        fixed=(0,),
+    )
+    if found.needed is None:
+        most = found.participants[-1]
+        console.print(f"{most} people do not give it in {100 * found.target:.0f} % of the studies.")
+    else:
+        console.print(
+            f"{found.needed} people give it in {100 * found.target:.0f} % of the studies."
+        )
+    one = found.sequential
+    console.print(
+        f"A study that adds people until its interval is that narrow stops at {one.mean:.3g} in "
+        f"the mean ({one.low:.0f} to {one.high:.0f}); its interval then holds the value in "
+        f"{100 * one.held:.1f} % of the studies ({100 * one.held_low:.1f} to "
+        f"{100 * one.held_high:.1f} %), where 95 % are promised. {100 * one.unfinished:.0f} % give "
+        f"up at {one.most} people.",
+        highlight=False,
+    )
+    console.print(
+        f"{found.studies} studies a size, of simulated participants '{found.observer}', whose own "
+        f"value is {found.truth:.3g}: what they assume, this assumes.",
         highlight=False,
     )
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from squeezefilm.study.identification.power import PowerCurve
     from squeezefilm.study.psychometric.fit import PsychometricFit
+    from squeezefilm.study.simulated.planned_precision import PlannedPrecision
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
@@ -111,6 +112,31 @@ def power(curve: PowerCurve) -> Figure:
         axes.axvline(needed, color=style.ORANGE, lw=1.1, ls=(0, (1.4, 1.2)))
     axes.set(xlabel="participants", ylabel="studies that find it (%)")
     axes.set(xlim=(0, None), ylim=(0, 103))
+    return figure
+
+
+@style.drawn
+def precision(found: PlannedPrecision) -> Figure:
+    """Share of studies that are precise enough against the number of people."""
+    wanted = f"± {100 * found.precision:g} %" if found.measure == "Weber fraction" else ""
+    wanted = wanted or f"± {found.precision:g}"
+    said = f"{found.needed} people give the {found.measure} within {wanted}"
+    if found.needed is None:
+        said = f"{int(found.participants[-1])} people do not give the {found.measure} to {wanted}"
+    figure = style.new_figure(
+        f"{said} in {100 * found.target:g} % of studies",
+        f"simulated studies, {found.studies} per size; bars are 95 % Clopper–Pearson bounds of the "
+        "simulation; dashed: intervals that hold the value of all people (95 % are promised)",
+        4.0,
+    )
+    axes = figure.subplots()
+    axes.plot(found.participants, 100 * found.reached, color=style.BLUE, lw=1.3)
+    for n, low, high in zip(found.participants, found.low, found.high, strict=True):
+        axes.plot([n, n], [100 * low, 100 * high], **style.INTERVAL)
+    axes.plot(found.participants, 100 * found.reached, **style.ESTIMATE)
+    axes.plot(found.participants, 100 * found.held, color=style.ORANGE, ls=(0, (4, 2)), lw=1.1)
+    axes.axhline(95, **style.GUIDE)
+    axes.set(xlabel="participants", ylabel="studies (%)", xlim=(0, None), ylim=(0, 103))
     return figure
 
 

@@ -11,7 +11,7 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Protocol
+from typing import Annotated, Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,10 +26,11 @@ from squeezefilm.study.identification.proportions import proportion_interval
 
 
 class ParticipantSimulator(Protocol):
-    """Draws participants: their counts, shape (participants, answers, stimuli)."""
+    """Draws participants: of each their counts or whatever else the test takes, in an array whose
+    first axis is theirs."""
 
-    def __call__(self, participants: int, random: np.random.Generator) -> si.IntArray:
-        """Counts of so many people; all randomness from `random`."""
+    def __call__(self, participants: int, random: np.random.Generator) -> NDArray[Any]:
+        """So many people; all randomness from `random`."""
         ...
 
 
@@ -101,22 +102,28 @@ def distinction(counts: ArrayLike, first: int, second: int) -> Distinction:
     Raises:
         InputError: numbers out of range or equal, or fewer than two people with trials of both.
     """
+    score = distinction_scores(counts, first, second)
+    if score.size < 2:
+        raise InputError("a test over people needs at least 2 with trials of both stimuli")
+    people, mean, spread = score.size, float(score.mean()), float(score.std(ddof=1))
+    if spread == 0.0:
+        return Distinction(mean, float("nan"), 0.0 if mean > 0 else 1.0, people)
+    t = mean / spread * np.sqrt(people)
+    return Distinction(mean, float(t), float(stats.t.sf(t, people - 1)), people)
+
+
+def distinction_scores(counts: ArrayLike, first: int, second: int) -> si.DimensionlessArray:
+    """Each person's score, as `Distinction` has its mean; people without trials of both are left
+    out. Raises `InputError` for numbers out of range or equal."""
     whole = whole_counts(counts)
     k = min(whole.shape[1:]) if whole.ndim == 3 else 0
     if not (0 <= first < k and 0 <= second < k and first != second):
         raise InputError(f"stimuli {first} and {second} must be two different ones of 0 to {k - 1}")
     totals = whole.sum(axis=1)
     there = (totals[:, first] > 0) & (totals[:, second] > 0)
-    if np.count_nonzero(there) < 2:
-        raise InputError("a test over people needs at least 2 with trials of both stimuli")
     n, totals = whole[there].astype(float), totals[there]
     one, other = n[:, :, first] / totals[:, [first]], n[:, :, second] / totals[:, [second]]
-    score = one[:, first] - other[:, first] + other[:, second] - one[:, second]
-    people, mean, spread = score.size, float(score.mean()), float(score.std(ddof=1))
-    if spread == 0.0:
-        return Distinction(mean, float("nan"), 0.0 if mean > 0 else 1.0, people)
-    t = mean / spread * np.sqrt(people)
-    return Distinction(mean, float(t), float(stats.t.sf(t, people - 1)), people)
+    return np.asarray(one[:, first] - other[:, first] + other[:, second] - one[:, second])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -148,7 +155,7 @@ class PowerCurve:
 
 def power_curve(
     simulate: ParticipantSimulator,
-    test: Callable[[si.IntArray], float],
+    test: Callable[[NDArray[Any]], float],
     participants: tuple[int, ...] = (4, 6, 8, 12, 16, 24, 32, 48),
     *,
     studies: int = 1000,
@@ -163,7 +170,7 @@ def power_curve(
 
     Args:
         simulate: draws people (`DirichletParticipants`, or `SimulatedStudy.people`).
-        test: counts of a study, shape (participants, answers, stimuli) → p value.
+        test: what was drawn of a study's people → p value.
         participants: numbers of people, each at least 2.
         studies: per number; at least 10.
         alpha: significance of a study.
@@ -217,7 +224,7 @@ def _sizes(participants: tuple[int, ...], studies: int) -> tuple[int, ...]:
 
 def _significant(
     simulate: ParticipantSimulator,
-    test: Callable[[si.IntArray], float],
+    test: Callable[[NDArray[Any]], float],
     people: int,
     studies: int,
     alpha: float,

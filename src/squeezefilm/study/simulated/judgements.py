@@ -152,7 +152,9 @@ def simulate_judgements(
             observer, len(tables.fingers), len(schedules[0]), seed, first // _CHUNK
         )
         parts.append(_chunk(room, people, schedules[:count], first))
-        tell(f"{first + count} of {participants} simulated participants")
+        # Twenty words are enough for however many.
+        if 20 * (first + count) // participants > 20 * first // participants:
+            tell(f"{first + count} of {participants} simulated participants")
     return _together(design, participants, room, parts)
 
 

@@ -1,4 +1,4 @@
-"""How many people a planned match-to-sample study needs, by simulated participants."""
+"""How many people a planned study needs to tell two stimuli apart, by simulated participants."""
 
 from __future__ import annotations
 
@@ -7,13 +7,25 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
 from squeezefilm import quantities as si
+from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import Observer
 from squeezefilm.results import stamp, to_json
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.identification.power import PowerCurve, distinction, power_curve
+from squeezefilm.study.identification.power import (
+    ParticipantSimulator,
+    PowerCurve,
+    distinction_scores,
+    power_curve,
+)
+from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import chain_tables
+from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import right_answers, simulate_matches
 
 SIZES = (2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32, 48)
@@ -60,13 +72,14 @@ def planned_power(
     """The power of a design to tell two of its stimuli apart, against the number of people.
 
     Studies are drawn from `POOL` simulated participants who do the whole design; the test is
-    `distinction`, one-sided over people. What the observer assumes, this assumes: see its file.
+    `distinction` of match-to-sample, else Student's over people's `pair_scores`, one-sided. What
+    the observer assumes, this assumes: see its file.
 
     Args:
-        design: of match-to-sample.
+        design: of any task, without adaptive series.
         observer: whose people they are.
         first, second: names of the stimuli.
-        display: one of the design's; the first without it.
+        display: one of the design's (the first without it), or another's name or file.
         participants, studies, alpha, target: as in `power_curve`.
         seed: of people, their answers and the studies.
         progress: is told each step.
@@ -75,15 +88,26 @@ def planned_power(
         InputError: names that are not in the design, or what the simulation refuses.
     """
     asked = dataclasses.replace(design, catch=())
-    a, b = (design.stimuli.index(asked.stimulus(name)) for name in (first, second))
-    alone = _on_one_display(design, display)
+    for name in (first, second):
+        asked.stimulus(name)
+    alone = on_one_display(design, display)
     tell = progress or (lambda _: None)
+    if design.task == "match-to-sample":
+        a, b = (design.stimuli.index(asked.stimulus(name)) for name in (first, second))
+        _require_own_answers(alone)
+    else:
+        require_pair(alone, first, second)
     tables = chain_tables(alone, observer, progress=tell)
     tell(f"{POOL} simulated participants")
-    pool = simulate_matches(alone, observer, POOL, seed, tables)
+    if design.task == "match-to-sample":
+        counts = simulate_matches(alone, observer, POOL, seed, tables).participant_counts()
+        scores = distinction_scores(counts, a, b)
+    else:
+        answers = simulate_judgements(alone, observer, POOL, seed, tables, tell)
+        scores = pair_scores(answers, first, second)
     curve = power_curve(
-        pool.people(),
-        lambda counts: distinction(counts, a, b).p_value,
+        drawn_with_replacement(scores),
+        scored_above_0,
         participants,
         studies=studies,
         alpha=alpha,
@@ -91,23 +115,89 @@ def planned_power(
         seed=seed,
         progress=lambda done, all_: tell(f"studies of size {done} of {all_}"),
     )
-    whole = distinction(pool.participant_counts(), a, b).score
     where = alone.displays[0]
+    whole = float(scores.mean())
     return PlannedPower(design.name, where, first, second, observer.name, curve, whole, seed)
 
 
-def _on_one_display(design: StudyDesign, display: str | None) -> StudyDesign:
-    """The design on one of its displays, the first without one. Raises `InputError` for another
-    display, and for a design whose stimuli have no right answers of their own."""
+def require_pair(design: StudyDesign, first: str, second: str) -> None:
+    """Refuse two stimuli of a design that no test tells apart. Raises `InputError`."""
+    if design.adaptive:
+        raise InputError(
+            f"the series of '{design.name}' choose their comparisons, so that no pair is presented "
+            "often; ask how many people make the threshold precise instead, with --precision 20%"
+        )
+    if first == second:
+        raise InputError(f"'{first}' is asked to be told from itself; name two stimuli")
+    if design.two_surfaces and design.reference not in (first, second):
+        raise InputError(
+            f"'{design.name}' compares with its reference '{design.reference}'; name it as one of "
+            "the two"
+        )
+
+
+def pair_scores(answers: Answers, first: str, second: str) -> si.FloatArray:
+    """How well each person tells two stimuli apart, shape (people,); 0 in the mean of people who
+    cannot: share of right answers less one half; "different" to them less "different" to the same;
+    or the difference of the mean logarithms of their numbers, the one with more less the other.
+
+    Raises `InputError` for a pair that no test tells apart.
+    """
+    design, main = answers.design, answers.main(0)
+    require_pair(design, first, second)
+    names = np.array([one.name for one in main.surfaces])
+    people, size = main.participant, len(main.people)
+
+    def mean(values: si.FloatArray, rows: NDArray[np.bool_]) -> si.FloatArray:
+        return np.asarray(
+            np.bincount(people[rows], values[rows], size)
+            / np.maximum(np.bincount(people[rows], minlength=size), 1)
+        )
+
+    if design.task == "magnitude-estimation":
+        less, more = sorted(
+            (first, second), key=lambda name: design.judged_value(design.stimulus(name))
+        )
+        logs = np.log(main.estimate)
+        return mean(logs, names[main.first] == more) - mean(logs, names[main.first] == less)
+    one, other = names[main.first], names[main.second]
+    wanted = [first, second]
+    here = np.isin(one, wanted) & np.isin(other, wanted) & (one != other)
+    if design.task == "two-interval":
+        return mean(main.correct, here) - 0.5
+    different = (main.choice == 1).astype(float)
+    return mean(different, here) - mean(different, main.first == main.second)
+
+
+def drawn_with_replacement(scores: si.FloatArray) -> ParticipantSimulator:
+    """Draws people's scores, for `power_curve`."""
+
+    def drawn(participants: int, random: np.random.Generator) -> si.FloatArray:
+        return np.asarray(scores[random.integers(0, scores.size, participants)])
+
+    return drawn
+
+
+def scored_above_0(scores: si.FloatArray) -> float:
+    """p of Student's one-sided test that people's mean score is above 0; 1 where all have 0, and 0
+    where all have the same above it."""
+    if np.ptp(scores) == 0.0:
+        return 0.0 if scores[0] > 0 else 1.0
+    return float(stats.ttest_1samp(scores, 0.0, alternative="greater").pvalue)
+
+
+def on_one_display(design: StudyDesign, display: str | None) -> StudyDesign:
+    """The design on one display: its first without a name, or any that can be loaded, one of the
+    user's own too. Raises what `load_display` raises."""
     where = design.displays[0] if display is None else display
     if where not in design.displays:
+        load_display(where)
+    return dataclasses.replace(design, displays=(where,))
+
+
+def _require_own_answers(alone: StudyDesign) -> None:
+    if right_answers(alone).tolist() != list(range(len(alone.stimuli))):
         raise InputError(
-            f"design '{design.name}' is not on '{where}'; it is on {', '.join(design.displays)}"
-        )
-    alone = dataclasses.replace(design, displays=(where,))
-    if right_answers(alone).tolist() != list(range(len(design.stimuli))):
-        raise InputError(
-            f"power needs each stimulus of '{design.name}' to have its own right answer, in the "
+            f"power needs each stimulus of '{alone.name}' to have its own right answer, in the "
             "order of the stimuli"
         )
-    return alone

@@ -1,0 +1,265 @@
+"""How many people make a study's answer precise, and what stopping once it is does to its errors.
+
+For any task: simulated people do the whole design, each one's answers are fitted once, and studies
+are put together of people drawn with replacement. A *sequential* study adds people one at a time
+and stops as soon as its interval is narrow enough; how often the interval of the stopped study
+holds the value of all people is counted, since looking at data to decide when to stop is what
+spoils intervals that ignore it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import Observer
+from squeezefilm.results import stamp, to_json
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.identification.proportions import proportion_interval
+from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.simulated.answers import answers_of
+from squeezefilm.study.simulated.chain_tables import chain_tables
+from squeezefilm.study.simulated.judgements import simulate_judgements
+from squeezefilm.study.simulated.participants import simulate_matches
+from squeezefilm.study.simulated.planned_power import SIZES, on_one_display
+from squeezefilm.study.tasks.magnitude import exponents
+from squeezefilm.study.tasks.population import Population
+from squeezefilm.study.tasks.same_different import same_different_fractions
+from squeezefilm.study.tasks.two_interval import t_interval, weber_fractions
+
+PEOPLE = 400
+"""Simulated people that studies are drawn from; each one's fit takes some 20 ms."""
+_FEWEST, _MOST = 4, 96
+"""People with whom a sequential study first looks at its interval, and at which it gives up."""
+
+Ends = tuple[float, float, float]
+Interval = Callable[[si.IntArray], Ends]
+
+
+@dataclass(frozen=True, slots=True)
+class SequentialStudies:
+    """What came of studies that stopped as soon as their interval was narrow enough.
+
+    Attributes:
+        mean, low, high: people when they stopped: mean, and central 95 % of the studies.
+        unfinished: share that gave up at `most` people.
+        held: share of all studies whose interval held the value of all people, with its 95 %
+            bounds from the finite number of studies; 0.95 is promised.
+        most: people at which they give up.
+    """
+
+    mean: float
+    low: float
+    high: float
+    unfinished: si.Dimensionless
+    held: si.Dimensionless
+    held_low: si.Dimensionless
+    held_high: si.Dimensionless
+    most: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlannedPrecision:
+    """Precision against the number of people; arrays of shape (numbers,).
+
+    Attributes:
+        design, display, observer: by name.
+        measure: "Weber fraction", "exponent" or "proportion correct".
+        precision: half the interval asked for: of a Weber fraction in parts of it, else absolute.
+        truth: the value of all simulated people.
+        participants: numbers of people.
+        reached: share of studies whose interval is that narrow, with `low` and `high`, its 95 %
+            Clopper–Pearson bounds from the finite number of studies.
+        held: share whose interval holds `truth`.
+        target: share asked for.
+        needed: fewest people that reach it, and all larger numbers too; None if none does.
+        studies: simulated per number.
+        sequential: what becomes of stopping once the interval is narrow enough.
+        seed: of people, answers and studies.
+    """
+
+    design: str
+    display: str
+    observer: str
+    measure: str
+    precision: si.Dimensionless
+    truth: float
+    participants: si.IntArray
+    reached: si.DimensionlessArray
+    low: si.DimensionlessArray
+    high: si.DimensionlessArray
+    held: si.DimensionlessArray
+    target: si.Dimensionless
+    needed: int | None
+    studies: int
+    sequential: SequentialStudies
+    seed: int
+    origin: str = "simulated"
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints."""
+        return {**to_json(self), "provenance": stamp((self.design, self.observer), self.seed)}
+
+
+def planned_precision(
+    design: StudyDesign,
+    observer: Observer,
+    precision: si.Dimensionless,
+    *,
+    display: str | None = None,
+    participants: tuple[int, ...] = SIZES,
+    studies: int = 400,
+    target: si.Dimensionless = 0.8,
+    people: int = PEOPLE,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> PlannedPrecision:
+    """How many people make the answer of a design as precise as asked, by simulation.
+
+    Args:
+        design: of any task.
+        observer: whose people they are.
+        precision: half of the 95 % interval: of Weber fractions in parts of the value, of
+            exponents and proportions correct absolute.
+        display: one of the design's (the first without it), or another's name or file.
+        participants: numbers of people, each at least 2.
+        studies: per number, at least 10.
+        target: share of studies that are to be that precise.
+        people: simulated, that studies are drawn from, at least 20.
+        seed: of people, answers and studies.
+        progress: is told each step.
+
+    Raises:
+        InputError: a number out of range, or what the simulation refuses.
+    """
+    si.require("precision", precision, above=0.0, at_most=2.0)
+    si.require("target", target, above=0.0, below=1.0)
+    si.require("studies", studies, at_least=10, at_most=100_000)
+    si.require("people", people, at_least=20, at_most=20_000)
+    sizes = tuple(sorted(set(participants)))
+    if not sizes or sizes[0] < 2:
+        raise InputError(f"participants = {sizes}; give numbers of at least 2")
+    tell = progress or (lambda _: None)
+    alone = on_one_display(design, display)
+    tables = chain_tables(alone, observer, progress=tell)
+    tell(f"{people} simulated participants")
+    if design.task == "match-to-sample":
+        answers = answers_of(simulate_matches(alone, observer, people, seed, tables))
+    else:
+        answers = simulate_judgements(alone, observer, people, seed, tables, tell)
+    measure, interval = interval_of(answers, tell)
+    truth = interval(np.arange(people))[0]
+    relative = measure == "Weber fraction"
+
+    def precise(found: Ends) -> bool:
+        _, low, high = found
+        if relative:
+            return low > 0 and math.sqrt(high / low) - 1.0 <= precision
+        return 0.5 * (high - low) <= precision
+
+    reached, held = np.zeros(len(sizes)), np.zeros(len(sizes))
+    bounds = []
+    for at, size in enumerate(sizes):
+        tell(f"studies of {size} people")
+        random = np.random.default_rng([seed, size])
+        found = [interval(random.integers(0, people, size)) for _ in range(studies)]
+        reached[at] = np.mean([precise(one) for one in found])
+        held[at] = np.mean([low <= truth <= high for _, low, high in found])
+        bounds.append(
+            proportion_interval(round(reached[at] * studies), studies, method="Clopper–Pearson")
+        )
+    tell("sequential studies")
+    sequential = _sequential(interval, precise, truth, people, studies, seed)
+    lasting = [size for at, size in enumerate(sizes) if np.all(reached[at:] >= target)]
+    return PlannedPrecision(
+        design=design.name,
+        display=alone.displays[0],
+        observer=observer.name,
+        measure=measure,
+        precision=precision,
+        truth=truth,
+        participants=np.array(sizes),
+        reached=reached,
+        low=np.array([one.low for one in bounds]),
+        high=np.array([one.high for one in bounds]),
+        held=held,
+        target=target,
+        needed=lasting[0] if lasting else None,
+        studies=studies,
+        sequential=sequential,
+        seed=seed,
+    )
+
+
+def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Interval]:
+    """What a study of these people measures, and its value with the 95 % interval of any group of
+    them, whose people are fitted once."""
+    main = answers.main(0)
+    task = answers.design.task
+    if task in ("two-interval", "same-different"):
+        tell("each person's fit")
+        if task == "two-interval":
+            people = weber_fractions(main, 0.95, lambda _: None)[1]
+        else:
+            people = same_different_fractions(main, 0.95)[1]
+        population = Population(people)
+
+        def fraction(who: si.IntArray) -> Ends:
+            found = population.estimate(0.95, who)
+            return math.exp(found.mean), math.exp(found.low), math.exp(found.high)
+
+        return "Weber fraction", fraction
+    if task == "magnitude-estimation":
+        values = np.array([one.estimate.value for one in exponents(main, 0.95)[0]])
+        measure = "exponent"
+    else:
+        size = len(main.people)
+        right = np.bincount(main.participant, main.correct, size)
+        values = right / np.bincount(main.participant, minlength=size)
+        measure = "proportion correct"
+
+    def mean(who: si.IntArray) -> Ends:
+        found = t_interval(values[who], 0.95)
+        return found.value, found.low, found.high
+
+    return measure, mean
+
+
+def _sequential(
+    interval: Interval,
+    precise: Callable[[Ends], bool],
+    truth: float,
+    people: int,
+    studies: int,
+    seed: int,
+) -> SequentialStudies:
+    random = np.random.default_rng([seed, 0])
+    stopped, held, unfinished = [], 0, 0
+    for _ in range(studies):
+        who = random.integers(0, people, _MOST)
+        for count in range(_FEWEST, _MOST + 1):
+            found = interval(who[:count])
+            if precise(found):
+                break
+        else:
+            unfinished += 1
+        stopped.append(count)
+        held += found[1] <= truth <= found[2]
+    low, high = np.quantile(stopped, [0.025, 0.975])
+    bounds = proportion_interval(int(held), studies, method="Clopper–Pearson")
+    return SequentialStudies(
+        mean=float(np.mean(stopped)),
+        low=float(low),
+        high=float(high),
+        unfinished=unfinished / studies,
+        held=held / studies,
+        held_low=bounds.low,
+        held_high=bounds.high,
+        most=_MOST,
+    )
