@@ -236,7 +236,16 @@ class RunOptions:
         bool,
         typer.Option("--acknowledge-ultrasound", help="The exposure was read and acknowledged."),
     ] = False
-    seed: Seed = 0
+    seed: Annotated[
+        int | None, typer.Option(help="Of all orders of a new file; one that is there has its own.")
+    ] = None
+    by_hand: Annotated[
+        str,
+        typer.Option(
+            help="Where the experimenter is told what to present with --drive none: terminal, "
+            "nowhere, or a file to watch in a second window."
+        ),
+    ] = "terminal"
     station: Annotated[int, typer.Option(help="Which station this is, from 0.")] = 0
     stations: Annotated[int, typer.Option(help="How many stations there are.")] = 1
 

@@ -297,9 +297,12 @@ async function hand(found, began, fields) {
 }
 
 function after(told) {
-  if (told.correct === null || told.correct === undefined) {
+  const known = told.correct !== null && told.correct !== undefined;
+  const said = [told.spoiled && `This one comes again later: ${told.spoiled}.`, told.practice && `${told.practice}.`].filter(Boolean);
+  if (!known && !said.length) {
     ask("next");
     return;
   }
-  page(element("h2", { text: told.correct ? "Right" : `It was ${told.right}` }), next("Next"));
+  const head = known ? (told.correct ? "Right" : `It was ${told.right}`) : "One more thing";
+  page(element("h2", { text: head }), ...said.map((text) => element("p", { role: "status", text })), next("Next"));
 }

@@ -16,6 +16,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.results import to_json
+from squeezefilm.study.conduct.again import COUNTED
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import (
     Exposure,
@@ -130,6 +131,7 @@ class Studies:
         found = store.rows(
             "SELECT t.display, t.stimuli, r.choice, count(*) AS n FROM response r "
             "JOIN trial t ON t.uuid = r.trial WHERE t.phase = 'main' "
+            f"AND {COUNTED} "
             "GROUP BY t.display, t.stimuli, r.choice"
         )
         tables = []
@@ -301,6 +303,8 @@ class Studies:
             "remaining": told.remaining,
             "right": told.right_answer if feedback else None,
             "correct": told.correct if feedback else None,
+            "spoiled": told.spoiled,
+            "practice": told.practice,
             "study": sitting.study,
         }
 

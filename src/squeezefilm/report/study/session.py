@@ -9,10 +9,12 @@ from pathlib import Path
 
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
+from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.report.study.terminal import TerminalExaminer, ask_acknowledgement
 from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
 from squeezefilm.study.conduct.trial_by_trial import Examiner
+from squeezefilm.study.record.store import utc_now
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,11 +31,12 @@ class SessionRequest:
     conditions: Path | None = None
     consent: bool = False
     acknowledge: Callable[[str], bool] = ask_acknowledgement
-    seed: int = 0
+    seed: int | None = None
     station: int = 0
     stations: int = 1
     tell: Callable[[str], None] = print
     progress: Callable[[], AbstractContextManager[Callable[[str], None]]] | None = None
+    by_hand: str = "terminal"
 
 
 @reads_text
@@ -44,7 +47,9 @@ def run_study(asked: SessionRequest) -> str:
 
     `store` is the study's file, made for the preset or file `design` if it is not there; somebody
     new is enrolled without a `participant`. `examiner` asks the questions: without one, this
-    terminal does. The rest, and what is raised, as `open_study` and `run_session`.
+    terminal does. `by_hand` says where the experimenter is told which surface to put under the
+    finger if no device plays: at this "terminal", in a file (its path), or "nowhere". The rest, and
+    what is raised, as `open_study` and `run_session`.
     """
     path = Path(asked.store)
     with open_study(path, asked.design, asked.seed, asked.station, asked.stations) as found:
@@ -55,9 +60,42 @@ def run_study(asked: SessionRequest) -> str:
         return run_session(
             found,
             asked.participant,
-            Desk(examiner, asked.acknowledge, asked.tell, asked.progress),
+            Desk(
+                examiner,
+                asked.acknowledge,
+                asked.tell,
+                asked.progress,
+                _told_by_hand(asked) if asked.drive == "none" else None,
+            ),
             drive=asked.drive,
             amplitude_per_pickup=asked.amplitude_per_pickup,
             conditions=asked.conditions,
             consent=asked.consent,
         )
+
+
+def _told_by_hand(asked: SessionRequest) -> Callable[[str], None] | None:
+    """Tells the experimenter what to present, where the participant does not read it."""
+    if asked.by_hand == "nowhere":
+        return None
+    if asked.by_hand == "terminal":
+        asked.tell(
+            "This terminal tells which surface to present: keep it from the participant's eyes and "
+            "type the answers yourself. Or give --by-hand FILE, and watch the file in a second "
+            "window (tail -f FILE)."
+        )
+        return lambda line: asked.tell(f"EXPERIMENTER: {line}")
+    path = Path(asked.by_hand)
+
+    def write(line: str) -> None:
+        try:
+            with path.open("a", encoding="utf-8") as file:
+                file.write(f"{utc_now()}  {line}\n")
+        except OSError as error:
+            raise InputError(
+                f"{path} cannot be written ({error}), so that nobody is told what to present; give "
+                "--by-hand another file"
+            ) from error
+
+    write("a session begins")
+    return write

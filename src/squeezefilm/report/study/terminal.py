@@ -85,9 +85,12 @@ def show_status(store: StudyStore) -> None:
     heading(console, f"{study['name']}: {store.path}")
     table(
         console,
-        ("Participant", "Number", "Answered", "Planned"),
+        ("Participant", "Number", "Answered", "Planned", "Set aside"),
         [
-            (one["uuid"], str(one["number"]), str(one["answered"]), str(one["planned"]))
+            (
+                one["uuid"],
+                *(str(one[key]) for key in ("number", "answered", "planned", "set_aside")),
+            )
             for one in store.participants()
         ],
     )
@@ -175,7 +178,10 @@ class TerminalExaminer:
             self._write(f"Answer with a number from 1 to {len(trial.alternatives)}.")
 
     def acknowledge(self, presentation: Presentation, told: Acknowledgement) -> None:
-        """Say what was right, in practice only."""
+        """Say what was right, in practice only, and what comes again."""
+        for said in (told.spoiled and f"It comes again later: {told.spoiled}", told.practice):
+            if said:
+                self._write(f"{said}.")
         if presentation.trial.feedback and told.right_answer:
             word = "Right" if told.correct else f"It was '{told.right_answer}'"
             self._write(f"{word}.")

@@ -266,7 +266,14 @@ def explored(trace: Trace, name: str) -> Exploration:
         mean_speed=length / touched if touched else math.nan,
         trace=csv_text(table) if len(time) else "",
         raw_trace=name,
+        touch=_share_touched(trace, touched),
     )
+
+
+def _share_touched(trace: Trace, touched: si.Second) -> si.Dimensionless:
+    times = trace.rows[:, column.TIME]
+    whole = float(times[-1] - times[0]) if times.size > 1 else 0.0
+    return min(touched / whole, 1.0) if whole else math.nan
 
 
 def _path(trace: Trace) -> Table:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+import sqlite3
 import time
 import uuid
 from collections.abc import Callable
@@ -24,8 +25,11 @@ from squeezefilm.errors import InputError
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.results import to_json
 from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.conduct.again import COUNTED, practise_again, set_aside
 from squeezefilm.study.conduct.sessions import display_wanted, next_planned
 from squeezefilm.study.conduct.study_device import Exploration
+from squeezefilm.study.design.rules import TrialRules
+from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import Trial
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
 
@@ -88,6 +92,8 @@ class Acknowledgement:
     right_answer: str
     repeated: bool
     remaining: int
+    spoiled: str = ""
+    practice: str = ""
 
 
 class StudyRun:
@@ -131,7 +137,7 @@ class StudyRun:
         """Trials without an answer."""
         found = self._store.rows(
             "SELECT count(*) - count(r.trial) AS n FROM trial t LEFT JOIN response r "
-            "ON r.trial = t.uuid WHERE t.participant = ?",
+            f"ON r.trial = t.uuid WHERE t.participant = ? AND {COUNTED}",
             [self.participant],
         )
         return int(found[0]["n"])
@@ -197,12 +203,26 @@ class StudyRun:
         with self._store.transaction() as write:
             # Another process with the same participant may have been faster.
             done = write.execute("SELECT 1 FROM response WHERE trial = ?", [token]).fetchone()
+            practice = ""
             if done is None:
                 insert(write, "response", row)
+                practice = self._come_again(write, planned, trial, response)
         self._presented = None
         known = self._recorded(planned)
         assert known is not None
-        return dataclasses.replace(known, repeated=done is not None)
+        return dataclasses.replace(known, repeated=done is not None, practice=practice)
+
+    def _come_again(
+        self, write: sqlite3.Connection, planned: Row, trial: Trial, response: Response
+    ) -> str:
+        """Plan a spoiled trial again, and practice that was not good enough."""
+        design = self._store.design
+        reason = spoiled_by(design, response) if trial.asks else ""
+        if reason:
+            set_aside(write, [planned], self._session["uuid"], reason)
+        if trial.phase == "practice":
+            return practise_again(write, design, self.participant, trial.display)
+        return ""
 
     def presented(self, token: str) -> tuple[Trial, tuple[Stimulus | Grating, ...]]:
         """The trial of a token and its surfaces. Raises `InputError` for a token of no trial of
@@ -249,6 +269,7 @@ class StudyRun:
         if not found:
             return None
         row = found[0]
+        aside = self._store.rows("SELECT reason FROM set_aside WHERE trial = ?", [planned["uuid"]])
         return Acknowledgement(
             number=planned["number"],
             choice=row["choice"],
@@ -257,6 +278,7 @@ class StudyRun:
             right_answer=planned["answer"],
             repeated=True,
             remaining=self.remaining,
+            spoiled=aside[0]["reason"] if aside else "",
         )
 
     def _surfaces(self, row: Row) -> tuple[Trial, tuple[Stimulus | Grating, ...], float | None]:
@@ -271,7 +293,8 @@ class StudyRun:
         series = next(one for one in design.adaptive if one.name == trial.adaptive)
         answers = self._store.rows(
             "SELECT r.intensity, r.correct FROM response r JOIN trial t ON t.uuid = r.trial WHERE "
-            "t.participant = ? AND t.adaptive = ? AND t.display = ? ORDER BY t.number",
+            f"t.participant = ? AND t.adaptive = ? AND t.display = ? AND {COUNTED} "
+            "ORDER BY t.number",
             [self.participant, series.name, trial.display],
         )
         method = adaptive_method(series, ((a["intensity"], bool(a["correct"])) for a in answers))
@@ -310,6 +333,17 @@ class StudyRun:
             "device_sha256": self._session["device_sha256"],
             "calibration_sha256": self._session["calibration_sha256"],
         }
+
+
+def spoiled_by(design: StudyDesign, response: Response) -> str:
+    """Which of a design's rules the exploration of an answer breaks; empty for none, and where
+    nothing was recorded of it."""
+    rules = design.rules or TrialRules()
+    for one in response.explorations:
+        broken = rules.broken(one.path_length, one.mean_speed, one.mean_normal_force, one.touch)
+        if broken:
+            return broken
+    return ""
 
 
 def _known(value: float) -> float | None:

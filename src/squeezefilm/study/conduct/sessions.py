@@ -24,6 +24,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.plate.exposure import EAR_DISTANCE
 from squeezefilm.plate.sound import SoundField
 from squeezefilm.results import to_json
+from squeezefilm.study.conduct.again import COUNTED, restart_block
 from squeezefilm.study.conduct.study_device import DeviceVerification, StudyDevice
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
 
@@ -182,11 +183,17 @@ def display_wanted(store: StudyStore, participant: str) -> str | None:
 
 
 def next_planned(store: StudyStore, participant: str) -> Row | None:
-    """The row of a participant's first trial without an answer, with its `presentations` so far."""
+    """The row of a participant's next trial without an answer, with its `presentations` so far.
+
+    Block by block in the order of their beginnings, and within one by number: what is asked again
+    has a late number, and comes at the end of its block.
+    """
     found = store.rows(
+        "WITH mine AS (SELECT *, min(number) OVER (PARTITION BY display, block) AS begun "
+        "FROM trial WHERE participant = ?) "
         "SELECT t.*, (SELECT count(*) FROM presentation p WHERE p.trial = t.uuid) AS presentations "
-        "FROM trial t LEFT JOIN response r ON r.trial = t.uuid "
-        "WHERE t.participant = ? AND r.trial IS NULL ORDER BY t.number LIMIT 1",
+        "FROM mine t LEFT JOIN response r ON r.trial = t.uuid "
+        f"WHERE r.trial IS NULL AND {COUNTED} ORDER BY t.begun, t.number LIMIT 1",
         [participant],
     )
     return found[0] if found else None
@@ -251,6 +258,9 @@ def begin_session(
     with store.transaction() as write:
         insert(write, "session", row)
         insert(write, "verification", _verification_row(session, "before", verification))
+    planned = next_planned(store, participant)
+    if planned is not None:
+        restart_block(store, participant, session, planned)
     return session
 
 

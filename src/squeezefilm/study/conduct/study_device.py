@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -87,7 +88,8 @@ class Exploration:
 
     `trace` is a table's CSV text (`formats.traces.csv_text`) of the finger's path, empty if there
     is none; its metadata must not name the participant. `raw_trace` is the random name of a file
-    that the device wrote into the study's folder of traces, empty if there is none.
+    that the device wrote into the study's folder of traces, empty if there is none. `touch` is the
+    share of the time in which the finger touched.
     """
 
     path_length: si.Metre = math.nan
@@ -95,6 +97,7 @@ class Exploration:
     mean_normal_force: si.Newton = math.nan
     trace: str = ""
     raw_trace: str = ""
+    touch: si.Dimensionless = math.nan
 
 
 class StudyDevice(Protocol):
@@ -133,4 +136,26 @@ class NoDevice:
 
     def stop(self) -> Exploration:
         """Nothing is known of the finger."""
+        return Exploration()
+
+
+class ByHand(NoDevice):
+    """No device: the experimenter puts each surface under the finger, and is told which.
+
+    Args:
+        tell: where the experimenter reads it, and the participant does not.
+    """
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self._tell = tell
+
+    def present(self, stimulus: Stimulus, seed: int) -> None:
+        """Say which surface is wanted."""
+        period = si.format_quantity(stimulus.period, si.Unit("m"), 4)
+        depth = f"{100 * stimulus.friction_depth:.3g} % change of friction"
+        self._tell(f"put '{stimulus.name}' under the finger: period {period}, {depth}")
+
+    def stop(self) -> Exploration:
+        """Say that it is to be taken away; nothing is known of the finger."""
+        self._tell("take it away")
         return Exploration()

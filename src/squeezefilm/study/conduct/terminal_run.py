@@ -22,10 +22,12 @@ from squeezefilm.study.conduct.sessions import (
     end_session,
     exposure,
 )
-from squeezefilm.study.conduct.study_device import NoDevice, StudyDevice
+from squeezefilm.study.conduct.study_device import ByHand, NoDevice, StudyDevice
 from squeezefilm.study.conduct.trial_by_trial import Examiner, conduct
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.design.trials import expected_duration
+from squeezefilm.study.identification.course import attention
+from squeezefilm.study.record.answers import recorded_answers
 from squeezefilm.study.record.deletion import remove_rows
 from squeezefilm.study.record.store import StudyStore
 
@@ -37,7 +39,9 @@ class Desk:
     Attributes:
         examiner: asks the participant.
         acknowledge: is shown the statement on airborne ultrasound, and says whether it may go on.
-        tell: is told who was enrolled.
+        tell: is told who was enrolled, and what the experimenter has to know at the end.
+        by_hand: is told which surface to put under the finger where no device plays; the
+            participant must not read it. Without one nobody is told.
         progress: shows what goes on while it is open; it is closed whenever anybody is asked.
     """
 
@@ -45,25 +49,29 @@ class Desk:
     acknowledge: Callable[[str], bool]
     tell: Callable[[str], None] = print
     progress: Callable[[], AbstractContextManager[SayProgress]] | None = None
+    by_hand: Callable[[str], None] | None = None
 
 
 def open_study(
-    path: Path, design: str | Path, seed: int, station: int = 0, stations: int = 1
+    path: Path, design: str | Path, seed: int | None, station: int = 0, stations: int = 1
 ) -> StudyStore:
-    """The study's file, created if it is not there.
+    """The study's file, created if it is not there, with seed 0 without another.
 
-    Raises `InputError` if it is there and of another design or seed.
+    The seed of a file that is there is its own; it need not be said again. Raises `InputError` if
+    the file is of another design, or of another seed than was said.
     """
     wanted = load_design(design)
     if not path.exists():
-        return StudyStore.create(path, wanted, seed, station=station, stations=stations)
+        return StudyStore.create(path, wanted, seed or 0, station=station, stations=stations)
     store = StudyStore.open(path)
-    study = store.study
-    if study["design_sha256"] != wanted.sha256 or study["seed"] != seed:
+    here = store.design.sha256
+    own = store.study["seed"]
+    if here != wanted.sha256 or seed not in (None, own):
         store.close()
+        said = "" if seed is None else f" with seed {seed}"
         raise InputError(
-            f"{path} is of design {study['design_sha256'][:12]} with seed {study['seed']}; asked "
-            f"for is {wanted.sha256[:12]} with seed {seed}; give another --store"
+            f"{path} is of design {here[:12]} with seed {own}; asked for is "
+            f"{wanted.sha256[:12]}{said}; leave --seed out, or give another --store"
         )
     return store
 
@@ -97,7 +105,7 @@ def run_session(
                 return f"participant {who} has answered every trial"
             with shown() as step:
                 device, exposed = _device(
-                    drive, store, display, amplitude_per_pickup, step, closing
+                    drive, store, display, amplitude_per_pickup, step, closing, desk.by_hand
                 )
             acknowledged = exposed is not None and desk.acknowledge(exposed.statement)
             with shown() as step:
@@ -122,9 +130,22 @@ def run_session(
     said = f"{count} trials on {display} recorded"
     if after.problems:
         said += f". CAUTION, the device is off after the session: {'; '.join(after.problems)}"
+    said += _attended(store, who)
     if run.state == "display changes":
         said += f"; next display: {display_wanted(store, who)}"
     return said
+
+
+def _attended(store: StudyStore, who: str) -> str:
+    """What a participant's catch trials say, for the experimenter; nothing without any."""
+    answers = recorded_answers(store)
+    if who not in answers.people:
+        return ""
+    mine = answers.participant == answers.people.index(who)
+    for one in attention(answers.take(mine & (answers.phase == "catch"))):
+        said = f"; {one.right} of {one.asked} catch trials right"
+        return said if one.attended else f"{said}: CAUTION, fewer than of somebody who attends"
+    return ""
 
 
 def _sitting(conditions: Path | None, consent: bool) -> SessionConditions:
@@ -144,9 +165,10 @@ def _device(
     amplitude_per_pickup: si.MetrePerVolt | None,
     tell: SayProgress,
     closing: contextlib.ExitStack,
+    by_hand: Callable[[str], None] | None,
 ) -> tuple[StudyDevice, Exposure | None]:
     if drive == "none":
-        return NoDevice(), None
+        return (NoDevice() if by_hand is None else ByHand(by_hand)), None
     # Plates, film and loop take a second to import, which a study by hand need not wait for.
     from squeezefilm.display import load_display
     from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive

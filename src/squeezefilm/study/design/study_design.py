@@ -26,6 +26,7 @@ from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
 from squeezefilm.perception.stimuli import Grating, Stimulus, Varied
 from squeezefilm.results import config_hash
+from squeezefilm.study.design.rules import TrialRules
 from squeezefilm.study.design.special_trials import (
     AdaptiveCondition,
     CatchTrial,
@@ -67,6 +68,12 @@ class StudyDesign:
         adaptive: series in place of fixed repetitions; stimuli beside the reference are then for
             practice and familiarisation only.
         break_between_blocks: rest (s) before every block but the first.
+        rules: of the exploration; a trial outside of them comes again.
+        practice_criterion: share of right answers in a round of practice below which there is
+            another round (1); 0 for none.
+        practice_rounds: of practice, at most.
+        resume_within: time (s) after which a block that was left is begun again when somebody goes
+            on; 0 for never.
         trial_duration: expected time of one trial (s), for planning.
         note: anything a reader must know, such as what of it is assumed.
 
@@ -93,6 +100,10 @@ class StudyDesign:
     adaptive: tuple[AdaptiveCondition, ...] = ()
     break_between_blocks: Annotated[si.Second, si.AtLeast(0.0)] = 60.0
     trial_duration: Annotated[si.Second, si.Above(0.0), si.AtMost(3600.0)] = 20.0
+    rules: TrialRules | None = None
+    practice_criterion: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 0.0
+    practice_rounds: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 3
+    resume_within: Annotated[si.Second, si.AtLeast(0.0)] = 0.0
     note: str = ""
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
@@ -259,6 +270,12 @@ class StudyDesign:
                 "practice needs a stimulus to compare with the reference; add one (adaptive "
                 "series use it for practice only), or practice = 0",
                 quantity="practice",
+            )
+        if self.practice_criterion and (not self.practice or self.task == "magnitude-estimation"):
+            raise InputError(
+                f"practice_criterion = {self.practice_criterion:g} needs practice with right "
+                "answers; give practice = 8 or so, or leave it out (numbers are never right)",
+                quantity="practice_criterion",
             )
         for series in self.adaptive:
             self._require_series(series)

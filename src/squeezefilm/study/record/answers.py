@@ -90,12 +90,16 @@ class Answers:
 
 
 def recorded_answers(store: StudyStore) -> Answers:
-    """The answered trials of a study's file, without those that were only felt.
+    """The answered trials of a study's file, without those that were only felt or set aside.
 
     Raises `RecordError` if the file cannot be read.
     """
     design = store.design
-    rows = [row for row in trial_table(store) if row["phase"] != "familiarisation"]
+    rows = [
+        row
+        for row in trial_table(store)
+        if row["phase"] != "familiarisation" and not row["set_aside"]
+    ]
     known: dict[tuple[str, object], int] = {}
     surfaces: list[Stimulus] = []
 

@@ -28,6 +28,7 @@ from squeezefilm.study.record.store import StudyStore
 _PIECE = 1 << 20
 _TRIALS = "trial IN (SELECT uuid FROM trial WHERE participant = ?)"
 _OF = {
+    "set_aside": _TRIALS,
     "response": _TRIALS,
     "presentation": _TRIALS,
     "verification": "session IN (SELECT uuid FROM session WHERE participant = ?)",

@@ -49,11 +49,16 @@ def merge(store: StudyStore, other: str | Path) -> Merge:
         raise InputError(f"{other} is this file itself; give another station's")
     with StudyStore.open(other) as theirs:
         ours, foreign = store.study, theirs.study
-        for key, what in (("design_sha256", "design"), ("seed", "seed")):
-            if ours[key] != foreign[key]:
+        # As this program reads them: a design has more to it than when an older one wrote it down.
+        designs = store.design.sha256, theirs.design.sha256
+        for what, here, there in (
+            ("design", *designs),
+            ("seed", ours["seed"], foreign["seed"]),
+        ):
+            if here != there:
                 raise InputError(
-                    f"{other} is of another study: its {what} is {foreign[key]}, here it is "
-                    f"{ours[key]}; stations must be created from one design and one seed"
+                    f"{other} is of another study: its {what} is {there}, here it is {here}; "
+                    "stations must be created from one design and one seed"
                 )
         store.require_whole()
         theirs.require_whole()
@@ -90,7 +95,7 @@ def _merge_table(
     present: Counter[str],
     conflicts: list[str],
 ) -> None:
-    key = "trial" if table == "response" else "uuid"
+    key = "trial" if table in ("response", "set_aside") else "uuid"
     known = {row[key]: row for row in store.rows(f"SELECT * FROM {table}")}
     for row in theirs.rows(f"SELECT * FROM {table}"):
         mine = known.get(row[key])

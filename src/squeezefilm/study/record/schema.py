@@ -9,8 +9,9 @@ from __future__ import annotations
 
 APPLICATION_ID = 0x73_66_73_74
 """Marks the file as a study of squeezefilm in SQLite's header ("sfst")."""
-VERSION = 1
-"""Of the tables, in SQLite's header; another one is refused."""
+VERSION = 2
+"""Of the tables, in SQLite's header. Version 1 had no `set_aside`, and is brought up to date
+when it is opened; another one is refused."""
 
 SCHEMA = """
 CREATE TABLE study (
@@ -102,10 +103,29 @@ CREATE TABLE response (
     calibration_sha256 TEXT NOT NULL
 ) STRICT, WITHOUT ROWID;
 
+CREATE TABLE set_aside (
+    trial TEXT PRIMARY KEY REFERENCES trial (uuid), -- its answer, if any, counts no more
+    session TEXT NOT NULL REFERENCES session (uuid),
+    reason TEXT NOT NULL,
+    again TEXT NOT NULL REFERENCES trial (uuid),    -- asked in its place
+    made_utc TEXT NOT NULL
+) STRICT, WITHOUT ROWID;
+
 CREATE INDEX trial_of ON trial (participant, number);
 CREATE INDEX presentation_of ON presentation (trial);
 CREATE INDEX session_of ON session (participant);
 """
 
-TABLES = ("participant", "trial", "session", "verification", "presentation", "response")
+TABLES = (
+    "participant",
+    "trial",
+    "session",
+    "verification",
+    "presentation",
+    "response",
+    "set_aside",
+)
 """What merges from other stations, each table after those it refers to. Keys come first."""
+
+UPGRADE_1 = next(one for one in SCHEMA.split(";") if "CREATE TABLE set_aside" in one)
+"""What version 1 lacks."""

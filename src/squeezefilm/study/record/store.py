@@ -37,7 +37,7 @@ from squeezefilm.study.record.database import (
     same_folders,
 )
 from squeezefilm.study.record.erasure import require_plain
-from squeezefilm.study.record.schema import APPLICATION_ID, SCHEMA, VERSION
+from squeezefilm.study.record.schema import APPLICATION_ID, SCHEMA, UPGRADE_1, VERSION
 
 _HIGHEST_SEED = 2**53
 _UNFINISHED = ".unfinished"
@@ -148,6 +148,7 @@ class StudyStore:
         require_study(path)
         store = cls(path, Database(path))
         try:
+            store._bring_up_to_date()
             for problem in problems(store.rows, lambda: store.design):
                 raise InputError(
                     f"{path} is damaged or was not written by this program: {problem}. Nothing of "
@@ -158,6 +159,16 @@ class StudyStore:
             store.close()
             raise
         return store
+
+    def _bring_up_to_date(self) -> None:
+        """Give a file of version 1 the table that it lacks; nothing in it changes."""
+        if self.rows("PRAGMA user_version")[0]["user_version"] != 1:
+            return
+        if self.rows("SELECT 1 FROM sqlite_schema WHERE name = 'set_aside'"):
+            return
+        with self.transaction() as write:
+            write.execute(UPGRADE_1)
+            write.execute(f"PRAGMA user_version = {VERSION}")
 
     def close(self) -> None:
         """Close the file; its write-ahead log is folded in where nobody else has it open."""
@@ -289,11 +300,15 @@ class StudyStore:
         return pseudonym
 
     def participants(self) -> list[dict[str, Any]]:
-        """Everyone enrolled, by number: uuid, number, trials planned and answered."""
+        """Everyone enrolled, by number: uuid, number, trials planned and answered, and set aside.
+
+        What was set aside is asked again and counts neither as planned nor as answered."""
         return self.rows(
-            "SELECT p.uuid, p.number, p.enrolled_utc, count(t.uuid) AS planned, "
-            "count(r.trial) AS answered FROM participant p JOIN trial t ON t.participant = p.uuid "
-            "LEFT JOIN response r ON r.trial = t.uuid GROUP BY p.uuid ORDER BY p.number, p.uuid"
+            "SELECT p.uuid, p.number, p.enrolled_utc, count(t.uuid) - count(a.trial) AS planned, "
+            "sum(r.trial IS NOT NULL AND a.trial IS NULL) AS answered, count(a.trial) AS set_aside "
+            "FROM participant p JOIN trial t ON t.participant = p.uuid "
+            "LEFT JOIN response r ON r.trial = t.uuid LEFT JOIN set_aside a ON a.trial = t.uuid "
+            "GROUP BY p.uuid ORDER BY p.number, p.uuid"
         )
 
     def require_participant(self, pseudonym: str) -> Row:

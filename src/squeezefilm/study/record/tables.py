@@ -56,6 +56,7 @@ COLUMNS = (
     Column("path_length_m", "Way of the finger during the trial", "m", "number"),
     Column("mean_speed_m_per_s", "Its mean speed", "m/s", "number"),
     Column("mean_normal_force_N", "Its mean normal force", "N", "number"),
+    Column("set_aside", "Why the answer does not count and the trial was asked again; else empty"),
     Column("presentations", "How often the trial was presented until answered", kind="whole"),
     Column("started_utc", "Wall clock when it began (UTC)"),
     Column("ended_utc", "Wall clock when it was answered (UTC)"),
@@ -71,9 +72,11 @@ COLUMNS = (
 
 _QUERY = """
 SELECT r.*, p.uuid AS participant_id, p.number AS participant_number, r.session AS session_id,
+    coalesce(a.reason, '') AS set_aside,
     t.display, t.number AS trial, t.block, t.phase, t.adaptive AS adaptive_series, t.answer,
     (SELECT count(*) FROM presentation s WHERE s.trial = t.uuid) AS presentations
 FROM response r JOIN trial t ON t.uuid = r.trial JOIN participant p ON p.uuid = t.participant
+LEFT JOIN set_aside a ON a.trial = t.uuid
 ORDER BY p.number, p.uuid, t.number
 """
 

@@ -1,0 +1,78 @@
+"""When the way in which a finger explored spoils a trial, so that it comes again."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+from squeezefilm import quantities as si
+
+_Speed = Annotated[si.MetrePerSecond, si.AtLeast(0.0), si.AtMost(10.0)]
+_Force = Annotated[si.Newton, si.AtLeast(0.0), si.AtMost(50.0)]
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class TrialRules:
+    """Limits of an exploration; None for no rule.
+
+    A trial outside of them keeps its answer in the file, set aside, and is asked again at the end
+    of its block; an adaptive series asks it again at the same level. What a device does not know
+    (most know no force) is not judged.
+
+    Args:
+        slowest, fastest: mean speed (m/s).
+        lightest, hardest: mean normal force (N).
+        shortest_way: path of the finger (m): less is no movement.
+        least_touch: share of the time in which the finger touched (1): less is a lifted finger.
+
+    Raises:
+        InputError: a value outside its range, or limits in the wrong order.
+    """
+
+    slowest: _Speed | None = None
+    fastest: _Speed | None = None
+    lightest: _Force | None = None
+    hardest: _Force | None = None
+    shortest_way: Annotated[si.Metre, si.AtLeast(0.0), si.AtMost(10.0)] | None = None
+    least_touch: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] | None = None
+
+    def __post_init__(self) -> None:
+        for low, high, unit in (("slowest", "fastest", "m/s"), ("lightest", "hardest", "N")):
+            least = getattr(self, low)
+            if least is not None and getattr(self, high) is not None:
+                si.require(high, getattr(self, high), si.Unit(unit), above=least)
+
+    def broken(
+        self,
+        way: si.Metre,
+        speed: si.MetrePerSecond,
+        force: si.Newton,
+        touch: si.Dimensionless,
+    ) -> str:
+        """Which rule an exploration breaks, in words that a participant may read; empty for none.
+
+        NaN is what is not known. No movement is said first: speed follows from it.
+        """
+        for value, limit, wrong, said, unit in (
+            (way, self.shortest_way, _below, "the finger hardly moved", "m"),
+            (touch, self.least_touch, _below, "the finger was lifted", "1"),
+            (speed, self.slowest, _below, "the finger moved too slowly", "m/s"),
+            (speed, self.fastest, _above, "the finger moved too fast", "m/s"),
+            (force, self.lightest, _below, "the finger pressed too lightly", "N"),
+            (force, self.hardest, _above, "the finger pressed too hard", "N"),
+        ):
+            if limit is not None and not math.isnan(value) and wrong(value, limit):
+                one, other = (si.format_quantity(v, si.Unit(unit), 3) for v in (value, limit))
+                end = "least" if wrong is _below else "most"
+                return f"{said} ({one}; at {end} {other})"
+        return ""
+
+
+def _below(value: float, limit: float) -> bool:
+    return value < limit
+
+
+def _above(value: float, limit: float) -> bool:
+    return value > limit
