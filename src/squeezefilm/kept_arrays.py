@@ -12,6 +12,7 @@ from __future__ import annotations
 import functools
 import os
 import pickle
+import re
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -31,6 +32,7 @@ MOST_FILES, MOST_RESULTS = 20_000, 32
 
 _IN_PASSING: ContextVar[bool] = ContextVar("in_passing", default=False)
 _DIGEST = 16
+_NAME = re.compile(rf"[0-9a-f]{{{2 * _DIGEST}}}")
 _DTYPE = np.dtype("<f8")
 
 
@@ -48,6 +50,41 @@ def cache_folder() -> Path | None:
     if sys.platform == "darwin":
         return home / "Library" / "Caches" / "squeezefilm"
     return Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache") / "squeezefilm"
+
+
+def kept_sizes() -> dict[str, tuple[int, int]]:
+    """What is kept, by kind: how many files, and their bytes."""
+    folder = cache_folder()
+    found: dict[str, tuple[int, int]] = {}
+    if folder is None or not folder.is_dir():
+        return found
+    for kind in sorted(one for one in folder.iterdir() if one.is_dir()):
+        sizes = []
+        for file in _ours(kind):
+            # Another process may be tidying up.
+            with suppress(OSError):
+                sizes.append(file.stat().st_size)
+        if sizes:
+            found[kind.name] = len(sizes), sum(sizes)
+    return found
+
+
+def clear_kept() -> int:
+    """Delete all that is kept; how many files. What is needed again is computed again."""
+    folder, count = cache_folder(), 0
+    if folder is None or not folder.is_dir():
+        return 0
+    for kind in [one for one in folder.iterdir() if one.is_dir()]:
+        for file in _ours(kind):
+            with suppress(OSError):
+                file.unlink()
+                count += 1
+    return count
+
+
+def _ours(folder: Path) -> list[Path]:
+    """Files that are named as only this module names them: a folder may have others in it."""
+    return [one for one in folder.iterdir() if _NAME.fullmatch(one.name) and one.is_file()]
 
 
 @contextmanager

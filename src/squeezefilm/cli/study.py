@@ -61,14 +61,23 @@ def plan(
     design: Design,
     participants: Annotated[int, typer.Option(help="How many.")] = 12,
     seed: Seed = 0,
+    orders: Annotated[
+        Path | None,
+        written_to("Folder for each participant's order, as CSV (PsychoPy) and JSON (jsPsych)."),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Show a design: what is presented, how often, in which orders, and how long it takes."""
     from squeezefilm.report.study.terminal import show_plan
     from squeezefilm.study.design.plan import plan_study
     from squeezefilm.study.design.study_design import load_design
+    from squeezefilm.study.record.orders import write_orders
 
-    answer(as_json, plan_study(load_design(design), participants, seed), show_plan)
+    found = plan_study(load_design(design), participants, seed)
+    written = [] if orders is None else write_orders(found, orders)
+    answer(as_json, found, show_plan)
+    if written and not as_json:
+        typer.echo(f"orders: {len(written)} files in {orders}")
 
 
 @study.command()
@@ -187,6 +196,30 @@ def power(asked: PowerOptions) -> None:
     if asked.out is not None:
         write_whole(asked.out, png(plot(result)))
     answer(asked.as_json, result, show)
+
+
+@study.command()
+def gratings(
+    design: Design,
+    out: Annotated[Path, written_to("Folder for drawings and numbers.")],
+    tolerance: Annotated[
+        str, typer.Option(help="Of ridge and groove widths; the default is assumed.")
+    ] = "20 um",
+) -> None:
+    """Write what a workshop needs to make the real gratings that a study compares with: drawing,
+    DXF, widths with tolerances, and what the design calls period."""
+    from squeezefilm import quantities as si
+    from squeezefilm.report.study.boards import HEAD, board_rows, write_boards
+    from squeezefilm.report.study.terminal import show_boards
+    from squeezefilm.study.design.boards import boards
+    from squeezefilm.study.design.study_design import load_design
+
+    found = load_design(design)
+    within = si.parse_quantity(tolerance, si.Unit("m"))
+    page = write_boards(found, out, within)
+    made = boards(found)
+    show_boards(HEAD, board_rows(made, within), [one.says for one in made])
+    typer.echo(f"page: {page}")
 
 
 @study.command()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from squeezefilm.errors import InputError
@@ -77,6 +77,15 @@ _GRATING = ("Name", "Period", "Groove", "Length means")
 def _grating(one: Stimulus | Grating) -> tuple[str, str, str, str]:
     """What a virtual and a real grating both have, as `_GRATING` heads it."""
     return one.name, shown(one.period, M, 3), shown(one.groove_width, M, 3), one.period_means
+
+
+def show_boards(head: tuple[str, ...], rows: list[tuple[str, ...]], says: Iterable[str]) -> None:
+    """Print a study's boards, and what it calls their lengths."""
+    console = plain_console()
+    heading(console, "Boards to be made")
+    table(console, head, rows)
+    for one in says:
+        console.print(one, highlight=False)
 
 
 def show_status(store: StudyStore) -> None:

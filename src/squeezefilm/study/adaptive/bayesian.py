@@ -60,7 +60,25 @@ class AdaptiveDesign:
         si.require("most_trials", self.most_trials, at_least=1)
         if len(self.stimuli) < 2:
             raise InputError(f"stimuli = {self.stimuli} leaves nothing to choose; give two or more")
+        self._require_room()
         si.require_one_of("interest", self.interest, ("threshold and width", "all"))
+
+    def _require_room(self) -> None:
+        """Refuse a domain in which no answer changes what is presented. Raises `InputError`."""
+        if self.cells[0] == 1 and self.cells[1] == 1:
+            raise InputError(
+                "cells of one threshold and one width leave nothing to be learned; give more",
+                quantity="cells",
+            )
+        places = on_axis(np.array(self.stimuli), self.axis)
+        low, high = (float(one) for one in on_axis(np.array(self.prior.threshold), self.axis))
+        widest = self.prior.width[1]
+        if places.max() + widest < low or places.min() - widest > high:
+            raise InputError(
+                "every stimulus lies further from the thresholds of the prior than the widest "
+                "function reaches, so that no answer tells anything; move one of them",
+                quantity="stimuli",
+            )
 
 
 @dataclass(frozen=True, slots=True)

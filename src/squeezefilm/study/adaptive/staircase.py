@@ -62,6 +62,15 @@ class StaircaseRule:
                 f"{self.highest:g}; move it or them",
                 quantity="start",
             )
+        low, high = self.lowest, self.highest
+        if self.axis == "log":
+            low, high = (math.log(one) if one > 0 else -math.inf for one in (low, high))
+        if high - low < self.step:
+            raise InputError(
+                f"from lowest to highest there is less than one step of {self.step:g}, so that the "
+                "staircase cannot move; take a smaller step or a wider range",
+                quantity="step",
+            )
 
     @property
     def target(self) -> si.Dimensionless:

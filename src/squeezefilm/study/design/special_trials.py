@@ -13,6 +13,10 @@ from squeezefilm.perception.stimuli import Stimulus, Varied
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
 
+_LEAST_RANGE = 2.0
+"""Of a Bayesian series' differences, highest over lowest."""
+
+
 @si.checked_numbers
 @dataclass(frozen=True)
 class CatchTrial:
@@ -57,6 +61,24 @@ class AdaptiveCondition:
         si.require("highest", self.highest, above=self.lowest, at_most=100.0)
         si.require("start", self.start, at_least=self.lowest, at_most=self.highest)
         si.require("step", self.step, above=0.0, at_most=self.highest)
+        self._require_room()
+
+    def _require_room(self) -> None:
+        """Refuse a domain in which the method cannot move. Raises `InputError`."""
+        if self.method == "staircase" and self.highest - self.lowest < self.step:
+            raise InputError(
+                f"series '{self.name}' cannot move: from lowest = {self.lowest:g} to highest = "
+                f"{self.highest:g} there is less than one step of {self.step:g}; take a smaller "
+                "step or a wider range",
+                quantity="step",
+            )
+        if self.method == "bayesian" and self.highest < _LEAST_RANGE * self.lowest:
+            raise InputError(
+                f"series '{self.name}' cannot move: its highest difference, {self.highest:g}, is "
+                f"less than {_LEAST_RANGE:g} times its lowest, {self.lowest:g}, and all of its "
+                "forty choices are alike; take a wider range",
+                quantity="highest",
+            )
 
 
 def require_name(name: str) -> None:

@@ -1,0 +1,83 @@
+"""Orders of trials for other programs: CSV as PsychoPy reads it, JSON as jsPsych does."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from squeezefilm.errors import InputError
+from squeezefilm.results import write_whole
+from squeezefilm.study.design.plan import StudyPlan
+from squeezefilm.study.design.trials import Trial
+from squeezefilm.study.record.tables import Cell, Column, csv_text
+
+ORDER_COLUMNS = (
+    Column("participant_number", "Which of the balanced orders, from 0", kind="whole"),
+    Column("trial", "Number of the trial within the participant, from 1", kind="whole"),
+    Column("display", "Display that presents the stimuli"),
+    Column("block", "Number of the block within the display, 0 before the first", kind="whole"),
+    Column("phase", "familiarisation, practice, main or catch"),
+    Column(
+        "stimulus", "Name of the stimulus, or of the first of two; empty where a series chooses"
+    ),
+    Column("stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
+    Column("stimulus_friction_depth", "Its change of relative friction", "", "number"),
+    Column("second_stimulus", "Name of the second stimulus, if there are two"),
+    Column("second_stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
+    Column("second_stimulus_friction_depth", "Its change of relative friction", "", "number"),
+    Column("adaptive_series", "Series that chooses the comparison, if any"),
+    Column("reference_first", "Whether a series presents the reference first", kind="truth"),
+    Column("alternatives", "Answers in the order in which they are offered, separated by |"),
+    Column("answer", "What is right; empty where nothing is"),
+    Column("pause_s", "Rest before the trial", "s", "number"),
+    Column("seed", "Of what is random in the presentation", kind="whole"),
+)
+"""What an order file holds."""
+
+
+def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:
+    """Write the order of every participant of a plan, `order-NUMBER.csv` and `.json`; the paths.
+
+    The CSV is what PsychoPy's loops take as conditions; the JSON is a list of objects, jsPsych's
+    `timeline_variables`. An adaptive series chooses its comparisons as it goes, so that its rows
+    name no stimulus. Raises `InputError` where the folder cannot be written to.
+    """
+    folder, written = Path(folder), []
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file; give a folder for the orders")
+    for number, schedule in enumerate(plan.schedules):
+        rows = [_row(plan, number, trial) for trial in schedule]
+        for suffix, text in (
+            ("csv", csv_text(rows, ORDER_COLUMNS)),
+            ("json", json.dumps(rows, indent=1) + "\n"),
+        ):
+            path = folder / f"order-{number:03d}.{suffix}"
+            write_whole(path, text)
+            written.append(path)
+    return written
+
+
+def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
+    design = plan.design
+    gratings = {one.name: one for one in design.alternatives}
+    row: dict[str, Cell] = {
+        "participant_number": number,
+        "trial": trial.number,
+        "display": trial.display,
+        "block": trial.block,
+        "phase": trial.phase,
+        "adaptive_series": trial.adaptive,
+        "reference_first": trial.reference_first if trial.adaptive else None,
+        "alternatives": "|".join(trial.alternatives),
+        "answer": trial.answer,
+        "pause_s": trial.pause,
+        "seed": trial.seed,
+    }
+    names = (*trial.stimuli, "", "")[:2]
+    for prefix, name in zip(("stimulus", "second_stimulus"), names, strict=True):
+        felt = trial.phase == "familiarisation" and name in gratings
+        one = gratings[name] if felt else (design.stimulus(name) if name else None)
+        row[prefix] = name
+        row[f"{prefix}_period_m"] = None if one is None else one.period
+        row[f"{prefix}_friction_depth"] = getattr(one, "friction_depth", None)
+    return {column.name: row[column.name] for column in ORDER_COLUMNS}
