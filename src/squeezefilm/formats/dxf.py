@@ -58,17 +58,13 @@ def dxf_text(drawing: DxfDrawing) -> str:
 
     Raises `InputError` for a drawing in which ezdxf's own audit finds an error.
     """
+    from ezdxf import options
     from ezdxf.filemanagement import new
 
     from squeezefilm.errors import InputError
 
     found = new("R2010", setup=True)
     found.header["$INSUNITS"] = MILLIMETRES
-    # A drawing of the same things is the same file.
-    for name in ("$TDCREATE", "$TDUCREATE", "$TDUPDATE", "$TDUUPDATE"):
-        found.header[name] = 2461000.0
-    for name in ("$FINGERPRINTGUID", "$VERSIONGUID"):
-        found.header[name] = "{00000000-0000-0000-0000-000000000000}"
     for name, colour in {**drawing.layers, "DIMENSIONS": 8, "TEXT": 7}.items():
         found.layers.add(name, color=colour)
     space = found.modelspace()
@@ -94,5 +90,11 @@ def dxf_text(drawing: DxfDrawing) -> str:
     if audit.has_errors:
         raise InputError(f"the drawing is not sound: {audit.errors[0].message}")
     stream = io.StringIO()
-    found.write(stream)
+    # Without the moment and a random identifier: a drawing of the same things is the same file.
+    fixed = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        found.write(stream)
+    finally:
+        options.write_fixed_meta_data_for_testing = fixed
     return stream.getvalue()

@@ -77,14 +77,14 @@ def test_simulated_people_are_shown_and_written_where_asked(
     stands_in: StandsIn, tmp_path: Path
 ) -> None:
     tables = stands_in("study.simulated.chain_tables:chain_tables", "the tables")
-    people = stands_in("study.simulated.participants:simulate_matches", ANSWER)
+    people = stands_in("study.simulated.answers:simulate_participants", ANSWER)
     shown = stands_in("report.study.terminal_analysis:show_simulated")
     written = stands_in("report.study.simulated_page:write_simulated", tmp_path / "index.html")
     done = run("simulate", PRESET)
     assert done.returncode == 0, done.stderr
     design, observer = load_design(PRESET), load_observer("fingertip")
     assert tables.given == (design, observer)
-    assert people.given == (design, observer, 12, 0, "the tables")
+    assert people.given[:5] == (design, observer, 12, 0, "the tables")
     assert shown.given == (ANSWER,)
     assert done.stdout == ""
     assert "  a step …" in done.stderr
@@ -104,7 +104,7 @@ def test_simulated_people_are_shown_and_written_where_asked(
 def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path: Path) -> None:
     asked = stands_in("study.simulated.planned_power:planned_power", ANSWER)
     shown = stands_in("report.study.terminal_analysis:show_power")
-    drawn = stands_in("report.study.time_figures:power", "the figure")
+    drawn = stands_in("report.subjects:plot", "the figure")
     stands_in("report.kit.style:png", b"a picture")
     done = run("power", PRESET, "8 mm", "10 mm")
     assert asked.given == (load_design(PRESET), load_observer("fingertip"), "8 mm", "10 mm")
@@ -122,7 +122,7 @@ def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path
         "display": "biet2008-stator", "target": 0.9, "studies": 50, "seed": 4,
     }  # fmt: skip
     assert picture.read_bytes() == b"a picture"
-    assert drawn.given == ("the curve",)
+    assert drawn.given == (ANSWER,)
     assert json.loads(done.stdout) == {"found": 1}
     assert done.stderr == ""
     assert len(shown.calls) == 1
@@ -163,14 +163,14 @@ def test_a_session_is_given_every_option(
     assert capsys.readouterr().err == ""
     assert named == {
         "drive": "none", "amplitude_per_pickup": None, "conditions": None, "consent": False,
-        "acknowledge": ask_acknowledgement, "seed": 0, "station": 0, "stations": 1,
-        "tell": typer.echo,
+        "acknowledge": ask_acknowledgement, "seed": None, "station": 0, "stations": 1,
+        "tell": typer.echo, "by_hand": "terminal",
     }  # fmt: skip
 
     run(
         "run", PRESET, "--store", "a.sqlite", "--participant", "abc", "--conditions", "c.toml",
         "--consent", "--drive", "twin", "--pickup", "2 um/V", "--acknowledge-ultrasound",
-        "--seed", "5", "--station", "1", "--stations", "3",
+        "--seed", "5", "--station", "1", "--stations", "3", "--by-hand", "nowhere",
     )  # fmt: skip
     (_, _, participant), named = asked.calls[-1]
     assert named.pop("acknowledge")("any statement") is True
@@ -179,7 +179,7 @@ def test_a_session_is_given_every_option(
     assert named.pop("amplitude_per_pickup") == pytest.approx(2e-6)
     assert named == {
         "drive": "twin", "conditions": Path("c.toml"), "consent": True, "seed": 5, "station": 1,
-        "stations": 3, "tell": typer.echo,
+        "stations": 3, "tell": typer.echo, "by_hand": "nowhere",
     }  # fmt: skip
     refused = run("run", PRESET, "--store", "a.sqlite", "--pickup", "2 um")
     assert refused.returncode == 2
@@ -243,9 +243,9 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     stands_in: StandsIn, store: Path, tmp_path: Path
 ) -> None:
     found = {"one": ANSWER, "two": ANSWER}
-    asked = stands_in("study.identification.recorded:analyze_study", found)
+    asked = stands_in("study.tasks.analyze:analyze_study", found)
     shown = stands_in("report.study.terminal_analysis:show_analyses")
-    written = stands_in("report.study.page:write_study", tmp_path / "index.html")
+    written = stands_in("report.study.page:write_overview", tmp_path / "index.html")
     done = run("analyze", store)
     assert asked.given[0].path == store
     assert asked.named == {"mixed": False, "seed": 0}
@@ -257,8 +257,8 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     out = tmp_path / "pages"
     done = run("analyze", store, "--out", out, "--mixed", "--seed", "6")
     assert asked.calls[-1][1] == {"mixed": True, "seed": 6}
-    assert [given for given, _ in written.calls] == [(ANSWER, out / "one"), (ANSWER, out / "two")]
-    assert done.stdout == 2 * f"page: {tmp_path / 'index.html'}\n"
+    assert [given[:2] for given, _ in written.calls] == [(found, out)]
+    assert done.stdout == f"page: {tmp_path / 'index.html'}\n"
     done = run("analyze", store, "--json")
     assert json.loads(done.stdout) == {"one": {"found": 1}, "two": {"found": 1}}
     assert done.stderr == ""

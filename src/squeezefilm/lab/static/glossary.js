@@ -146,6 +146,10 @@ export const RESULTS = {
   permutation_p: { name: "p against unrelated answers", text: "How often the same answers in another order would be right at least as often.", source: "permutation within participants" },
   information_transfer: { name: "information transfer", symbol: "I", text: "How much an answer tells of the stimulus, in bit. Few trials bias it upwards; the estimator named beside it corrects for that.", source: "Garner & Hake 1951 (10.1037/h0054482)" },
   total_sensitivity: { name: "total sensitivity", symbol: "Δ′", text: "d′ of the two outermost stimuli, summed over neighbours.", source: "Braida & Durlach 1972 (10.1121/1.1912868)" },
+  weber_fraction: { name: "Weber fraction", text: "The difference, in parts of the reference, that a typical person tells in 75 % of two intervals.", source: "mixed model over people; Moscatelli et al. 2012 (10.1167/12.11.26)" },
+  exponent: { name: "exponent", text: "The power of the stimulus with which the numbers that people give grow.", source: "Stevens 1957 (10.1037/h0046162)" },
+  drift: { name: "drift", text: "Change from a person's first trial to their last, over people: learning, or tiring.", source: "least squares for each person, t over people" },
+  catch_trials: { name: "catch trials", text: "Trials whose answer is plain to whoever attends; doubtful is who missed more than somebody who gets 95 % right would.", source: "binomial test; the 95 % are assumed" },
   d_prime: { name: "d′ of neighbours", symbol: "d′", text: "Distance of two neighbouring percepts over their spread.", source: "Braida & Durlach 1972 (10.1121/1.1912868)" },
   response_time: { name: "response time", text: "Mean and spread of its normal part and mean of its exponential tail, all trials.", source: "ex-Gaussian distribution" },
 };

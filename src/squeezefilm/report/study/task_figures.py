@@ -10,12 +10,14 @@ import numpy as np
 from squeezefilm.report.kit import style
 from squeezefilm.report.study.figures import data_of
 from squeezefilm.report.study.words import estimate_words
+from squeezefilm.study.tasks.two_interval import QUARTILE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from squeezefilm.study.tasks.findings import TaskAnalysis
+    from squeezefilm.quantities import FloatArray
+    from squeezefilm.study.tasks.findings import PersonFunction, TaskAnalysis
 
 _SCALE = {
     "spatial_period": (1e3, "spatial period (mm)"),
@@ -39,10 +41,10 @@ def answers(analysis: TaskAnalysis) -> Figure:
         _magnitudes(axes, analysis)
     elif analysis.task == "same-different":
         _differences(axes, analysis)
-    elif analysis.conditions:
-        _functions(axes, analysis)
-    else:
+    elif analysis.is_adaptive:
         _adaptive(axes, analysis)
+    else:
+        _functions(axes, analysis)
     return figure
 
 
@@ -58,8 +60,9 @@ def _functions(axes: Axes, analysis: TaskAnalysis) -> None:
     scale, label = _scale(analysis)
     values = [one.value for one in analysis.conditions]
     x = np.geomspace(min([*values, analysis.standard]), max([*values, analysis.standard]), 161)
-    for fit in list(analysis.fits.values())[:_MOST_LINES]:
-        axes.plot(scale * x, 100 * np.asarray(fit.function(x)), **_FAINT)
+    for one in list(analysis.functions.values())[:_MOST_LINES]:
+        more = _share(one, np.log(x / analysis.standard))
+        axes.plot(scale * x, 100 * more, **_FAINT)
     _shares(axes, analysis, scale)
     axes.axvline(scale * analysis.standard, **style.GUIDE)
     axes.axhline(50, **style.GUIDE)
@@ -83,32 +86,30 @@ def _differences(axes: Axes, analysis: TaskAnalysis) -> None:
     axes.set_title("dashed: the reference; there both surfaces are the same")
 
 
+def _share(one: PersonFunction, difference: FloatArray) -> FloatArray:
+    """Of answers that the one with more has more, at differences of logarithms, without a bias."""
+    from scipy.special import ndtr
+
+    spread = math.log1p(one.weber_fraction) / QUARTILE
+    rise = ndtr(difference / spread)
+    return np.asarray(0.5 * one.lapse_rate + (1 - one.lapse_rate) * rise)
+
+
 def _adaptive(axes: Axes, analysis: TaskAnalysis) -> None:
     """Shares correct of everybody's trials in classes of equal size, and everybody's function."""
-    places = np.concatenate([one.intensity for one in analysis.fits.values()])
-    right = np.concatenate([one.positive for one in analysis.fits.values()])
-    trials = np.concatenate([one.trials for one in analysis.fits.values()])
-    x = np.geomspace(places.min(), places.max(), 161)
-    for fit in list(analysis.fits.values())[:_MOST_LINES]:
-        axes.plot(100 * x, 100 * np.asarray(fit.function(x)), **_FAINT)
-    order = np.argsort(places)
-    edges = np.searchsorted(np.cumsum(trials[order]), np.linspace(0, trials.sum(), 9)[1:-1])
-    for part in np.split(order, edges):
-        count = trials[part].sum()
-        if count:
-            share, middle = (
-                right[part].sum() / count,
-                np.average(places[part], weights=trials[part]),
-            )
-            error = 100 * math.sqrt(share * (1 - share) / count)
-            axes.plot(
-                [100 * middle] * 2, [100 * share - error, 100 * share + error], **style.INTERVAL
-            )
-            axes.plot([100 * middle], [100 * share], **style.ESTIMATE)
+    places = np.array([one.value for one in analysis.conditions])
+    x = np.geomspace(places.min() / 1.2, places.max() * 1.2, 161)
+    for one in list(analysis.functions.values())[:_MOST_LINES]:
+        axes.plot(100 * x, 100 * _share(one, np.log1p(x)), **_FAINT)
+    for found in analysis.conditions:
+        if found.share is not None:
+            ends = 100 * found.share.low, 100 * found.share.high
+            axes.plot([100 * found.value] * 2, ends, **style.INTERVAL)
+            axes.plot([100 * found.value], [100 * found.share.value], **style.ESTIMATE)
     axes.set(xscale="log", xlabel="difference from the reference (%)", ylabel="correct (%)")
     axes.set_ylim(40, 103)
     style.plain_log(axes.xaxis)
-    axes.set_title("thin: each person's function; dots: eighths of all trials, ± standard error")
+    axes.set_title("thin: each person's function; dots: eighths of all trials, Wilson's intervals")
 
 
 def _magnitudes(axes: Axes, analysis: TaskAnalysis) -> None:

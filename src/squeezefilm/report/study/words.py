@@ -264,7 +264,8 @@ CONDITION_HEAD = ("Stimulus", "Value", "Trials", "People", "Answers", "d′")
 
 def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
     """Each comparison or stimulus: its answers with their interval, and d′."""
-    unit = si.Unit({"spatial_period": "m", "orientation": "rad"}.get(analysis.judged, "1"))
+    units = {} if analysis.is_adaptive else {"spatial_period": "m", "orientation": "rad"}
+    unit = si.Unit(units.get(analysis.judged, "1"))
     rows: list[tuple[str, ...]] = []
     for one in analysis.conditions:
         answers = one.magnitude or one.share

@@ -65,11 +65,12 @@ class StaircaseRule:
         low, high = self.lowest, self.highest
         if self.axis == "log":
             low, high = (math.log(one) if one > 0 else -math.inf for one in (low, high))
-        if high - low < self.step:
+        if high - low < self.smallest_step:
             raise InputError(
-                f"from lowest to highest there is less than one step of {self.step:g}, so that the "
-                "staircase cannot move; take a smaller step or a wider range",
-                quantity="step",
+                f"from lowest to highest there is less than the smallest step, "
+                f"{self.smallest_step:g}, so that the staircase cannot move; take smaller steps or "
+                "a wider range",
+                quantity="smallest_step",
             )
 
     @property

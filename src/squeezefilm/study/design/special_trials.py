@@ -65,11 +65,11 @@ class AdaptiveCondition:
 
     def _require_room(self) -> None:
         """Refuse a domain in which the method cannot move. Raises `InputError`."""
-        if self.method == "staircase" and self.highest - self.lowest < self.step:
+        if self.method == "staircase" and self.highest - self.lowest < self.step / 4:
             raise InputError(
                 f"series '{self.name}' cannot move: from lowest = {self.lowest:g} to highest = "
-                f"{self.highest:g} there is less than one step of {self.step:g}; take a smaller "
-                "step or a wider range",
+                f"{self.highest:g} there is less than its smallest step, {self.step / 4:g}; take a "
+                "smaller step or a wider range",
                 quantity="step",
             )
         if self.method == "bayesian" and self.highest < _LEAST_RANGE * self.lowest:

@@ -30,8 +30,8 @@ from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import SIZES, on_one_display
 from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.population import Population
-from squeezefilm.study.tasks.same_different import same_different_fractions
-from squeezefilm.study.tasks.two_interval import t_interval, weber_fractions
+from squeezefilm.study.tasks.same_different import same_different_on_grid
+from squeezefilm.study.tasks.two_interval import on_grid, t_interval
 
 PEOPLE = 400
 """Simulated people that studies are drawn from; each one's fit takes some 20 ms."""
@@ -204,11 +204,9 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
     task = answers.design.task
     if task in ("two-interval", "same-different"):
         tell("each person's fit")
-        if task == "two-interval":
-            people = weber_fractions(main, 0.95, lambda _: None)[1]
-        else:
-            people = same_different_fractions(main, 0.95)[1]
-        population = Population(people)
+        two = task == "two-interval"
+        people = on_grid(main, lambda _: None) if two else same_different_on_grid(main)
+        population = Population(people.likelihoods())
 
         def fraction(who: si.IntArray) -> Ends:
             found = population.estimate(0.95, who)

@@ -22,32 +22,35 @@ from squeezefilm.study.identification.response_times import (
     fit_ex_gaussian,
     response_time_summary,
 )
-from squeezefilm.study.psychometric.fit import PsychometricFit
 from squeezefilm.study.record.answers import Answers, recorded_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
     Estimate,
     PersonEstimate,
+    PersonFunction,
     TaskAnalysis,
     of_population,
 )
 from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions, require_magnitudes
 from squeezefilm.study.tasks.methods import methods_text
-from squeezefilm.study.tasks.population import PersonLikelihood, Population
+from squeezefilm.study.tasks.population import Population
 from squeezefilm.study.tasks.same_different import (
     same_different_conditions,
-    same_different_fractions,
     same_different_numbers,
+    same_different_on_grid,
 )
 from squeezefilm.study.tasks.two_interval import (
+    PeopleOnGrid,
+    adaptive_conditions,
+    on_grid,
     two_interval_conditions,
     two_interval_numbers,
-    weber_fractions,
 )
 
 StudyAnalysis = IdentificationAnalysis | TaskAnalysis
 Tell = Callable[[str], None]
+Numbers = dict[str, Estimate]
 _POPULATION = "posterior, mixed model"
 
 
@@ -178,7 +181,7 @@ class _Found:
     spread: Estimate | None
     conditions: tuple[ConditionFinding, ...]
     more: dict[str, Estimate]
-    fits: dict[str, PsychometricFit]
+    functions: dict[str, PersonFunction]
     notes: list[str]
 
 
@@ -232,7 +235,8 @@ def _judgements(
         spread=found.spread,
         conditions=found.conditions,
         more=found.more,
-        fits=found.fits,
+        functions=found.functions,
+        is_adaptive=bool((main.series >= 0).any()),
         response_times=times,
         ex_gaussian=ex_gaussian,
         course=course,
@@ -244,43 +248,39 @@ def _judgements(
     )
 
 
-def _pooled(people: list[PersonLikelihood], level: float) -> tuple[Estimate, Estimate | None]:
-    mean, spread = of_population(Population(people).estimate(level), _POPULATION)
-    return mean, spread
-
-
 def _of_fractions(
-    persons: list[PersonEstimate],
-    people: list[PersonLikelihood],
-    level: float,
-    notes: list[str],
-) -> tuple[Estimate | None, Estimate | None]:
+    people: PeopleOnGrid, level: float, conditions: tuple[ConditionFinding, ...], more: Numbers
+) -> _Found:
+    notes: list[str] = []
+    persons = people.estimates(level)
+    pooled, spread = persons[0].estimate, None
     if len(persons) > 1:
-        return _pooled(people, level)
-    notes.append("one participant: the population's interval is theirs, and says nothing of others")
-    return persons[0].estimate, None
+        population = Population(people.likelihoods()).estimate(level)
+        pooled, spread = of_population(population, _POPULATION)
+    else:
+        notes.append(
+            "one participant: the population's interval is theirs, and says nothing of others"
+        )
+    functions = people.functions(level)
+    return _Found("Weber fraction", persons, pooled, spread, conditions, more, functions, notes)
 
 
 def _two_interval(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
-    notes: list[str] = []
-    persons, people, fits = weber_fractions(main, level, tell)
+    people = on_grid(main, tell)
     tell("mixed model over people")
-    pooled, spread = _of_fractions(persons, people, level, notes)
-    conditions: tuple[ConditionFinding, ...] = ()
-    if not (main.series >= 0).any():
-        conditions = two_interval_conditions(main, level, seed)
-    more = two_interval_numbers(main, fits, level)
-    return _Found("Weber fraction", persons, pooled, spread, conditions, more, fits, notes)
+    adaptive = bool((main.series >= 0).any())
+    conditions = (
+        adaptive_conditions(main, level) if adaptive else two_interval_conditions(main, level, seed)
+    )
+    return _of_fractions(people, level, conditions, two_interval_numbers(main, level))
 
 
 def _same_different(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
-    notes: list[str] = []
     tell("differencing model of each person")
-    persons, people, criteria = same_different_fractions(main, level)
-    pooled, spread = _of_fractions(persons, people, level, notes)
+    people = same_different_on_grid(main)
     conditions = same_different_conditions(main, level, seed)
-    more = same_different_numbers(main, criteria, level)
-    return _Found("Weber fraction", persons, pooled, spread, conditions, more, {}, notes)
+    more = same_different_numbers(main, people.bias, level)
+    return _of_fractions(people, level, conditions, more)
 
 
 def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> _Found:

@@ -14,7 +14,6 @@ from squeezefilm.study.design.study_design import Task
 from squeezefilm.study.identification.course import Course
 from squeezefilm.study.identification.exploration import ConditionMean
 from squeezefilm.study.identification.response_times import ExGaussian, ResponseTimeSummary
-from squeezefilm.study.psychometric.fit import PsychometricFit
 from squeezefilm.study.tasks.population import PopulationEstimate
 
 
@@ -40,6 +39,16 @@ class PersonEstimate:
     estimate: Estimate
     trials: int
     bounded: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PersonFunction:
+    """A person's answers as a function of the difference: Weber fraction (1), bias for an interval
+    (of the logarithm) or criterion, and lapse rate (1)."""
+
+    weber_fraction: si.Dimensionless
+    bias: float
+    lapse_rate: si.Dimensionless
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +93,9 @@ class TaskAnalysis(Result):
         spread: standard deviation over people of ln(Weber fraction), or of the exponent.
         conditions: by comparison or stimulus.
         more: other numbers by name, such as the bias for an interval.
-        fits: each person's psychometric function, where there is one.
+        functions: each person's, of Weber fractions.
+        is_adaptive: whether series chose the comparisons: `conditions` are then eighths of the
+            trials by their difference, which is their value.
         response_times, ex_gaussian: by condition and of all; empty and None without times.
         course: drift and attention.
         exploration: quantity (with unit in its key) → means by condition.
@@ -107,7 +118,8 @@ class TaskAnalysis(Result):
     spread: Estimate | None
     conditions: tuple[ConditionFinding, ...]
     more: Mapping[str, Estimate]
-    fits: Mapping[str, PsychometricFit]
+    functions: Mapping[str, PersonFunction]
+    is_adaptive: bool
     response_times: tuple[ResponseTimeSummary, ...]
     ex_gaussian: ExGaussian | None
     course: Course
@@ -140,7 +152,7 @@ class TaskAnalysis(Result):
             "persons": self.persons,
             "conditions": self.conditions,
             "more": self.more,
-            "psychometric_functions": {key: one.summary() for key, one in self.fits.items()},
+            "functions": self.functions,
             "response_times": self.response_times,
             "ex_gaussian": self.ex_gaussian,
             "course": self.course,

@@ -36,20 +36,13 @@ _ANALYSES = {
         "is corrected for its bias. Sensitivity is the equal-variance Thurstone model's."
     ),
     "two-interval": (
-        "Each participant's answers were fitted with a cumulative Gaussian of the logarithm of "
-        "the comparison, with lapses (Schütt et al. 2016, 10.1016/j.visres.2016.02.002); Weber "
-        "fractions are half the distance of its quartiles. The population is a mixed model: "
-        "logarithms of Weber fractions are normal over participants, whose likelihoods were "
-        "integrated on a grid (compare Moscatelli et al. 2012, 10.1167/12.11.26). d′ follows "
-        "Macmillan and Creelman (2005)."
-    ),
-    "adaptive": (
-        "Each participant's answers of all series were fitted together with a logistic function of "
-        "the logarithm of the difference, guess rate 1/2, with lapses (Schütt et al. 2016, "
-        "10.1016/j.visres.2016.02.002); the Weber fraction is its threshold, and its interval is "
-        "the posterior's, which does not ask how differences were chosen. The population is a "
-        "mixed model: logarithms of Weber fractions are normal over participants, whose "
-        "likelihoods were integrated on a grid (compare Moscatelli et al. 2012, 10.1167/12.11.26)."
+        "Each participant's answers were fitted with a cumulative Gaussian of the difference of "
+        "logarithms, with a bias for an interval and lapses; the Weber fraction is what is told in "
+        "75 % of two intervals. The population is a mixed model: logarithms of Weber fractions are "
+        "normal over participants, lapse rates have a mean over participants of their own, and "
+        "all likelihoods were integrated on a grid, so that intervals do not ask how differences "
+        "were chosen (compare Moscatelli et al. 2012, 10.1167/12.11.26; Kuss et al. 2005, "
+        "10.1167/5.5.8). d′ follows Macmillan and Creelman (2005)."
     ),
     "same-different": (
         "Each participant's answers were fitted by the differencing model of Macmillan and "
@@ -93,7 +86,7 @@ def methods_text(answers: Answers, display: int) -> str:
         + f" (“{design.spoken_question}”).",
         *_adaptive(design),
         _trials(design, answers, display),
-        _ANALYSES["adaptive" if design.adaptive else design.task],
+        _ANALYSES[design.task],
         f"Orders and analysis were made with squeezefilm {__version__} "
         f"(design SHA-256 {design.sha256[:12]}).",
     ]

@@ -7,6 +7,11 @@ of x is a likelihood on a grid, however skewed or cut off, with everything else 
 Products over people, with flat priors of μ and of τ, give the posterior of the population. That is
 a generalised linear mixed model of the answers (Moscatelli, Mezzetti and Lacquaniti 2012,
 10.1167/12.11.26) with lapses, integrated exactly instead of by Laplace's method.
+
+Lapse rates are of the population too. A prior that is a little wrong for everybody would push
+everybody's Weber fraction the same way, and the mean over people with it: so the mean lapse rate h
+has a flat prior in its logarithm, a person's lapse rate is Beta(1, 1/h − 1) about it, and the
+answers of all say which h.
 """
 
 from __future__ import annotations
@@ -24,6 +29,20 @@ _WIDEST = 2.0
 """Greatest standard deviation over people of a logarithm that is held possible (1)."""
 _NARROWEST = 1e-3
 
+MEAN_LAPSES: tuple[si.Dimensionless, ...] = (0.005, 0.01, 0.02, 0.04, 0.08)
+"""Mean lapse rates over people that are held possible, alike in their logarithm (1): 1 to 5 % are
+usual, and one person's may be far more."""
+_EDGES = np.array([0, 0.0025, 0.0075, 0.015, 0.025, 0.04, 0.065, 0.1, 0.15, 0.22, 0.32, 0.45, 0.6])
+LAPSES: si.DimensionlessArray = 0.5 * (_EDGES[1:] + _EDGES[:-1])
+"""Lapse rates of a person on the grid (1)."""
+
+
+def lapse_weights() -> si.DimensionlessArray:
+    """Probability of each of `LAPSES` under each mean, shape (means, lapses); rows sum to 1."""
+    below = np.array([1.0 - (1.0 - _EDGES) ** (1.0 / h - 1.0) for h in MEAN_LAPSES])
+    found = np.diff(below, axis=1)
+    return np.asarray(found / found.sum(axis=1, keepdims=True))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PersonLikelihood:
@@ -32,7 +51,8 @@ class PersonLikelihood:
     Attributes:
         x: the middle of each cell, rising, in the population's unit.
         width: of each cell, likewise.
-        likelihood: of the answers at x, up to a factor.
+        likelihood: of the answers at x under each of `MEAN_LAPSES`, up to one factor, shape
+            (lapses, cells).
     """
 
     x: si.FloatArray
@@ -73,22 +93,28 @@ class Population:
         self._logs = np.array([self._log_likelihood(one) for one in people])
 
     def _log_likelihood(self, one: PersonLikelihood) -> si.FloatArray:
-        """ln of a person's likelihood under each μ and τ, shape (means, spreads)."""
+        """ln of a person's likelihood under each μ, τ and h, shape (means, spreads, lapses)."""
         weight = one.likelihood * one.width
-        weight = weight / weight.sum()
-        found = np.empty((self._means.size, self._spreads.size))
+        weight = weight / weight.max()
+        found = np.empty((self._means.size, self._spreads.size, len(MEAN_LAPSES)))
         away = (one.x[None, :] - self._means[:, None]) ** 2
         for at, spread in enumerate(self._spreads):
             # A spread below the cells' width would fall between them: it is their width at least.
             wide = np.hypot(spread, 0.5 * one.width)
             density = np.exp(-0.5 * away / wide**2) / wide
-            found[:, at] = density @ weight
+            found[:, at] = density @ weight.T
         return np.log(np.maximum(found, 1e-300))
 
     @property
     def size(self) -> int:
         """How many people."""
         return int(self._logs.shape[0])
+
+    def lapses(self) -> si.DimensionlessArray:
+        """Posterior probability of each of `MEAN_LAPSES`, of all people; sums to 1."""
+        total = self._logs.sum(axis=0)
+        weight = np.exp(total - total.max()) * self._widths[:, None]
+        return np.asarray(weight.sum(axis=(0, 1)) / weight.sum())
 
     def estimate(
         self, level: si.Dimensionless = 0.95, people: si.IntArray | None = None
@@ -101,7 +127,7 @@ class Population:
         si.require("level", level, above=0.0, below=1.0)
         logs = self._logs if people is None else self._logs[people]
         total = logs.sum(axis=0)
-        weight = np.exp(total - total.max()) * self._widths
+        weight = np.exp(total - total.max()).sum(axis=2) * self._widths
         weight /= weight.sum()
         tails = 0.5 * (1.0 - level), 0.5, 0.5 * (1.0 + level)
         step = self._means[1] - self._means[0]

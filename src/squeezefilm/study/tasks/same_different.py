@@ -18,73 +18,60 @@ from squeezefilm import quantities as si
 from squeezefilm.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.identification.proportions import proportion_interval
 from squeezefilm.study.psychometric.discrimination import differencing_sensitivity
-from squeezefilm.study.psychometric.prior import PsychometricPrior
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.tasks.findings import ConditionFinding, Estimate, PersonEstimate
-from squeezefilm.study.tasks.population import PersonLikelihood
-from squeezefilm.study.tasks.two_interval import mean_sensitivity, t_interval
+from squeezefilm.study.tasks.findings import ConditionFinding, Estimate
+from squeezefilm.study.tasks.population import LAPSES, lapse_weights
+from squeezefilm.study.tasks.two_interval import (
+    PeopleOnGrid,
+    differences,
+    mean_sensitivity,
+    spread_edges,
+    t_interval,
+)
 
-_SPREADS, _CRITERIA, _LAPSES = 161, 81, 8
+_SPREADS, _CRITERIA = 121, 81
 _LARGEST_CRITERION = 8.0
 
 
-def differences(main: Answers) -> si.FloatArray:
-    """|ln of the ratio| of what is judged of the two surfaces of each trial (1)."""
-    logs = np.log(main.values)
-    return np.asarray(np.round(np.abs(logs[main.first] - logs[main.second]), 12))
-
-
-def same_different_fractions(
-    main: Answers, level: si.Dimensionless
-) -> tuple[list[PersonEstimate], list[PersonLikelihood], dict[str, float]]:
-    """Each person's Weber fraction, what their answers say of its logarithm, and their criterion
-    (in standard deviations of one percept)."""
-    apart, every = differences(main), np.unique(differences(main))
-    largest, least = float(every.max()), float(every[every > 0].min())
-    edges = np.linspace(math.log(least / 8), math.log(8 * largest), _SPREADS + 1)
-    middle = 0.5 * (edges[1:] + edges[:-1])
+def same_different_on_grid(main: Answers) -> PeopleOnGrid:
+    """What each person's answers say of their Weber fraction; `bias` is their criterion, in
+    standard deviations of one percept."""
+    apart = np.abs(differences(main))
+    every = np.unique(apart)
+    edges = spread_edges(main, _SPREADS)
+    spread = np.exp(0.5 * (edges[1:] + edges[:-1]))[:, None]
     limits = _LARGEST_CRITERION * (np.arange(_CRITERIA) + 0.5) / _CRITERIA
-    prior = PsychometricPrior((0.0, 1.0), (0.1, 1.0))
-    lapses = prior.quantile(2, (np.arange(_LAPSES) + 0.5) / _LAPSES, "linear")
     log_p, log_q = [], []
     for one in every:
-        z = one / np.exp(middle)[:, None]
+        z = one / spread
         rise = ndtr((z - limits) / math.sqrt(2)) + ndtr((-z - limits) / math.sqrt(2))
-        p = 0.5 * lapses + (1 - lapses) * rise[..., None]
+        p = 0.5 * LAPSES + (1 - LAPSES) * rise[..., None]
         log_p.append(np.log(p))
         log_q.append(np.log1p(-p))
-    persons, likelihoods, criteria = [], [], {}
+    prior = lapse_weights()
+    weber = np.log(np.expm1(D_PRIME_OF_75 * np.exp(edges)))
+    people = PeopleOnGrid([], weber, np.diff(edges), [], [], [], [])
     for person in np.unique(main.participant):
         mine = main.participant == person
-        total = np.zeros((_SPREADS, _CRITERIA, _LAPSES))
+        total = np.zeros((_SPREADS, _CRITERIA, LAPSES.size))
         for number, one in enumerate(every):
             said = main.choice[mine & (apart == one)]
             different = int(np.count_nonzero(said == 1))
             total += different * log_p[number] + (said.size - different) * log_q[number]
-        weight = np.exp(total - total.max())
-        marginal = weight.sum(axis=(1, 2))
-        heights = np.concatenate([[0.0], np.cumsum(marginal)]) / marginal.sum()
-        shares = 0.5, 0.5 * (1 - level), 0.5 * (1 + level)
-        found = np.expm1(D_PRIME_OF_75 * np.exp(np.interp(shares, heights, edges)))
-        value, low, high = (float(one) for one in found)
-        name = main.people[person]
-        bounded = max(marginal[0], marginal[-1]) > 0.05 * marginal.max()
-        estimate = Estimate(value, low, high, level, "posterior")
-        persons.append(PersonEstimate(name, estimate, int(mine.sum()), bool(bounded)))
-        x = np.log(np.expm1(D_PRIME_OF_75 * np.exp(edges)))
-        likelihoods.append(
-            PersonLikelihood(0.5 * (x[1:] + x[:-1]), np.diff(x), marginal / np.diff(edges))
-        )
-        over_limits = weight.sum(axis=(0, 2))
-        criteria[name] = float(limits @ over_limits / over_limits.sum())
-    return persons, likelihoods, criteria
+        whole = np.exp(total - total.max())
+        people.names.append(main.people[person])
+        people.likelihood.append(prior @ whole.sum(axis=1).T)
+        people.bias.append(float(whole.sum(axis=(0, 2)) @ limits / whole.sum()))
+        people.lapse.append(float(whole.sum(axis=(0, 1)) @ LAPSES / whole.sum()))
+        people.trials.append(int(mine.sum()))
+    return people
 
 
 def same_different_conditions(
     main: Answers, level: si.Dimensionless, seed: int
 ) -> tuple[ConditionFinding, ...]:
     """Each difference: how often it was called different, and its d′; the first is none at all."""
-    apart = differences(main)
+    apart = np.abs(differences(main))
     design = main.design
     here = design.judged_value(design.stimulus(design.reference))
     found = []
@@ -126,14 +113,12 @@ def _mean_d_prime(
 
 
 def same_different_numbers(
-    main: Answers, criteria: dict[str, float], level: si.Dimensionless
+    main: Answers, criteria: list[float], level: si.Dimensionless
 ) -> dict[str, Estimate]:
     """False alarms and criterion, over people."""
-    apart, people = differences(main), np.unique(main.participant)
+    apart, people = np.abs(differences(main)), np.unique(main.participant)
     alarms = [np.mean(main.choice[(main.participant == one) & (apart == 0)] == 1) for one in people]
     return {
         "false alarms (same called different)": t_interval(np.array(alarms), level),
-        "criterion (standard deviations of a percept)": t_interval(
-            np.array(list(criteria.values())), level
-        ),
+        "criterion (standard deviations of a percept)": t_interval(np.array(criteria), level),
     }

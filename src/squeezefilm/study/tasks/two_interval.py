@@ -1,15 +1,18 @@
-"""Two intervals, which has more: psychometric functions, Weber fractions, d′, the intervals' bias.
+"""Two intervals, which has more: each person's Weber fraction, d′, the bias for an interval.
 
-Constant stimuli are fitted as "the comparison has more" over ln of the comparison, with lapses to
-either side; adaptive series as "correct" over the difference, with a guess rate of ½. Both give a
-Weber fraction: the difference, in parts of the reference, that is told in 75 % of the trials in
-which somebody attends. People are put together by `population`.
+One model for constant stimuli and adaptive series, of whatever was presented: P("first") = λ/2 +
+(1 − λ) Φ((Δ − b)/s), with Δ the difference of the logarithms of the first and the second, s the
+deviation of that difference's percept, b the person's bias for an interval and λ their lapse rate.
+The Weber fraction is exp(0.674 s) − 1: the difference, in parts of the reference, that is told in
+75 % of the trials in which somebody attends and has no bias. s, b and λ are integrated on a grid;
+how stimuli were chosen does not matter to that.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,122 +20,169 @@ from scipy import stats
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.adaptive.staircase import Staircase
 from squeezefilm.study.identification.proportions import proportion_interval
+from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.discrimination import (
     Sensitivity,
     corrected_proportion,
     sensitivity,
     two_interval_sensitivity,
 )
-from squeezefilm.study.psychometric.fit import PsychometricFit, fit_psychometric
-from squeezefilm.study.psychometric.prior import PsychometricPrior
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.tasks.findings import ConditionFinding, Estimate, PersonEstimate, through
-from squeezefilm.study.tasks.population import PersonLikelihood
+from squeezefilm.study.tasks.findings import (
+    ConditionFinding,
+    Estimate,
+    PersonEstimate,
+    PersonFunction,
+    through,
+)
+from squeezefilm.study.tasks.population import (
+    LAPSES,
+    PersonLikelihood,
+    Population,
+    lapse_weights,
+)
 
-_QUARTILE = 0.6744897501960817
-_TAIL = 1.6448536269514722
-# ln(1 + Weber fraction) over the width of a Gaussian function on a logarithmic axis.
-_PER_WIDTH = _QUARTILE / (2.0 * _TAIL)
+QUARTILE = 0.6744897501960817
+"""Of a normal deviate: 75 % lie below."""
+# From 5 to 95 % of a normal distribution, which is what the kernel calls the width.
+_WIDTH = 2 * 1.6448536269514722
+_SPREADS, _BIASES = 81, 41
 
 
-def comparisons(main: Answers) -> tuple[si.IntArray, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Of each trial the surface compared with the reference, whether it came first, and whether it
-    was said to have more."""
-    values = main.values
-    design = main.design
+def comparisons(main: Answers) -> tuple[si.IntArray, NDArray[np.bool_]]:
+    """Of each trial the surface compared with the reference, and whether it was said to have
+    more."""
+    values, design = main.values, main.design
     here = design.judged_value(design.stimulus(design.reference))
     is_first = values[main.first] != here
-    surface = np.where(is_first, main.first, main.second)
-    return surface, is_first, (main.choice == 0) == is_first
+    return np.where(is_first, main.first, main.second), (main.choice == 0) == is_first
 
 
-def weber_fractions(
-    main: Answers, level: si.Dimensionless, tell: Callable[[str], None]
-) -> tuple[list[PersonEstimate], list[PersonLikelihood], dict[str, PsychometricFit]]:
-    """Each person's Weber fraction, what their answers say of its logarithm, and their function."""
-    persons, likelihoods, fits = [], [], {}
-    for count, person in enumerate(np.unique(main.participant)):
-        name = main.people[person]
-        tell(f"psychometric function {count + 1} of {len(main.people)}")
-        mine = main.take(main.participant == person)
-        adaptive = (mine.series >= 0).any()
-        fit = _fit_adaptive(mine, level) if adaptive else _fit_constant(mine, level)
-        parameter = "threshold" if adaptive else "width"
-        shift: Callable[[si.FloatLike], si.FloatArray] = (
-            np.asarray if adaptive else (lambda width: np.expm1(_PER_WIDTH * np.asarray(width)))
+def differences(main: Answers) -> si.FloatArray:
+    """ln of what is judged of the first surface over the second, of each trial (1)."""
+    logs = np.log(main.values)
+    return np.asarray(np.round(logs[main.first] - logs[main.second], 12))
+
+
+def spread_edges(main: Answers, cells: int) -> si.FloatArray:
+    """Edges of the cells of ln s: from an eighth of the least difference that the design has to
+    eight times the greatest, whatever was presented."""
+    design = main.design
+    if design.adaptive:
+        ends = [math.log1p(x) for one in design.adaptive for x in (one.lowest, one.highest)]
+    else:
+        here = math.log(design.judged_value(design.stimulus(design.reference)))
+        logs = [abs(math.log(design.judged_value(one)) - here) for one in design.stimuli]
+        ends = [one for one in logs if one > 0]
+    return np.linspace(math.log(min(ends) / 8), math.log(8 * max(ends)), cells + 1)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PeopleOnGrid:
+    """What each person's answers say.
+
+    Attributes:
+        names: of the people.
+        edges: of the cells of ln(Weber fraction), shape (cells + 1,).
+        flat: prior probability of each cell, up to a factor, shape (cells,).
+        likelihood: of a person's answers under each mean lapse rate, shape (lapses, cells).
+        bias: mean of the person's bias or criterion.
+        lapse: mean of the person's lapse rate (1).
+        trials: of each person.
+    """
+
+    names: list[str]
+    edges: si.FloatArray
+    flat: si.FloatArray
+    likelihood: list[si.FloatArray]
+    bias: list[float]
+    lapse: list[float]
+    trials: list[int]
+
+    def likelihoods(self) -> list[PersonLikelihood]:
+        """As a population takes them."""
+        middle, width = 0.5 * (self.edges[1:] + self.edges[:-1]), np.diff(self.edges)
+        return [PersonLikelihood(middle, width, one) for one in self.likelihood]
+
+    def estimates(self, level: si.Dimensionless) -> list[PersonEstimate]:
+        """Of each person's Weber fraction: the posterior's median and central interval, with the
+        lapse rates that all people's answers speak for."""
+        lapses = Population(self.likelihoods()).lapses()
+        found = []
+        tails = 0.5, 0.5 * (1 - level), 0.5 * (1 + level)
+        for name, likelihood, trials in zip(self.names, self.likelihood, self.trials, strict=True):
+            density = lapses @ (likelihood / likelihood.max())
+            heights = np.concatenate([[0.0], np.cumsum(density * self.flat)])
+            value, low, high = np.exp(np.interp(tails, heights / heights[-1], self.edges)).tolist()
+            bounded = max(density[0], density[-1]) > 0.05 * density.max()
+            estimate = Estimate(value, low, high, level, "posterior")
+            found.append(PersonEstimate(name, estimate, trials, bool(bounded)))
+        return found
+
+    def functions(self, level: si.Dimensionless) -> dict[str, PersonFunction]:
+        """Each person's Weber fraction, bias and lapse rate, to be drawn."""
+        return {
+            one.person: PersonFunction(one.estimate.value, bias, lapse)
+            for one, bias, lapse in zip(self.estimates(level), self.bias, self.lapse, strict=True)
+        }
+
+
+def on_grid(main: Answers, tell: Callable[[str], None]) -> PeopleOnGrid:
+    """What each person's answers to two intervals say of their Weber fraction."""
+    edges = spread_edges(main, _SPREADS)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    apart, first = differences(main), (main.choice == 0).astype(float)
+    reach = float(np.abs(apart).max())
+    biases = np.linspace(-0.5, 0.5, _BIASES) * reach
+    prior = lapse_weights()
+    people = PeopleOnGrid(
+        [], np.log(np.expm1(QUARTILE * np.exp(edges))), np.diff(edges), [], [], [], []
+    )
+    for person in np.unique(main.participant):
+        tell(f"psychometric function {len(people.names) + 1} of {len(main.people)}")
+        mine = main.participant == person
+        places, where = np.unique(apart[mine], return_inverse=True)
+        k = np.bincount(where, first[mine]).astype(np.float64)
+        n = np.bincount(where).astype(np.float64)
+        found = np.stack(
+            [
+                kernel.grid_log_likelihood(
+                    kernel.GAUSSIAN,
+                    biases,
+                    middle + math.log(_WIDTH),
+                    np.array([0.5 * lapse]),
+                    np.array([0.5 * lapse]),
+                    places,
+                    k,
+                    n,
+                )[:, :, 0, 0]
+                for lapse in LAPSES
+            ]
         )
-        low, high = (float(shift(one)) for one in fit.posterior_interval[parameter])
-        # The middle of what the answers allow: the likeliest width is biased where they are few.
-        value = float(shift(fit.posterior.quantile(parameter, 0.5)))
-        estimate = Estimate(value, low, high, level, "posterior")
-        bounded = parameter in fit.bounded_by_prior
-        persons.append(PersonEstimate(name, estimate, mine.trials, bounded))
-        likelihoods.append(_likelihood(fit, parameter, shift))
-        fits[name] = fit
-    return persons, likelihoods, fits
-
-
-def _fit_constant(mine: Answers, level: float) -> PsychometricFit:
-    surface, _, more = comparisons(mine)
-    values = mine.values[surface]
-    every = [mine.design.judged_value(one) for one in mine.design.stimuli]
-    return fit_psychometric(
-        values,
-        more,
-        shape="gaussian",
-        axis="log",
-        guess_rate=None,
-        prior=PsychometricPrior.for_stimuli(np.array(every), "log"),
-        level=level,
-        replicates=0,
-    )
-
-
-def _fit_adaptive(mine: Answers, level: float) -> PsychometricFit:
-    among = mine.design.adaptive
-    ends = np.array([min(s.lowest for s in among), max(s.highest for s in among)])
-    return fit_psychometric(
-        mine.intensity,
-        mine.correct == 1.0,
-        axis="log",
-        guess_rate=0.5,
-        prior=adaptive_prior(float(ends[0]), float(ends[1])),
-        level=level,
-        replicates=0,
-    )
-
-
-def adaptive_prior(lowest: float, highest: float) -> PsychometricPrior:
-    """The weak prior of a series' function: that of the forty differences a Bayesian choice has,
-    whatever was presented."""
-    return PsychometricPrior.for_stimuli(np.geomspace(lowest, highest, 40), "log")
-
-
-def _likelihood(
-    fit: PsychometricFit, parameter: str, shift: Callable[[si.FloatLike], si.FloatArray]
-) -> PersonLikelihood:
-    """Of ln(Weber fraction), from a posterior whose prior is flat in the logarithm of the fitted
-    parameter."""
-    at = ("threshold", "width").index(parameter)
-    edges = np.asarray(fit.posterior.edges[at])
-    flat = np.diff(np.log(edges))
-    x = np.log(np.asarray(shift(edges)))
-    density = fit.posterior.marginal(parameter) / flat
-    return PersonLikelihood(0.5 * (x[1:] + x[:-1]), np.diff(x), density)
+        whole = np.exp(found - found.max())
+        people.names.append(main.people[person])
+        people.likelihood.append(prior @ whole.sum(axis=1))
+        total = whole.sum()
+        people.bias.append(float(whole.sum(axis=(0, 2)) @ biases / total))
+        people.lapse.append(float(whole.sum(axis=(1, 2)) @ LAPSES / total))
+        people.trials.append(int(mine.sum()))
+    return people
 
 
 def two_interval_conditions(
     main: Answers, level: si.Dimensionless, seed: int
 ) -> tuple[ConditionFinding, ...]:
     """Each comparison: how often it was said to have more, and its d′ from the reference."""
-    surface, is_first, more = comparisons(main)
+    surface, more = comparisons(main)
     found = []
     for one in sorted(np.unique(surface), key=lambda s: main.values[s]):
         here = surface == one
         hits, trials = int(more[here].sum()), int(here.sum())
         bounds = proportion_interval(hits, trials, level)
-        d = _mean_d_prime(main, here, is_first, level, seed)
+        d = _mean_d_prime(main, here, level, seed)
         found.append(
             ConditionFinding(
                 main.surfaces[one].name,
@@ -146,8 +196,26 @@ def two_interval_conditions(
     return tuple(found)
 
 
+def adaptive_conditions(main: Answers, level: si.Dimensionless) -> tuple[ConditionFinding, ...]:
+    """The trials of adaptive series in eighths by their difference: how often they were right, and
+    the mean difference of each, in parts of the reference."""
+    order = np.argsort(main.intensity, kind="stable")
+    found = []
+    for number, part in enumerate(np.array_split(order, 8)):
+        if not part.size:
+            continue
+        hits = int(main.correct[part].sum())
+        bounds = proportion_interval(hits, part.size, level)
+        share = Estimate(hits / part.size, bounds.low, bounds.high, level, "Wilson, over trials")
+        people = int(np.unique(main.participant[part]).size)
+        value = float(main.intensity[part].mean())
+        name = f"eighth {number + 1} of the differences"
+        found.append(ConditionFinding(name, value, part.size, people, share))
+    return tuple(found)
+
+
 def _mean_d_prime(
-    main: Answers, here: NDArray[np.bool_], is_first: NDArray[np.bool_], level: float, seed: int
+    main: Answers, here: NDArray[np.bool_], level: float, seed: int
 ) -> Estimate | None:
     """Over people; the comparison counts as the signal where it is right to choose it."""
     counts = []
@@ -194,22 +262,12 @@ def t_interval(values: si.FloatArray, level: si.Dimensionless) -> Estimate:
     return Estimate(mean, mean - reach, mean + reach, level, "t, over people")
 
 
-def two_interval_numbers(
-    main: Answers, fits: dict[str, PsychometricFit], level: si.Dimensionless
-) -> dict[str, Estimate]:
-    """The bias for the first interval; of constant stimuli the point of subjective equality, of
-    staircases the mean of their reversals."""
+def two_interval_numbers(main: Answers, level: si.Dimensionless) -> dict[str, Estimate]:
+    """The bias for the first interval, and of staircases the mean of their reversals."""
     people = np.unique(main.participant)
     first = np.array([np.mean(main.choice[main.participant == one] == 0) for one in people])
     due = np.array([np.mean(main.right[main.participant == one] == 0) for one in people])
     found = {"bias for the first interval": t_interval(first - due, level)}
-    if not (main.series >= 0).any():
-        design = main.design
-        here = design.judged_value(design.stimulus(design.reference))
-        points = np.log([fits[main.people[one]].function.threshold / here for one in people])
-        name = "point of subjective equality from the reference"
-        found[name] = through(t_interval(points, level), math.expm1)
-        return found
     for number, series in enumerate(main.design.adaptive):
         if series.method != "staircase":
             continue
@@ -223,9 +281,6 @@ def two_interval_numbers(
 
 
 def _reversals(main: Answers, person: int, series: int) -> float:
-    from squeezefilm.study.adaptive.series import adaptive_method
-    from squeezefilm.study.adaptive.staircase import Staircase
-
     mine = (main.participant == person) & (main.series == series)
     answers = zip(main.intensity[mine].tolist(), (main.correct[mine] == 1.0).tolist(), strict=True)
     method = adaptive_method(main.design.adaptive[series], answers)

@@ -63,6 +63,7 @@ POINTS = SimpleNamespace(points=np.array([[0, 0.5], [1, -0.25], [2, 0.75]]), exp
 def analysis(**changes: Any) -> Any:
     values: dict[str, Any] = {
         "origin": "made-up", "name": "a study", "participants": 4, "matrix": matrix(),
+        "trials": 28,
         "proportion_correct": 18 / 28, "interval": interval(0.5, 0.75), "permutation_p": 0.0004,
         "by_stimulus": [
             SimpleNamespace(stimulus=name, low=p - 0.125, high=p + 0.125, proportion_correct=p)

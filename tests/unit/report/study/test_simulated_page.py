@@ -31,9 +31,9 @@ from squeezefilm.report.study.simulated_page import (
     write_simulated,
 )
 from squeezefilm.study.design.study_design import load_design
-from squeezefilm.study.identification import analysis as identification
 from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
 from squeezefilm.study.simulated.participants import SimulatedStudy
+from squeezefilm.study.tasks import analyze
 
 PAPER = load_design("biet2008-gratings")
 # Answers in another order than what is presented; the second display's name tries to be markup.
@@ -78,11 +78,11 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Any], 
         handed.append((analysis, to))
         return to / "index.html"
 
-    quick = functools.partial(identification.analyze_identification, resamples=10)
+    quick = functools.partial(analyze.analyze_answers, resamples=10)
     with pytest.MonkeyPatch.context() as patch:
         # Reports of real answers have tests of their own, and pictures are slow.
         patch.setattr("squeezefilm.report.study.page.write_study", write_study)
-        patch.setattr(identification, "analyze_identification", quick)
+        patch.setattr(analyze, "analyze_answers", quick)
         patch.setattr(style, "png", lambda one: one.get_suptitle().encode())
         assert write_simulated(study(), folder, told.append) == folder / "index.html"
     return folder, handed, told
@@ -132,9 +132,8 @@ def test_each_display_is_analysed_with_the_answer_that_is_right_on_the_diagonal(
     assert second.matrix.counts.tolist() == [[2, 0], [0, 2]]
     assert first.name == "two-gratings, biet2008-stator"
     assert first.origin == "simulated"
-    assert told == [
-        "figures", "analysis of biet2008-stator", "analysis of <b>plate</b>", "writing the report",
-    ]  # fmt: skip
+    assert (told[0], told[-1]) == ("figures", "writing the report")
+    assert told.count("counting") == 2
 
 
 def test_numbers_and_figures_are_beside_the_page(

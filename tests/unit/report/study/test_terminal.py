@@ -119,17 +119,17 @@ def test_the_names_of_a_plan_are_not_broken_on_a_narrow_terminal() -> None:
 
 def test_the_status_lists_people_in_their_order() -> None:
     rows = [
-        {"uuid": "abc", "number": 0, "answered": 7, "planned": 9},
-        {"uuid": "def", "number": 1, "answered": 0, "planned": 9},
+        {"uuid": "abc", "number": 0, "answered": 7, "planned": 9, "set_aside": 2},
+        {"uuid": "def", "number": 1, "answered": 0, "planned": 9, "set_aside": 0},
     ]
     store = SimpleNamespace(
         study={"name": "small"}, path=Path("a.sqlite"), participants=lambda: rows
     )
     assert printed(lambda: show_status(store)) == [  # type: ignore[arg-type]
         "small: a.sqlite",
-        "Participant Number Answered Planned",
-        "abc 0 7 9",
-        "def 1 0 9",
+        "Participant Number Answered Planned Set aside",
+        "abc 0 7 9 2",
+        "def 1 0 9 0",
     ]
 
 

@@ -7,8 +7,8 @@ import pytest
 from tests.unit.report.printed import printed
 
 from squeezefilm.report.kit.numbers import printable
-from squeezefilm.report.study.page import key_rows
 from squeezefilm.report.study.terminal_analysis import show_analyses, show_power
+from squeezefilm.report.study.words import key_rows, read_first
 from squeezefilm.study.identification.analysis import (
     IdentificationAnalysis,
     analyze_identification,
@@ -32,16 +32,14 @@ def test_each_display_has_its_confusions_and_main_numbers(
     lines = printed(lambda: show_analyses({"plate": analysis, "ring": analysis}))
     half = lines[: len(lines) // 2]
     assert lines[len(half) :] == ["ring: answers of simulated", *half[1:]]
-    assert half[:4] == [
-        "plate: answers of simulated",
-        "grating chosen 4 mm 8 mm",
-        "4 mm 100 % 25 %",
-        "8 mm 0 % 75 %",
-    ]
+    first = [printable(" ".join(one.split())) for one in read_first(analysis)]
+    assert half[: 1 + len(first)] == ["plate: answers of simulated", *first]
+    rest = half[1 + len(first) :]
+    assert rest[:3] == ["grating chosen 4 mm 8 mm", "4 mm 100 % 25 %", "8 mm 0 % 75 %"]
     rows = [printable(" ".join(map(printable, row))) for row in key_rows(analysis)]
     notes = [printable(note) for note in analysis.notes]
-    assert half[4:] == [*rows, *notes]
-    assert "Participants 1 8 trials" in half
+    assert rest[3:] == [*rows, *notes]
+    assert "Participants 1 8 main trials" in half
     assert any(note.startswith("intervals over people: there is one") for note in notes)
 
 
@@ -73,8 +71,8 @@ def test_power_is_said_by_size_with_how_many_are_needed() -> None:
         "6 82 % 76 to 87 %",
         "8 95 % 90 to 98 %",
         "6 people reach 80 % power.",
-        "One-sided test over people at 0.05; 400 studies a size, of simulated participants "
-        "'fingertip': what they assume, this assumes.",
+        "One-sided test over people at 0.05; the pool's own score is 0.3 (0 for nothing); 400 "
+        "studies a size, of simulated participants 'fingertip': what they assume, this assumes.",
     ]
 
 

@@ -86,7 +86,8 @@ def _mutated(path: Path, data: bytes, seed: int) -> str:
     connection.execute(f"PRAGMA schema_version = {1000 + seed}")
     connection.close()
     connection = sqlite3.connect(path, isolation_level=None)
-    table = choose.choice(("study", *TABLES))
+    # Nothing was set aside in these studies.
+    table = choose.choice(("study", *TABLES[:-1]))
     columns = connection.execute(f"PRAGMA table_info({table})").fetchall()
     key, column = columns[0][1], choose.choice(columns)[1]
     keys = [row[0] for row in connection.execute(f"SELECT {key} FROM {table} ORDER BY {key}")]

@@ -485,7 +485,7 @@ def test_what_is_no_study_is_told_from_one_of_another_version(tmp_path: Path) ->
         ("application_id", APPLICATION_ID + 1, "no study's file; give one that `study run`", False),
         ("application_id", 0, "no study's file; give one that `study run`", False),
         ("user_version", VERSION + 1, f"version {VERSION + 1}; this program reads version", True),
-        ("user_version", VERSION - 1, f"version {VERSION - 1}; this program reads version", True),
+        ("user_version", VERSION - 2, f"version {VERSION - 2}; this program reads version", True),
     ):
         other = tmp_path / "other.sqlite"
         shutil.copy(path, other)

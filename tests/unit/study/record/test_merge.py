@@ -48,6 +48,7 @@ def test_stations_merge_in_any_order_and_again(tmp_path: Path) -> None:
         "verification": 2,
         "presentation": 18,
         "response": 18,
+        "set_aside": 0,
     }
     assert done.traces == 12
     assert done.doubled_numbers == ()

@@ -20,7 +20,7 @@ from squeezefilm.study.record.tables import SIMULATED, origin_of, trial_table
 from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.tasks.analyze import analyze_study
 
-from ..scripted import CONSENT, Script, gratings, staircase
+from ..scripted import CONSENT, Script, gratings
 
 
 def run_through(store: StudyStore, people: int) -> None:
@@ -63,10 +63,12 @@ def test_a_rehearsal_answers_everything_and_says_that_nobody_did(tmp_path: Path)
             rehearse(store, observer, 1)
 
 
-def test_what_is_no_identification_is_refused(tmp_path: Path) -> None:
+def test_what_has_no_answer_is_refused(tmp_path: Path) -> None:
+    design = gratings()
+    odd = dataclasses.replace(design, stimuli=design.stimuli[:2])
     with (
-        StudyStore.create(tmp_path / "j.sqlite", staircase(), 4) as store,
-        pytest.raises(InputError, match="two-interval"),
+        StudyStore.create(tmp_path / "j.sqlite", odd, 4) as store,
+        pytest.raises(InputError, match="one right answer for each stimulus"),
     ):
         analyze_study(store)
     with (

@@ -1,0 +1,168 @@
+"""Made-up people of known Weber fractions and exponents, and their answers to whole designs.
+
+They are made without the chain, by the models that the analyses name. Designs, people and truths
+were fixed before any coverage was computed.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+
+import numpy as np
+from scipy.special import ndtr
+
+from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.design.trials import Trial, trials
+from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.tasks.analyze import analyze_answers
+from squeezefilm.study.tasks.findings import TaskAnalysis
+
+WEBER, WEBER_SPREAD = 0.15, 0.3
+EXPONENT, EXPONENT_SPREAD = 0.9, 0.15
+LAPSE, BIAS, CRITERION, NOISE = 0.02, 0.03, 1.4, 0.25
+QUARTILE, D_PRIME = 0.6744897501960817, 0.9538725524
+
+DESIGNS = {
+    "constant": dataclasses.replace(load_design("friction-jnd"), practice=0),
+    "adaptive": dataclasses.replace(load_design("period-jnd"), practice=0),
+    "same-different": dataclasses.replace(load_design("period-same-different"), practice=0),
+    "magnitude": dataclasses.replace(load_design("coarseness-magnitude"), familiarisation=0),
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Person:
+    """What is true of somebody."""
+
+    weber: float
+    exponent: float
+    bias: float
+
+    def answer(
+        self, design: StudyDesign, pair: tuple[Stimulus, ...], random: np.random.Generator
+    ) -> str | float:
+        """To one or two surfaces."""
+        logs = [math.log(design.judged_value(one)) for one in pair]
+        if design.task == "magnitude-estimation":
+            return math.exp(self.exponent * logs[0] + NOISE * random.standard_normal()) * 1e3
+        if random.random() < LAPSE:
+            return str(random.choice(design.answers))
+        if design.task == "same-different":
+            apart = (logs[0] - logs[1]) / (math.log1p(self.weber) / D_PRIME)
+            noisy = apart + math.sqrt(2) * random.standard_normal()
+            return "different" if abs(noisy) > CRITERION else "same"
+        spread = math.log1p(self.weber) / QUARTILE
+        more = ndtr((logs[0] - logs[1] + self.bias) / spread)
+        return "first" if random.random() < more else "second"
+
+
+def somebody(random: np.random.Generator) -> Person:
+    """Drawn from the population."""
+    weber, exponent, bias = random.standard_normal(3)
+    return Person(
+        WEBER * math.exp(WEBER_SPREAD * weber),
+        EXPONENT + EXPONENT_SPREAD * exponent,
+        BIAS * bias,
+    )
+
+
+def answered(design: StudyDesign, people: list[Person], random: np.random.Generator) -> Answers:
+    """Everybody's answers to every trial of a design."""
+    surfaces: list[Stimulus] = [*design.stimuli, *(one.stimulus for one in design.catch)]
+    place = {one.name: k for k, one in enumerate(surfaces)}
+    rows: list[dict[str, object]] = []
+    for number, person in enumerate(people):
+        methods = {one.name: adaptive_method(one) for one in design.adaptive}
+        for trial in trials(design, number, 7):
+            if not trial.asks:
+                continue
+            names, intensity = list(trial.stimuli), math.nan
+            if trial.adaptive:
+                intensity = methods[trial.adaptive].next_stimulus()
+                series = next(s for s in design.adaptive if s.name == trial.adaptive)
+                one = design.comparison(series, intensity)
+                key = f"{one.name} {intensity!r}"
+                if key not in place:
+                    place[key] = len(surfaces)
+                    surfaces.append(one)
+                names = [design.reference, key]
+                names = names if trial.reference_first else names[::-1]
+            pair = tuple(surfaces[place[name]] for name in names)
+            given = person.answer(design, pair, random)
+            if trial.adaptive:
+                methods[trial.adaptive].update(intensity, given == trial.answer)
+            rows.append(_row(design, number, trial, names, place, intensity, given))
+    columns = {key: np.array([row[key] for row in rows]) for key in rows[0]}
+    return Answers(
+        design=design,
+        origin="made up",
+        people=tuple(f"p{k}" for k in range(len(people))),
+        surfaces=tuple(surfaces),
+        **columns,  # type: ignore[arg-type] # by name
+    )
+
+
+def _row(
+    design: StudyDesign,
+    number: int,
+    trial: Trial,
+    names: list[str],
+    place: dict[str, int],
+    intensity: float,
+    given: str | float,
+) -> dict[str, object]:
+    answers = {name: k for k, name in enumerate(design.answers)}
+    series = {one.name: k for k, one in enumerate(design.adaptive)}
+    return {
+        "participant": number,
+        "number": trial.number,
+        "phase": trial.phase,
+        "display": 0,
+        "series": series.get(trial.adaptive, -1),
+        "first": place[names[0]],
+        "second": place[names[1]] if len(names) > 1 else -1,
+        "intensity": intensity,
+        "choice": answers[given] if isinstance(given, str) else -1,
+        "right": answers.get(trial.answer, -1),
+        "estimate": math.nan if isinstance(given, str) else given,
+        "response_time": 1.0 + number / 10 + trial.number / 1000,
+    }
+
+
+def analysed(name: str, people: list[Person], random: np.random.Generator) -> TaskAnalysis:
+    """The analysis of everybody's answers to one of `DESIGNS`."""
+    design = DESIGNS[name]
+    found = analyze_answers(answered(design, people, random), name)[design.displays[0]]
+    assert isinstance(found, TaskAnalysis)
+    return found
+
+
+def coverage(name: str, runs: int, people: int = 8, seed: int = 1) -> dict[str, float]:
+    """Shares of 95 % intervals that hold the truth: of persons, of the population's mean and its
+    spread; and the mean's median length."""
+    truth: Callable[[Person], float] = lambda one: one.weber  # noqa: E731
+    middle, spread = WEBER, WEBER_SPREAD
+    if name == "magnitude":
+        truth, middle, spread = (lambda one: one.exponent), EXPONENT, EXPONENT_SPREAD
+    persons, held, spreads, lengths = [], [], [], []
+    for run in range(runs):
+        random = np.random.default_rng([seed, run])
+        group = [somebody(random) for _ in range(people)]
+        found = analysed(name, group, random)
+        for one, person in zip(found.persons, group, strict=True):
+            persons.append(one.estimate.low <= truth(person) <= one.estimate.high)
+        assert found.pooled is not None
+        assert found.spread is not None
+        held.append(found.pooled.low <= middle <= found.pooled.high)
+        spreads.append(found.spread.low <= spread <= found.spread.high)
+        lengths.append(found.pooled.high - found.pooled.low)
+    return {
+        "persons": float(np.mean(persons)),
+        "population": float(np.mean(held)),
+        "spread": float(np.mean(spreads)),
+        "length": float(np.median(lengths)),
+    }

@@ -1,0 +1,37 @@
+"""Weber fractions and exponents of made-up people are recovered, and intervals hold them as often
+as they say: of each person, of the population and of its spread.
+
+The campaign's tests are those of the requirement; they print what they found.
+"""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from .task_people import DESIGNS, coverage
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", DESIGNS)
+def test_intervals_hold_the_truth(name: str) -> None:
+    runs = 40
+    found = coverage(name, runs)
+    print(name, found)
+    for what, count in (("persons", 8 * runs), ("population", runs), ("spread", runs)):
+        # A posterior that is too wide is no fault that so few runs could show.
+        assert found[what] >= 0.95 - 4 * math.sqrt(0.95 * 0.05 / count), what
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", DESIGNS)
+def test_intervals_of_many_studies_hold_the_truth(name: str) -> None:
+    # A fit of magnitudes is cheap; the others integrate a grid for each of 8 people.
+    cheap = name == "magnitude"
+    found = coverage(name, 2000 if cheap else 500)
+    print(name, found)
+    low, high = (0.935, 0.965) if cheap else (0.925, 0.975)
+    for what in ("persons", "population"):
+        assert low <= found[what] <= high, what
+    assert found["spread"] >= low

@@ -1,0 +1,144 @@
+"""Simulated answers to two intervals, same or different and magnitudes, on percepts by hand."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.special import ndtr
+
+from squeezefilm.errors import InputError
+from squeezefilm.perception.observer import load_observer
+from squeezefilm.perception.percepts import Apparatus
+from squeezefilm.perception.senses import D_PRIME_OF_75, Candidates
+from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.simulated.answers import (
+    SimulatedAnswers,
+    answers_of,
+    simulate_participants,
+)
+from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
+from squeezefilm.study.simulated.judgements import ASSUMED, simulate_judgements
+
+EXACT = dataclasses.replace(
+    load_observer(),
+    finger_classes=1,
+    candidates=1,
+    period_spread=0.0,
+    lapse_rate=0.0,
+    learning_excess=0.0,
+)
+SIGMA = math.log1p(EXACT.period_weber_fraction) / D_PRIME_OF_75
+WHY = Causes(*(1.0,) * 10)
+PERIODS = dataclasses.replace(
+    load_design("period-same-different"), task="two-interval", practice=0, repetitions=10
+)
+ALIKE = dataclasses.replace(load_design("period-same-different"), practice=0, repetitions=10)
+DEPTHS = dataclasses.replace(load_design("friction-jnd"), practice=0)
+NUMBERS = dataclasses.replace(load_design("coarseness-magnitude"), familiarisation=0)
+
+
+def tables(design: StudyDesign, d_prime: list[float] | float = 1e6) -> ChainTables:
+    """One display, one finger: each period alone, as evident as said."""
+    period = np.array([one.period for one in design.stimuli])[None, None, :, None]
+    evidence = np.broadcast_to(np.asarray(d_prime, dtype=float), len(design.stimuli))
+    return ChainTables(
+        design=design,
+        observer=EXACT,
+        fingers=EXACT.fingers(),
+        apparatus=(Apparatus(),),
+        virtual=Candidates(period, evidence[None, None, :, None].copy()),
+        real=Candidates(np.empty((1, 0, 1)), np.empty((1, 0, 1))),
+        virtual_rhythm=np.zeros((1, 1, len(design.stimuli), 1)),
+        real_rhythm=np.zeros((1, 0, 1)),
+        causes=(((WHY,),) * len(design.stimuli),),
+    )
+
+
+def test_the_coarser_is_found_as_often_as_two_percepts_have_it() -> None:
+    main = simulate_judgements(PERIODS, EXACT, 200, 1, tables(PERIODS)).main(0)
+    for one in PERIODS.stimuli[1:]:
+        pair = np.array([main.surfaces[k].name for k in np.maximum(main.first, main.second)])
+        here = pair == one.name
+        expected = ndtr(math.log(one.period / 4e-3) / (math.sqrt(2) * SIGMA))
+        error = math.sqrt(expected * (1 - expected) / here.sum())
+        assert main.correct[here].mean() == pytest.approx(expected, abs=4.5 * error + 1e-3)
+
+
+def test_the_deeper_is_found_by_its_evidence() -> None:
+    strengths = [2.0 + 2.0 * (one.friction_depth - 0.3) / 0.12 for one in DEPTHS.stimuli]
+    main = simulate_judgements(DEPTHS, EXACT, 300, 1, tables(DEPTHS, strengths)).main(0)
+    names = np.array([one.name for one in main.surfaces])
+    deepest = (names[main.first] == "42 %") | (names[main.second] == "42 %")
+    expected = ndtr(2.0 / math.sqrt(2))
+    assert main.correct[deepest].mean() == pytest.approx(expected, abs=0.02)
+
+
+def test_the_same_are_called_different_as_the_criterion_has_it() -> None:
+    main = simulate_judgements(ALIKE, EXACT, 100, 1, tables(ALIKE)).main(0)
+    same = main.first == main.second
+    expected = 2 * ndtr(-EXACT.detection_criterion)
+    assert (main.choice[same] == 1).mean() == pytest.approx(expected, abs=0.02)
+
+
+def test_numbers_are_in_proportion_to_clear_periods() -> None:
+    answers = simulate_judgements(NUMBERS, EXACT, 400, 1, tables(NUMBERS))
+    main = answers.main(0)
+    for k, one in enumerate(NUMBERS.stimuli):
+        mean = math.exp(np.log(main.estimate[main.first == k]).mean())
+        assert mean == pytest.approx(10 * one.period / 4e-3, rel=0.03)
+    digits = [f"{value:.1e}" for value in main.estimate[:50]]
+    assert [float(one) for one in digits] == pytest.approx(main.estimate[:50].tolist())
+
+
+def test_nobody_feels_anything_and_answers_are_guesses() -> None:
+    main = simulate_judgements(PERIODS, EXACT, 100, 1, tables(PERIODS, -np.inf)).main(0)
+    assert main.correct.mean() == pytest.approx(0.5, abs=0.03)
+
+
+@pytest.mark.parametrize("design", [PERIODS, ALIKE, NUMBERS], ids=lambda one: one.task)
+def test_people_do_not_depend_on_how_many_there_are(design: StudyDesign) -> None:
+    few = simulate_judgements(design, EXACT, 3, 4, tables(design, 1.5))
+    many = simulate_judgements(design, EXACT, 70, 4, tables(design, 1.5))
+    mine = many.participant < 3
+    for key in ("choice", "estimate", "first", "second", "response_time"):
+        assert np.array_equal(getattr(few, key), getattr(many, key)[mine], equal_nan=True)
+    again = simulate_judgements(design, EXACT, 3, 5, tables(design, 1.5))
+    assert not np.array_equal(few.response_time, again.response_time)
+
+
+def test_results_say_that_they_are_simulated_and_what_they_assume() -> None:
+    found = simulate_participants(ALIKE, EXACT, 4, 0, tables(ALIKE, 3.0))
+    assert isinstance(found, SimulatedAnswers)
+    data = found.summary()
+    assert data["origin"] == "simulated"
+    (one,) = found.analyses.values()
+    assert next(iter(data["displays"].values()))["assumed"] == list(ASSUMED["same-different"])
+    assert one.origin == "simulated"
+    assert len(found.rows()) == found.answers.trials
+    assert found.participants == 4
+
+
+def test_a_simulated_match_has_its_answers_too() -> None:
+    design = load_design("biet2008-gratings")
+    alone = dataclasses.replace(design, displays=("biet2008-plate",))
+    period = np.array([one.period for one in alone.stimuli])[None, None, :, None]
+    table = dataclasses.replace(tables(alone), real=Candidates(period[0], np.full((1, 5, 1), 1e6)))
+    study = simulate_participants(alone, EXACT, 3, 0, table)
+    assert not isinstance(study, SimulatedAnswers)
+    answers = answers_of(study)
+    assert answers.trials == study.choice.size
+    assert np.nanmean(answers.correct) == pytest.approx(study.proportion_correct())
+
+
+def test_what_cannot_be_judged_is_refused() -> None:
+    odd = dataclasses.replace(NUMBERS, judged="orientation")
+    with pytest.raises(InputError, match="judged = 'orientation'"):
+        simulate_judgements(odd, EXACT, 1, 0, tables(odd))
+    match = load_design("biet2008-gratings")
+    with pytest.raises(InputError, match="match-to-sample"):
+        simulate_judgements(match, EXACT, 1, 0, tables(match))
+    with pytest.raises(InputError, match="another design"):
+        simulate_participants(ALIKE, EXACT, 2, 0, tables(NUMBERS))

@@ -1,0 +1,94 @@
+"""How many people make an answer precise: intervals narrow with people, and sequential studies stop
+at what was asked."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.study.simulated import planned_precision as module
+from squeezefilm.study.simulated.planned_power import (
+    pair_scores,
+    planned_power,
+    require_pair,
+    scored_above_0,
+)
+from squeezefilm.study.simulated.planned_precision import planned_precision
+
+from .test_judgements import ALIKE, DEPTHS, EXACT, NUMBERS, tables
+
+
+@pytest.fixture(autouse=True)
+def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
+    def made(design: Any, _observer: Any, progress: Any = None) -> Any:
+        return tables(design, 3.0)
+
+    monkeypatch.setattr(module, "chain_tables", made)
+    monkeypatch.setattr("squeezefilm.study.simulated.planned_power.chain_tables", made)
+    monkeypatch.setattr("squeezefilm.study.simulated.planned_power.POOL", 60)
+
+
+@pytest.mark.parametrize("design", [ALIKE, NUMBERS], ids=lambda one: one.task)
+def test_more_people_are_more_precise(design: Any) -> None:
+    found = planned_precision(
+        design, EXACT, 0.15, participants=(2, 12, 40), studies=40, people=60, seed=1
+    )
+    assert found.reached[0] <= found.reached[1] <= found.reached[2]
+    assert np.all(found.low <= found.reached)
+    assert np.all(found.held > 0.8)
+    assert 4 <= found.sequential.mean <= found.sequential.most
+    data = found.summary()
+    assert data["origin"] == "simulated"
+    again = planned_precision(
+        design, EXACT, 0.15, participants=(2, 12, 40), studies=40, people=60, seed=1
+    )
+    assert again.reached.tolist() == found.reached.tolist()
+
+
+def test_what_cannot_be_asked_is_refused() -> None:
+    for options in ({"participants": (1,)}, {"studies": 5}, {"target": 1.0}, {"people": 5}):
+        with pytest.raises(InputError):
+            planned_precision(ALIKE, EXACT, 0.1, **options)  # type: ignore[arg-type] # refused
+    with pytest.raises(InputError, match="precision"):
+        planned_precision(ALIKE, EXACT, 0.0)
+    with pytest.raises(InputError, match="neither a file nor a preset"):
+        planned_precision(ALIKE, EXACT, 0.1, display="nowhere")
+
+
+def test_pairs_are_told_apart_in_every_task() -> None:
+    for design, first, second in (
+        (ALIKE, "4 mm", "6 mm"), (NUMBERS, "2 mm", "8 mm"), (DEPTHS, "30 %", "42 %"),
+    ):  # fmt: skip
+        found = planned_power(design, EXACT, first, second, participants=(3, 8), studies=20)
+        assert found.difference > 0 or design is DEPTHS
+        assert found.curve.participants.tolist() == [3, 8]
+
+
+def test_pairs_that_no_test_tells_apart_are_refused() -> None:
+    with pytest.raises(InputError, match="name it as one"):
+        require_pair(ALIKE, "5 mm", "6 mm")
+    with pytest.raises(InputError, match="from itself"):
+        require_pair(ALIKE, "4 mm", "4 mm")
+    from squeezefilm.study.design.study_design import load_design
+
+    with pytest.raises(InputError, match="--precision"):
+        require_pair(load_design("period-jnd"), "4 mm", "6 mm")
+
+
+def test_scores_are_nought_of_people_who_cannot_tell() -> None:
+    from squeezefilm.study.simulated.judgements import simulate_judgements
+
+    blind = simulate_judgements(ALIKE, EXACT, 60, 2, tables(ALIKE, -np.inf))
+    assert pair_scores(blind, "4 mm", "6 mm").mean() == pytest.approx(0.0, abs=0.05)
+    sharp = dataclasses.replace(EXACT, period_weber_fraction=0.01)
+    seen = simulate_judgements(
+        ALIKE, sharp, 20, 2, dataclasses.replace(tables(ALIKE), observer=sharp)
+    )
+    assert pair_scores(seen, "4 mm", "6 mm").mean() > 0.5
+    assert scored_above_0(np.zeros(4)) == 1.0
+    assert scored_above_0(np.full(4, 0.5)) == 0.0
+    assert scored_above_0(np.array([1.0, 2.0, 3.0])) == pytest.approx(0.0371, abs=1e-3)

@@ -1,0 +1,81 @@
+"""People's likelihoods put together, against sums done by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from squeezefilm.errors import InputError
+from squeezefilm.study.tasks.population import (
+    LAPSES,
+    MEAN_LAPSES,
+    PersonLikelihood,
+    Population,
+    lapse_weights,
+)
+
+X = np.linspace(-3.0, 3.0, 601)
+
+
+def person(value: float, error: float, factors: tuple[float, ...] = ()) -> PersonLikelihood:
+    """Somebody whose answers say a normal likelihood of x, and each lapse rate by a factor."""
+    likelihood = stats.norm.pdf(X, value, error)
+    by_lapse = np.array(factors or (1.0,) * len(MEAN_LAPSES))
+    return PersonLikelihood(X, np.full(X.size, 0.01), by_lapse[:, None] * likelihood)
+
+
+def by_hand(values: list[float], errors: list[float]) -> tuple[float, float, float]:
+    """Quantiles of mu under flat priors of mu and of tau from 0.001 to 2, by brute force."""
+    mu = np.linspace(-3, 3, 3001)
+    total = np.zeros(mu.size)
+    for tau in np.linspace(1e-3, 2.0, 2001):
+        logs = sum(
+            stats.norm.logpdf(value, mu, np.hypot(tau, error))
+            for value, error in zip(values, errors, strict=True)
+        )
+        total += np.exp(logs)
+    below = np.cumsum(total) / total.sum()
+    low, middle, high = np.interp([0.025, 0.5, 0.975], below, mu)
+    return float(low), float(middle), float(high)
+
+
+def test_normal_likelihoods_give_the_random_effects_posterior() -> None:
+    random = np.random.default_rng(2)
+    for _ in range(5):
+        values = random.normal(-1.0, 0.4, 7).tolist()
+        errors = random.uniform(0.1, 0.5, 7).tolist()
+        found = Population([person(*one) for one in zip(values, errors, strict=True)]).estimate()
+        low, middle, high = by_hand(values, errors)
+        assert found.mean == pytest.approx(middle, abs=0.02)
+        assert found.low == pytest.approx(low, abs=0.04)
+        assert found.high == pytest.approx(high, abs=0.04)
+        assert found.participants == 7
+
+
+def test_people_who_are_alike_have_no_spread_and_a_group_of_them_is_those_people() -> None:
+    alike = Population([person(0.5, 0.1)] * 12)
+    found = alike.estimate()
+    assert found.spread < 0.1
+    assert found.low < 0.5 < found.high
+    few = alike.estimate(people=np.array([0, 3, 3]))
+    assert few.participants == 3
+    assert few.high - few.low > found.high - found.low
+    assert alike.estimate(0.5).high < found.high
+    assert alike.size == 12
+
+
+def test_lapse_rates_are_those_that_all_answers_speak_for() -> None:
+    means = lapse_weights() @ LAPSES
+    assert means == pytest.approx(MEAN_LAPSES, rel=0.12)
+    careful = tuple(1.0 if h < 0.03 else 0.1 for h in MEAN_LAPSES)
+    found = Population([person(0.0, 0.2, careful)] * 6).lapses()
+    assert found.sum() == pytest.approx(1.0)
+    assert found[:3].sum() > 0.99
+
+
+def test_nobody_is_no_population() -> None:
+    with pytest.raises(InputError, match="at least one person"):
+        Population([])
+    with pytest.raises(InputError, match="level"):
+        Population([person(0.0, 1.0)]).estimate(1.0)
