@@ -24,7 +24,7 @@ $(VENV)/run.stamp: pyproject.toml constraints.txt
 
 $(VENV)/test.stamp: $(VENV)/run.stamp
 	@echo "Adding what tests and docs need to $(VENV)"
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,firmware-test,docs]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,firmware-test,oracles,docs]'
 	@touch $@
 
 demo: $(VENV)/run.stamp  ## analyse the paper's plate and write a report

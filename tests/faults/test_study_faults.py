@@ -16,6 +16,7 @@ from tests.faults.forked import Forked
 from tests.faults.study_child import run
 
 from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.store import StudyStore
@@ -37,9 +38,44 @@ def _design(repetitions: int) -> StudyDesign:
     )
 
 
-def _created(path: Path, repetitions: int) -> str:
-    with StudyStore.create(path, _design(repetitions), 7) as store:
+def _adaptive(count: int) -> StudyDesign:
+    """Two interleaved series, whose levels are what their answers have made them."""
+    return StudyDesign(
+        name="series",
+        title="",
+        displays=("biet2008-plate",),
+        task="two-interval",
+        stimuli=(Stimulus("4 mm", 4e-3, "period"),),
+        reference="4 mm",
+        blocks=3,
+        break_between_blocks=0.0,
+        adaptive=(
+            AdaptiveCondition("stairs", "staircase", count=count),
+            AdaptiveCondition("bayes", "bayesian", count=count),
+        ),
+    )
+
+
+def _created(path: Path, design: StudyDesign) -> str:
+    with StudyStore.create(path, design, 7) as store:
         return store.enrol()
+
+
+def _uninterrupted(path: Path, design: StudyDesign) -> list[tuple[int, str, str, float | None]]:
+    """What is presented and answered, trial by trial, where nothing is killed."""
+    who = _created(path, design)
+    child = Forked(run, path, who)
+    assert list(iter(child.hear, None))[-1] == "finished"
+    return _course(path)
+
+
+def _course(path: Path) -> list[tuple[int, str, str, float | None]]:
+    with StudyStore.open(path) as store:
+        rows = store.rows(
+            "SELECT t.number, r.stimuli, r.choice, r.intensity FROM response r "
+            "JOIN trial t ON t.uuid = r.trial ORDER BY t.number"
+        )
+    return [(one["number"], one["stimuli"], one["choice"], one["intensity"]) for one in rows]
 
 
 def _killed(path: Path, who: str, heard_first: int, delay: float) -> list[int]:
@@ -68,9 +104,10 @@ def _rows(path: Path) -> list[tuple[int, str, str, str]]:
     return [(row["number"], row["uuid"], row["choice"], row["stimuli"]) for row in rows]
 
 
-def _survives(path: Path, kills: int, repetitions: int) -> None:
-    who = _created(path, repetitions)
-    planned = trials(_design(repetitions), 0, 7)
+def _survives(path: Path, kills: int, design: StudyDesign) -> None:
+    who = _created(path, design)
+    planned = trials(design, 0, 7)
+    whole = _uninterrupted(path.with_name("whole.sqlite"), design)
     acknowledged: list[int] = []
     before: list[tuple[int, str, str, str]] = []
     unheard, seed = 0, random.Random(1)
@@ -97,7 +134,9 @@ def _survives(path: Path, kills: int, repetitions: int) -> None:
     for row, one in zip(before, planned, strict=True):
         names = sorted(one.alternatives)
         assert row[2] == (names[one.seed % len(names)] if one.asks else "")
-        assert json.loads(row[3]) == list(one.stimuli)
+        assert one.adaptive or json.loads(row[3]) == list(one.stimuli)
+    # Every level of an adaptive series is the one that it would have had.
+    assert _course(path) == whole
     with StudyStore.open(path) as store:
         shown = store.rows("SELECT count(*) AS n FROM presentation")[0]["n"]
         stray = len(store.unreferenced_traces())
@@ -110,12 +149,22 @@ def _survives(path: Path, kills: int, repetitions: int) -> None:
 
 @pytest.mark.slow
 def test_kill_9_loses_no_acknowledged_trial(tmp_path: Path) -> None:
-    _survives(tmp_path / "study.sqlite", kills=12, repetitions=60)
+    _survives(tmp_path / "study.sqlite", kills=12, design=_design(60))
+
+
+@pytest.mark.slow
+def test_kill_9_leaves_adaptive_series_where_they_stood(tmp_path: Path) -> None:
+    _survives(tmp_path / "study.sqlite", kills=12, design=_adaptive(60))
+
+
+@pytest.mark.nightly
+def test_kill_9_at_200_moments_leaves_adaptive_series_where_they_stood(tmp_path: Path) -> None:
+    _survives(tmp_path / "study.sqlite", kills=200, design=_adaptive(800))
 
 
 @pytest.mark.nightly
 def test_kill_9_at_200_moments_loses_no_acknowledged_trial(tmp_path: Path) -> None:
-    _survives(tmp_path / "study.sqlite", kills=200, repetitions=500)
+    _survives(tmp_path / "study.sqlite", kills=200, design=_design(500))
 
 
 def _full(command: list[str], path: Path, who: str, how: str) -> None:
@@ -143,7 +192,7 @@ def _full(command: list[str], path: Path, who: str, how: str) -> None:
 @pytest.mark.slow
 def test_a_write_beyond_the_limit_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "study.sqlite"
-    _full([], path, _created(path, 60), "limit")
+    _full([], path, _created(path, _design(60)), "limit")
 
 
 def test_a_full_disk_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) -> None:
@@ -152,7 +201,7 @@ def test_a_full_disk_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) ->
     disk.mkdir()
     made = tmp_path / "made"
     made.mkdir()
-    who = _created(made / "study.sqlite", 60)
+    who = _created(made / "study.sqlite", _design(60))
     script = (
         f"mount -t tmpfs -o size=16m none '{disk}' && cp '{made}'/study.sqlite '{disk}'/ && "
         'exec "$@"'
@@ -170,7 +219,7 @@ def test_a_database_that_may_not_grow_acknowledges_nothing(tmp_path: Path) -> No
     from squeezefilm.study.conduct.study_device import NoDevice
 
     path = tmp_path / "study.sqlite"
-    who = _created(path, 60)
+    who = _created(path, _design(60))
     with StudyStore.open(path) as store:
         begun = begin_session(
             store, who, NoDevice(), SessionConditions(consent=True), None, acknowledged=False

@@ -58,7 +58,7 @@ def dxf_text(drawing: DxfDrawing) -> str:
 
     Raises `InputError` for a drawing in which ezdxf's own audit finds an error.
     """
-    from ezdxf import options
+    from ezdxf._options import options
     from ezdxf.filemanagement import new
 
     from squeezefilm.errors import InputError

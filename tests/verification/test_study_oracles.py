@@ -1,0 +1,192 @@
+"""Fits, placements and population models against other people's programs, on twenty data sets each.
+
+psignifit and questplus are GPL, and oracles of these tests only. Each test prints the largest
+difference that it found.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from tests.recovery import task_people
+from tests.recovery.task_people import DESIGNS, Person, answered, somebody
+
+from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.psychometric.fit import fit_psychometric
+from squeezefilm.study.psychometric.function import PsychometricFunction
+from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.tasks.magnitude import exponents
+from squeezefilm.study.tasks.two_interval import QUARTILE, differences, on_grid
+
+SETS = range(20)
+LEVELS = np.arange(1.0, 9.0)
+NORMAL_TAIL = 1.6448536269514722
+
+
+@pytest.mark.slow
+# psignifit takes logarithms of rounding.
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_twenty_fits_agree_with_psignifit() -> None:
+    psignifit = pytest.importorskip("psignifit", reason="psignifit is not installed (GPL oracle)")
+    worst = {"mean": 0.0, "interval": 0.0}
+    for seed in SETS:
+        random = np.random.default_rng(seed)
+        truth = PsychometricFunction(
+            "logistic", random.uniform(3.5, 5.5), random.uniform(2.0, 4.0), 0.5, 0.02
+        )
+        trials = np.full(LEVELS.size, 40)
+        right = random.binomial(trials, truth(LEVELS))
+        fit = fit_psychometric(LEVELS, right, trials, replicates=0)
+        (low, high), (least, most) = fit.prior.threshold, fit.prior.width
+        other = psignifit.psignifit(
+            np.column_stack([LEVELS, right, trials]),
+            sigmoid="logistic",
+            experiment_type="2AFC",
+            fixed_parameters={"eta": 1e-8},
+            bounds={"threshold": (low, high), "width": (least, most), "lambda": (1e-6, 0.5)},
+            priors={
+                "threshold": np.ones_like,
+                "width": lambda width: 1 / width,
+                "lambda": lambda rate: (1 - rate) ** 9,
+            },
+            grid_steps={"threshold": 90, "width": 90, "lambda": 50, "gamma": 1, "eta": 1},
+            stimulus_range=(1, 8),
+            verbose=False,
+        )
+        for ours, theirs in (("threshold", "threshold"), ("width", "width")):
+            interval = np.array(fit.posterior_interval[ours])
+            size = float(np.ptp(interval))
+            mean = other.parameter_estimate_mean[theirs]
+            apart = abs(fit.posterior.mean(ours) - mean) / size
+            ends = np.abs(interval - other.confidence_intervals[theirs]["0.95"]).max() / size
+            worst = {
+                "mean": max(worst["mean"], apart),
+                "interval": max(worst["interval"], float(ends)),
+            }
+    print("psignifit, largest difference over the interval's length:", worst)
+    assert worst["mean"] < 0.02
+    # psignifit reads its intervals off the nodes of its grid.
+    assert worst["interval"] < 0.08
+
+
+def test_twenty_runs_choose_as_questplus_does() -> None:
+    questplus = pytest.importorskip("questplus", reason="questplus is not installed (GPL oracle)")
+    stimuli = tuple(np.linspace(0.0, 10.0, 21).tolist())
+    prior = PsychometricPrior((1.0, 9.0), (0.5, 12.0))
+    cells = (15, 9, 4)
+    choices, same, worst = 0, 0, 0.0
+    for seed in SETS:
+        random = np.random.default_rng(seed)
+        truth = PsychometricFunction(
+            "gaussian", random.uniform(3, 7), random.uniform(1.5, 6), 0.5, 0.02
+        )
+        ours = BayesianAdaptive(
+            AdaptiveDesign(stimuli, prior, "gaussian", cells=cells, interest="all", most_trials=40)
+        )
+        nodes = [
+            prior.quantile(at, (np.arange(size) + 0.5) / size, "linear")
+            for at, size in enumerate(cells)
+        ]
+        theirs = questplus.QuestPlus(
+            stim_domain={"intensity": np.array(stimuli)},
+            param_domain={
+                "mean": nodes[0],
+                "sd": np.exp(nodes[1]) / (2 * NORMAL_TAIL),
+                "lower_asymptote": [0.5],
+                "lapse_rate": nodes[2],
+            },
+            outcome_domain={"response": ["yes", "no"]},
+            func="norm_cdf",
+            stim_scale="linear",
+        )
+        for _ in range(40):
+            mine, other = ours.next_stimulus(), float(theirs.next_stim["intensity"])
+            choices += 1
+            same += mine == other
+            if mine != other:
+                # Two stimuli whose answers tell as much, to rounding.
+                told = ours.expected_information()
+                gap = told[stimuli.index(mine)] - told[stimuli.index(other)]
+                assert abs(gap) < 1e-9
+            right = bool(random.random() < truth(mine))
+            ours.update(mine, right)
+            theirs.update(stim={"intensity": mine}, outcome={"response": "yes" if right else "no"})
+        posterior = theirs.posterior.transpose(
+            "mean", "sd", "lower_asymptote", "lapse_rate"
+        ).values[:, :, 0, :]
+        worst = max(worst, float(np.abs(posterior - ours.probability).max()))
+    print(f"questplus: {same} of {choices} choices alike, posteriors differ by {worst:.1e}")
+    assert same >= 0.99 * choices
+    assert worst < 1e-6
+
+
+def test_twenty_people_without_lapses_agree_with_a_probit_model(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(task_people, "LAPSE", 0.0)
+    api = pytest.importorskip("statsmodels.api")
+    worst = 0.0
+    for seed in SETS:
+        random = np.random.default_rng([5, seed])
+        person = Person(random.uniform(0.08, 0.15), 0.9, random.normal(0.0, 0.03))
+        main = answered(DESIGNS["constant"], [person] * 4, random).main(0)
+        x, y = differences(main), (main.choice == 0).astype(float)
+        model = api.GLM(
+            y,
+            api.add_constant(x),
+            family=api.families.Binomial(api.families.links.Probit()),
+        ).fit()
+        # Its model has no lapses. Ours finds next to none where the greatest difference is told
+        # almost always; a duller person might as well be one who lapses.
+        theirs = math.expm1(QUARTILE / model.params[1])
+        error = model.bse[1] / model.params[1]
+        whole = answered_as_one(main)
+        (mine,) = on_grid(whole, str).estimates(0.95)
+        worst = max(worst, abs(math.log(mine.estimate.value / theirs)) / error)
+        assert mine.estimate.low < theirs < mine.estimate.high * 1.1
+    print(f"statsmodels, probit: Weber fractions differ by {worst:.2f} of their standard error")
+    assert worst < 1.0
+
+
+def answered_as_one(main):  # type: ignore[no-untyped-def]
+    """Everybody's trials as one person's."""
+    import dataclasses
+
+    return dataclasses.replace(main, people=("all",), participant=np.zeros_like(main.participant))
+
+
+# It says so where the spread over people of the slope is next to none.
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_twenty_exponents_agree_with_a_linear_mixed_model() -> None:
+    pandas = pytest.importorskip("pandas")
+    formula = pytest.importorskip("statsmodels.formula.api")
+    worst, ratios = 0.0, []
+    for seed in SETS:
+        random = np.random.default_rng([6, seed])
+        main = answered(DESIGNS["magnitude"], [somebody(random) for _ in range(10)], random).main(0)
+        _, pooled, _ = exponents(main, 0.95)
+        assert pooled is not None
+        data = pandas.DataFrame(
+            {
+                "y": np.log(main.estimate),
+                "x": np.log(main.values[main.first]),
+                "who": main.participant,
+            }
+        )
+        data["x"] -= data["x"].mean()
+        model = formula.mixedlm("y ~ x", data, groups="who", re_formula="~x").fit(reml=True)
+        theirs, error = model.params["x"], model.bse["x"]
+        half = 0.5 * (pooled.high - pooled.low)
+        worst = max(worst, abs(pooled.value - theirs))
+        # Ours is Student's t of 9 degrees of freedom over people.
+        if model.converged:
+            ratios.append(half / 2.262 / error)
+    print(
+        f"statsmodels, mixed model: exponents differ by {worst:.1e}; our standard errors are "
+        f"{min(ratios):.2f} to {max(ratios):.2f} of its, {np.median(ratios):.3f} in the middle"
+    )
+    # People have judged the same stimuli equally often: the two are the same estimate.
+    assert worst < 1e-4
+    assert np.median(ratios) == pytest.approx(1.0, abs=0.05)
