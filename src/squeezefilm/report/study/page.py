@@ -115,11 +115,12 @@ def write_overview(
     `more` sections (HTML) below."""
     folder = require_folder(folder)
     for display, one in analyses.items():
-        write_study(one, folder / display, progress=progress)
+        write_study(one, folder / _folder_of(display), progress=progress)
     sections, name = "", ""
     for display, one in analyses.items():
         name = printable(one.name).removesuffix(f", {display}")
-        link = f'<p><a href="{escape(display)}/index.html">All numbers and figures</a></p>'
+        place = escape(_folder_of(display))
+        link = f'<p><a href="{place}/index.html">All numbers and figures</a></p>'
         sections += section(escape(printable(display)), bullets(read_first(one)) + link)
     origin = next(iter(analyses.values())).origin
     text = page(
@@ -131,6 +132,11 @@ def write_overview(
     )
     write_folder(folder, {"index.html": text})
     return folder / "index.html"
+
+
+def _folder_of(display: str) -> str:
+    """A name for a display's folder: of a file its name alone, wherever it lies."""
+    return Path(display).stem if display.endswith(".toml") else display
 
 
 def study_figures(
