@@ -56,7 +56,7 @@ NAMES = (
     "run_study",
     "save_texture",
     "score_prediction",
-    "simulate_matches",
+    "simulate_participants",
     "solve_film",
     "solve_plate",
     "speed",

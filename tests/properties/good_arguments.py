@@ -192,6 +192,8 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "formats.hjif_read.friction_along": {"document": Later(hjif_document)},
     "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
+    "formats.dxf.DxfRectangle": {"layer": "BOARD"},
+    "formats.dxf.DxfText": {"text": "a board"},
     "formats.image_file.ImageFile": {"file": "picture.png"},
     "formats.traces.Table": {"columns": {"time_s": _GRID}},
     "formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},

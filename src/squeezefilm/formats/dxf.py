@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from squeezefilm import quantities as si
 
@@ -12,6 +14,7 @@ MILLIMETRES = 4
 """$INSUNITS of a drawing in millimetres."""
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class DxfRectangle:
     """A closed rectangle on a layer (m): lower left corner, width along x, height along y."""
@@ -19,10 +22,11 @@ class DxfRectangle:
     layer: str
     x: si.Metre
     y: si.Metre
-    width: si.Metre
-    height: si.Metre
+    width: Annotated[si.Metre, si.Above(0.0)]
+    height: Annotated[si.Metre, si.Above(0.0)]
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class DxfDimension:
     """A horizontal dimension between two places (m), drawn `y` (m) high; the number is measured by
@@ -33,6 +37,7 @@ class DxfDimension:
     y: si.Metre
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class DxfText:
     """A line of text (m): where it begins, and its height."""
@@ -40,7 +45,7 @@ class DxfText:
     text: str
     x: si.Metre
     y: si.Metre
-    height: si.Metre = 2.5e-3
+    height: Annotated[si.Metre, si.Above(0.0)] = 2.5e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +56,10 @@ class DxfDrawing:
     rectangles: Sequence[DxfRectangle] = ()
     dimensions: Sequence[DxfDimension] = ()
     texts: Sequence[DxfText] = field(default=())
+
+
+# What ezdxf says of itself, with the moment.
+_MADE = re.compile(r"^(\d+(?:\.\d+)+\S*) @ \d{4}-\d\d-\d\dT\S+$", re.MULTILINE)
 
 
 def dxf_text(drawing: DxfDrawing) -> str:
@@ -97,4 +106,4 @@ def dxf_text(drawing: DxfDrawing) -> str:
         found.write(stream)
     finally:
         options.write_fixed_meta_data_for_testing = fixed
-    return stream.getvalue()
+    return _MADE.sub(r"\1", stream.getvalue())
