@@ -169,3 +169,43 @@ def test_a_study_is_rehearsed_by_simulated_people(
     page.get_by_text("Confusions, biet2008-stator").wait_for(timeout=60_000)
     keep(page, "lab-results-rehearsed-1280")
     assert complaints == []
+
+
+@pytest.mark.parametrize(
+    ("design", "measure"),
+    [
+        ("friction-jnd", "Weber fraction"),
+        ("period-jnd", "Weber fraction"),
+        ("period-same-different", "Weber fraction"),
+        ("coarseness-magnitude", "Exponent"),
+    ],
+)
+def test_every_task_goes_from_its_plan_to_its_results(
+    chromium: Browser, running_lab: RunningLab, design: str, measure: str
+) -> None:
+    page, complaints = opened(chromium, running_lab, "study")
+    page.locator("#design").select_option(design)
+    page.get_by_label("name of its file").fill("tried")
+    page.get_by_role("button", name="Create the study").click()
+    page.get_by_label("how many simulated participants").fill("3")
+    page.get_by_role("button", name="Rehearse with simulated").click()
+    page.get_by_text("Every answer in this file is simulated.").wait_for(timeout=COMPILED)
+    page.goto(f"{running_lab.address}#results")
+    page.get_by_text("Read first, biet2008-plate").wait_for(timeout=60_000)
+    assert page.locator(".first li").first.inner_text().startswith("3 simulated participants")
+    page.get_by_role("row", name=measure).first.wait_for()
+    page.get_by_text("People, biet2008-plate").wait_for()
+    page.get_by_text("Methods, for a paper").wait_for()
+    page.locator(".figures img").first.wait_for()
+    page.locator("th", has_text=measure).first.hover()
+    page.locator("#tip").wait_for()
+    keep(page, f"lab-results-{design}-1280")
+    assert page.evaluate(CONTRAST) == []
+    page.get_by_role("button", name="Write the report").click()
+    page.locator("#notice", has_text="tried.results/index.html").wait_for(timeout=60_000)
+    assert (running_lab.folder / "studies" / "tried.results" / "index.html").exists()
+    page.set_viewport_size({"width": 480, "height": 900})
+    keep(page, f"lab-results-{design}-480")
+    wide = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
+    assert page.evaluate(wide) <= 0
+    assert complaints == []
