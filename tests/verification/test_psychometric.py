@@ -1,4 +1,4 @@
-"""Psychometric functions against closed forms, quadrature, SciPy and psignifit."""
+"""Psychometric functions against closed forms, quadrature, and SciPy."""
 
 from __future__ import annotations
 
@@ -227,35 +227,3 @@ def test_goodness_of_fit_is_uniform_where_the_model_holds() -> None:
     assert np.mean(values) == pytest.approx(0.5, abs=4 * math.sqrt(1 / 12 / 200))
     share = np.mean(np.array(values) <= 0.1)
     assert share == pytest.approx(0.1, abs=4 * math.sqrt(0.09 / 200))
-
-
-def test_agrees_with_psignifit() -> None:
-    psignifit = pytest.importorskip(
-        "psignifit", reason="psignifit is not installed; it is a test oracle only (GPL)"
-    )
-    fit = fit_psychometric(LEVELS, CORRECT, TRIALS, replicates=0)
-    (low, high), (least, most) = fit.prior.threshold, fit.prior.width
-    other = psignifit.psignifit(
-        np.column_stack([LEVELS, CORRECT, TRIALS]),
-        sigmoid="logistic",
-        experiment_type="2AFC",
-        # No overdispersion; psignifit takes no exact zero.
-        fixed_parameters={"eta": 1e-8},
-        bounds={"threshold": (low, high), "width": (least, most), "lambda": (1e-6, 0.5)},
-        priors={
-            "threshold": np.ones_like,
-            "width": lambda width: 1 / width,
-            "lambda": lambda rate: (1 - rate) ** 9,
-        },
-        grid_steps={"threshold": 120, "width": 120, "lambda": 80, "gamma": 1, "eta": 1},
-        stimulus_range=(1, 8),
-        verbose=False,
-    )
-    for ours, theirs in (("threshold", "threshold"), ("width", "width"), ("lapse_rate", "lambda")):
-        interval = fit.posterior_interval[ours]
-        size = interval[1] - interval[0]
-        mean = other.parameter_estimate_mean[theirs]
-        assert fit.posterior.mean(ours) == pytest.approx(mean, abs=0.01 * size)
-        # psignifit reads its intervals off the nodes of its grid.
-        their = other.confidence_intervals[theirs]["0.95"]
-        assert interval == pytest.approx(their, abs=0.05 * size)

@@ -105,11 +105,18 @@ def distinction(counts: ArrayLike, first: int, second: int) -> Distinction:
     score = distinction_scores(counts, first, second)
     if score.size < 2:
         raise InputError("a test over people needs at least 2 with trials of both stimuli")
-    people, mean, spread = score.size, float(score.mean()), float(score.std(ddof=1))
+    t, p = above_0(score)
+    return Distinction(float(score.mean()), t, p, score.size)
+
+
+def above_0(scores: si.FloatArray) -> tuple[si.Dimensionless, si.Dimensionless]:
+    """t and p of Student's one-sided test that people's mean score is above 0; p is 1 where all
+    have 0, and 0 where all have the same above it, with t NaN."""
+    people, mean, spread = scores.size, float(scores.mean()), float(scores.std(ddof=1))
     if spread == 0.0:
-        return Distinction(mean, float("nan"), 0.0 if mean > 0 else 1.0, people)
-    t = mean / spread * np.sqrt(people)
-    return Distinction(mean, float(t), float(stats.t.sf(t, people - 1)), people)
+        return float("nan"), 0.0 if mean > 0 else 1.0
+    t = float(mean / spread * np.sqrt(people))
+    return t, float(stats.t.sf(t, people - 1))
 
 
 def distinction_scores(counts: ArrayLike, first: int, second: int) -> si.DimensionlessArray:
@@ -169,7 +176,7 @@ def power_curve(
     """Simulate studies of several sizes and count those whose test is significant.
 
     Args:
-        simulate: draws people (`DirichletParticipants`, or `SimulatedStudy.people`).
+        simulate: draws people (`DirichletParticipants`, or anything like it).
         test: what was drawn of a study's people → p value.
         participants: numbers of people, each at least 2.
         studies: per number; at least 10.

@@ -27,7 +27,6 @@ from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
-from squeezefilm.study.identification.power import ParticipantSimulator
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 
 _CHUNK = 60
@@ -76,21 +75,6 @@ class SimulatedStudy(Result):
         here = self.display == display
         who = np.broadcast_to(np.arange(self.participants)[:, None], self.choice.shape)[here]
         return participant_counts(who, self.stimulus[here], self.choice[here], answers, stimuli)[1]
-
-    def people(self, display: int = 0) -> ParticipantSimulator:
-        """Draws people of this study with replacement, for `power_curve`.
-
-        There should be many against the people of a study drawn (some 10 000): then two of one
-        study are hardly ever the same. Raises `InputError` where there are fewer than two.
-        """
-        si.require("participants", self.participants, at_least=2)
-        counts = self.participant_counts(display)
-
-        def drawn(participants: int, random: np.random.Generator) -> si.IntArray:
-            si.require("participants", participants, at_least=1)
-            return counts[random.integers(0, counts.shape[0], participants)]
-
-        return drawn
 
     def confusion(self, display: int = 0) -> ConfusionMatrix:
         """The confusion matrix on a display: rows gratings, columns simulated periods."""

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from squeezefilm import quantities as si
 from squeezefilm.display import load_display
@@ -21,6 +19,7 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.power import (
     ParticipantSimulator,
     PowerCurve,
+    above_0,
     distinction_scores,
     power_curve,
 )
@@ -108,7 +107,7 @@ def planned_power(
         scores = pair_scores(answers, first, second)
     curve = power_curve(
         drawn_with_replacement(scores),
-        scored_above_0,
+        lambda scores: above_0(scores)[1],
         participants,
         studies=studies,
         alpha=alpha,
@@ -177,15 +176,6 @@ def drawn_with_replacement(scores: si.FloatArray) -> ParticipantSimulator:
         return np.asarray(scores[random.integers(0, scores.size, participants)])
 
     return drawn
-
-
-def scored_above_0(scores: si.FloatArray) -> float:
-    """p of Student's one-sided test that people's mean score is above 0; 1 where all have 0, and 0
-    where all have the same above it."""
-    mean, spread = float(scores.mean()), float(scores.std(ddof=1))
-    if spread == 0.0:
-        return 0.0 if mean > 0 else 1.0
-    return float(stats.t.sf(mean / spread * math.sqrt(scores.size), scores.size - 1))
 
 
 def on_one_display(design: StudyDesign, display: str | None) -> StudyDesign:

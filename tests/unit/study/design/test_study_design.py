@@ -11,6 +11,7 @@ import pytest
 from squeezefilm import config, presets
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.study.design.rules import TrialRules
 from squeezefilm.study.design.special_trials import AdaptiveCondition, CatchTrial
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import trials
@@ -145,6 +146,21 @@ def test_the_design_in_the_documentation_is_one() -> None:
     design = config.load_text(StudyDesign, textwrap.dedent(block))
     assert design.adaptive[0].count == 60
     assert len(trials(design, 0, 1)) == 8 + 60 + 4
+
+
+def test_what_comes_again_is_as_the_documentation_says() -> None:
+    page = (Path(__file__).parents[4] / "docs" / "reference" / "study.md").read_text(
+        encoding="utf-8"
+    )
+    block = page[page.index("practice_criterion =") : page.index("```\n\n`plan --orders DIR`")]
+    top, rules = block.split("[rules]")
+    first = TWO_INTERVAL.index("[[")
+    text = f"{TWO_INTERVAL[:first]}{top}[rules]{rules}\n{TWO_INTERVAL[first:]}"
+    if "practice =" not in text:
+        text = f"practice = 4\n{text}"
+    design = config.load_text(StudyDesign, text)
+    assert design.rules == TrialRules(0.02, 0.2, 0.2, 1.0, 0.01, 0.5)
+    assert (design.practice_criterion, design.resume_within) == (0.75, 86400.0)
 
 
 def test_practice_and_series_that_cannot_be_are_refused() -> None:

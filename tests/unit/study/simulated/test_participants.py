@@ -104,14 +104,6 @@ def test_right_answers_are_the_designs() -> None:
     assert right_answers(DESIGN).tolist() == [0, 1, 2, 3, 4]
 
 
-def test_people_for_power_have_the_pools_confusions() -> None:
-    study = run(2.0, 300)
-    drawn = study.people()(5000, np.random.default_rng(1))
-    assert drawn.shape == (5000, 5, 5)
-    pooled = study.confusion().proportions
-    assert np.abs(drawn.sum(axis=0) / drawn.sum(axis=(0, 1)) - pooled).max() < 0.02
-
-
 def test_what_cannot_be_simulated_is_refused() -> None:
     with pytest.raises(InputError, match="participants"):
         run(2.0, 0)
@@ -119,13 +111,3 @@ def test_what_cannot_be_simulated_is_refused() -> None:
         simulate_matches(DESIGN, load_observer(), 2, 0, tables(1.0))
     with pytest.raises(InputError, match="1 displays"):
         chain_tables(DESIGN, EXACT, displays=())
-
-
-def test_two_people_are_enough_to_draw_from_and_one_is_not() -> None:
-    two = run(2.0, 2)
-    drawn = two.people()(50, np.random.default_rng(1))
-    assert {one.tobytes() for one in drawn} == {one.tobytes() for one in two.participant_counts()}
-    with pytest.raises(InputError, match="participants = 1 "):
-        run(2.0, 1).people()
-    with pytest.raises(InputError, match="participants = 0 "):
-        two.people()(0, np.random.default_rng(1))

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
+from squeezefilm.study.identification.power import above_0
 from squeezefilm.study.simulated import planned_precision as module
 from squeezefilm.study.simulated.planned_power import (
     pair_scores,
     planned_power,
     require_pair,
-    scored_above_0,
 )
 from squeezefilm.study.simulated.planned_precision import planned_precision
 
@@ -89,6 +89,6 @@ def test_scores_are_nought_of_people_who_cannot_tell() -> None:
         ALIKE, sharp, 20, 2, dataclasses.replace(tables(ALIKE), observer=sharp)
     )
     assert pair_scores(seen, "4 mm", "6 mm").mean() > 0.5
-    assert scored_above_0(np.zeros(4)) == 1.0
-    assert scored_above_0(np.full(4, 0.5)) == 0.0
-    assert scored_above_0(np.array([1.0, 2.0, 3.0])) == pytest.approx(0.0371, abs=1e-3)
+    assert above_0(np.zeros(4))[1] == 1.0
+    assert above_0(np.full(4, 0.5))[1] == 0.0
+    assert above_0(np.array([1.0, 2.0, 3.0]))[1] == pytest.approx(0.0371, abs=1e-3)
