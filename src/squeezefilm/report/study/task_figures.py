@@ -67,7 +67,7 @@ def _functions(axes: Axes, analysis: TaskAnalysis) -> None:
     axes.axvline(scale * analysis.standard, **style.GUIDE)
     axes.axhline(50, **style.GUIDE)
     axes.set(xlabel=label, ylabel="the comparison has more (%)", ylim=(-2, 103))
-    axes.set_title("thin: each person's function; dots: all trials; dashed: the reference")
+    axes.set_title("thin: each person's function; dots: all trials; dotted: the reference")
 
 
 def _shares(axes: Axes, analysis: TaskAnalysis, scale: float) -> None:
@@ -83,7 +83,7 @@ def _differences(axes: Axes, analysis: TaskAnalysis) -> None:
     _shares(axes, analysis, scale)
     axes.set(xlabel=f"{label} of the other", ylabel="called different (%)", ylim=(-2, 103))
     axes.axvline(scale * analysis.standard, **style.GUIDE)
-    axes.set_title("dashed: the reference; there both surfaces are the same")
+    axes.set_title("dotted: the reference; there both surfaces are the same")
 
 
 def _share(one: PersonFunction, difference: FloatArray) -> FloatArray:

@@ -4,7 +4,9 @@ Each person has a value x of their own (here the logarithm of a Weber fraction).
 normal, with the mean μ and the standard deviation τ of the population. What a person's answers say
 of x is a likelihood on a grid, however skewed or cut off, with everything else of that person
 (bias, lapses) integrated out; integrated over x it says how likely the answers are under μ and τ.
-Products over people, with flat priors of μ and of τ, give the posterior of the population. That is
+Products over people, with a flat prior of μ and a half-normal one of τ (Gelman 2006,
+10.1214/06-BA117A: a flat one covers too much where there are few people), give the posterior of the
+population. That is
 a generalised linear mixed model of the answers (Moscatelli, Mezzetti and Lacquaniti 2012,
 10.1167/12.11.26) with lapses, integrated exactly instead of by Laplace's method.
 
@@ -27,6 +29,9 @@ from squeezefilm.errors import InputError
 _MEANS, _SPREADS = 161, 41
 _WIDEST = 2.0
 """Greatest standard deviation over people of a logarithm that is held possible (1)."""
+USUAL_SPREAD = 0.5
+"""Scale of τ's half-normal prior (1): thresholds of most people lie within a factor of e of the
+middle one. Assumed."""
 _NARROWEST = 1e-3
 
 MEAN_LAPSES: tuple[si.Dimensionless, ...] = (0.005, 0.01, 0.02, 0.04, 0.08)
@@ -88,7 +93,8 @@ class Population:
         self._means = np.linspace(low, high, _MEANS)
         # Denser where few people differ little: flat in τ by the cells' widths.
         edges = _NARROWEST + (_WIDEST - _NARROWEST) * np.linspace(0.0, 1.0, _SPREADS + 1) ** 2
-        self._spreads, self._widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+        self._spreads = 0.5 * (edges[1:] + edges[:-1])
+        self._widths = np.diff(edges) * np.exp(-0.5 * (self._spreads / USUAL_SPREAD) ** 2)
         self._edges = edges
         self._logs = np.array([self._log_likelihood(one) for one in people])
 

@@ -10,6 +10,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.study.tasks.population import (
     LAPSES,
     MEAN_LAPSES,
+    USUAL_SPREAD,
     PersonLikelihood,
     Population,
     lapse_weights,
@@ -26,7 +27,7 @@ def person(value: float, error: float, factors: tuple[float, ...] = ()) -> Perso
 
 
 def by_hand(values: list[float], errors: list[float]) -> tuple[float, float, float]:
-    """Quantiles of mu under flat priors of mu and of tau from 0.001 to 2, by brute force."""
+    """Quantiles of mu under a flat prior of it and a half-normal one of tau, by brute force."""
     mu = np.linspace(-3, 3, 3001)
     total = np.zeros(mu.size)
     for tau in np.linspace(1e-3, 2.0, 2001):
@@ -34,7 +35,7 @@ def by_hand(values: list[float], errors: list[float]) -> tuple[float, float, flo
             stats.norm.logpdf(value, mu, np.hypot(tau, error))
             for value, error in zip(values, errors, strict=True)
         )
-        total += np.exp(logs)
+        total += np.exp(logs - 0.5 * (tau / USUAL_SPREAD) ** 2)
     below = np.cumsum(total) / total.sum()
     low, middle, high = np.interp([0.025, 0.5, 0.975], below, mu)
     return float(low), float(middle), float(high)
