@@ -106,16 +106,21 @@ def test_every_runtime_dependency_has_a_permissive_licence() -> None:
     assert bad == {}
 
 
-def test_the_emulator_under_the_gpl_is_for_tests_alone() -> None:
-    # Its package calls itself BSD, which its Python is; the engine within is GPL-2.
+@pytest.mark.parametrize(
+    ("name", "extra"),
+    [("unicorn", "firmware-test"), ("psignifit", "oracles"), ("questplus", "oracles")],
+)
+def test_what_is_under_the_gpl_is_for_tests_alone(name: str, extra: str) -> None:
+    # The emulator's package calls itself BSD, which its Python is; the engine within is GPL-2.
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]
-    asking = [name for name, parts in extras.items() if any("unicorn" in part for part in parts)]
-    assert asking == ["firmware-test"]
-    assert not any("unicorn" in part for part in project["dependencies"])
+    asking = [key for key, parts in extras.items() if any(name in part for part in parts)]
+    assert asking == [extra]
+    assert not any(name in part for part in project["dependencies"])
     for folder in ("src", "examples", "benchmarks"):
         for file in (ROOT / folder).rglob("*.py"):
-            assert not re.search(r"import unicorn|from unicorn", file.read_text("utf-8")), file
+            text = file.read_text("utf-8")
+            assert not re.search(rf"import {name}|from {name}", text), file
 
 
 def test_constraints_pin_and_hold_no_address() -> None:
