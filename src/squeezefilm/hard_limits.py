@@ -171,6 +171,12 @@ SWEEP_STEPS = HardLimit("steps of an axis", 1, 10_000, "each is computed by itse
 SWEEP_POINTS = HardLimit(
     "points of a sweep", 1, 100_000, "each takes from milliseconds to minutes, and a row"
 )
+DESIGNS_SCREENED = HardLimit(
+    "designs screened in a search", 1, 1_000_000, "each takes some ten milliseconds and a line"
+)
+DESIGNS_SOLVED = HardLimit(
+    "designs solved in a search", 0, 100_000, "each takes a second or more, and a line"
+)
 ASPECT = HardLimit("an aspect ratio", 1e-6, 1e6, "beyond, a strip is the same film")
 MOTION_SAMPLES = HardLimit(
     "samples of a motion", 2, 20_000_000, "160 MB for every array of a trace"

@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.plate.layout import DiscPlate, Face, RectangularPlate
 
 CrossSection = Literal["paper", "plane_stress", "plane_strain"]
 SHEAR_CORRECTION = 5 / 6
@@ -81,7 +81,8 @@ def laminate(layers: Sequence[Layer]) -> Laminate:
 def plate_laminate(
     plate: RectangularPlate | DiscPlate, cross_section: CrossSection = "plane_strain"
 ) -> Laminate:
-    """The section of a plate where it carries ceramic; the gaps between ceramics are neglected.
+    """The section of a plate where it carries ceramic, on one face or on both; the gaps between
+    ceramics are neglected.
 
     `cross_section` says how the strip deforms across its width: not at all ("plane_strain", for
     plates wide against λ/2: E/(1 − ν²) and c11_p), freely ("plane_stress", for narrow ones: E and
@@ -90,28 +91,43 @@ def plate_laminate(
     substrate, ceramic = plate.substrate, plate.ceramic
     wide = cross_section == "plane_strain"
     narrow = cross_section == "plane_stress"
-    return laminate(
+    metal = Layer(
+        plate.thickness,
+        substrate.plane_strain_modulus if wide else substrate.young_modulus,
+        substrate.shear_modulus,
+        substrate.density,
+    )
+    above, below = (
         [
             Layer(
-                plate.thickness,
-                substrate.plane_strain_modulus if wide else substrate.young_modulus,
-                substrate.shear_modulus,
-                substrate.density,
-            ),
-            Layer(
-                plate.ceramic_thickness,
+                thickness,
                 1 / ceramic.compliance_11 if narrow else ceramic.in_plane_stiffness,
                 ceramic.shear_modulus,
                 ceramic.density,
-            ),
+            )
         ]
+        if thickness
+        else []
+        for thickness in _ceramics(plate)
     )
+    return laminate([*above, metal, *below])
+
+
+def _ceramics(plate: RectangularPlate | DiscPlate) -> tuple[si.Metre, si.Metre]:
+    """The thickness (m) of the ceramic on the upper and on the lower face."""
+    if isinstance(plate, DiscPlate):
+        return 0.0, plate.ceramic_thickness
+    return plate.ceramic_thickness_on("top"), plate.ceramic_thickness_on("bottom")
 
 
 def moment_per_volt(
-    plate: RectangularPlate, section: Laminate, cross_section: CrossSection = "plane_strain"
+    plate: RectangularPlate,
+    section: Laminate,
+    cross_section: CrossSection = "plane_strain",
+    face: Face = "bottom",
 ) -> si.NewtonPerVolt:
-    """The bending moment per unit width that one volt makes: e31 × arm of the ceramic (N/V).
+    """The bending moment per unit width that one volt makes in the ceramic of one face: e31 × its
+    arm (N/V), of the other sign on the other face.
 
     From M = ∫ e31 E z dz with E = V/h_p over the ceramic's thickness h_p. A strip free across its
     width ("plane_stress") has e31_p (1 − ν_p) = d31/s11 in place of e31_p.
@@ -119,4 +135,4 @@ def moment_per_volt(
     coefficient = plate.ceramic.effective_stress_coefficient
     if cross_section == "plane_stress":
         coefficient *= 1 - plate.ceramic.in_plane_poisson_ratio
-    return coefficient * section.moment_arm(1)
+    return coefficient * section.moment_arm(0 if face == "top" else len(section.layers) - 1)

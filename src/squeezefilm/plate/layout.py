@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal, TypeVar
 
@@ -62,6 +63,11 @@ class CeramicPatch:
                 "shunted electrode needs one, the others have none",
                 quantity="shunt_resistance",
             )
+
+    @property
+    def drive_sign(self) -> int:
+        """Which way the drive bends it: polarity times poling, 0 where it is not driven."""
+        return self.polarity * self.poling if self.electrode == "driven" else 0
 
 
 @si.checked_numbers
@@ -186,15 +192,24 @@ class RectangularPlate:
     def ceramic_thickness(self) -> si.Metre:
         """The ceramics' thickness, their mean by area where they differ: for laminates and
         drawings; the solid model takes each patch's own."""
-        area = sum(patch.length * patch.width for patch in self.patches)
-        volume = sum(patch.length * patch.width * patch.thickness for patch in self.patches)
-        same = len({patch.thickness for patch in self.patches}) == 1
-        return self.patches[0].thickness if same else volume / area
+        return _mean_thickness(self.patches)
+
+    def ceramic_thickness_on(self, face: Face) -> si.Metre:
+        """That of the ceramics on one face, their mean by area; 0 where it carries none."""
+        return _mean_thickness([patch for patch in self.patches if patch.face == face])
 
     @property
     def coverage(self) -> si.Dimensionless:
         """The area of all ceramics over that of one face."""
         return sum(patch.length * patch.width for patch in self.patches) / self.area
+
+
+def _mean_thickness(patches: Sequence[CeramicPatch]) -> si.Metre:
+    thicknesses = {patch.thickness for patch in patches}
+    if len(thicknesses) < 2:
+        return max(thicknesses, default=0.0)
+    area = sum(patch.length * patch.width for patch in patches)
+    return sum(patch.length * patch.width * patch.thickness for patch in patches) / area
 
 
 def turned(plate: RectangularPlate) -> RectangularPlate:

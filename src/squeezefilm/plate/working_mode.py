@@ -21,6 +21,8 @@ from squeezefilm.plate.ring.body import (
     surface_profile,
 )
 from squeezefilm.plate.ring.modes import AnnularMode
+from squeezefilm.plate.shear.working import shear_working
+from squeezefilm.plate.solid.guess import bare_frequency
 from squeezefilm.plate.solid.modes import zero_crossings
 from squeezefilm.plate.solid.resonances import Neighbour
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
@@ -41,7 +43,7 @@ def resonance_factor(
     return factor
 
 
-PlateTheory = Literal["solid", "timoshenko", "euler_bernoulli"]
+PlateTheory = Literal["solid", "timoshenko", "euler_bernoulli", "shear"]
 PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
 
 
@@ -138,7 +140,7 @@ def working_mode(
     """The working mode of an actuator.
 
     A plate is solved in three dimensions (see `solid_mode`), or taken as a beam (see
-    `beam_response` for its range and error); a disc is solved by Fourier harmonics; a stator
+    `beam_response` for its range and error) or as a shear plate (see `shear_working`); a disc is solved by Fourier harmonics; a stator
     is taken as measured, linear in the voltage. `pace` says how long a solid may take. Raises
     `InputError` for another theory or a disc's mode that crosses no two nodal lines, and what the
     solvers raise.
@@ -172,6 +174,8 @@ def working_mode(
             solid=solid,
             beam=_beam_beside(actuator),
         )
+    if theory == "shear":
+        return _sheared(actuator)
     beam = beam_response(actuator, theory)
     shape, middle = beam.mode, beam.plate.width / 2
     lobe = _beam_lobe(beam)[0], middle
@@ -186,6 +190,29 @@ def working_mode(
         modal_mass=_beam_mass(beam),
         line=ModeLine(shape.position, shape.deflection),
         beam=beam,
+    )
+
+
+def _sheared(plate: RectangularPlate) -> WorkingMode:
+    try:
+        beam = beam_response(plate).mode.frequency
+    except OutOfRangeError:
+        beam = bare_frequency(plate, plate.working_label)
+    # Between the bare plate and one that ceramics cover.
+    bare = bare_frequency(plate, plate.working_label)
+    covered = min(plate.coverage, 1.0)
+    found = shear_working(plate, bare ** (1 - covered) * beam**covered)
+    return WorkingMode(
+        label="({},{})".format(*plate.working_label),
+        resonance_frequency=found.mode.frequency,
+        half_wavelength=found.half_wavelength,
+        quality_factor=plate.quality_factor,
+        amplitude_per_volt=found.amplitude_per_volt,
+        model=found.mode.model,
+        lobe=found.lobe,
+        frequency_error=found.mode.frequency_error,
+        modal_mass=found.modal_mass,
+        line=ModeLine(found.position, found.deflection),
     )
 
 

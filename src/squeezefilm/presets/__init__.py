@@ -18,9 +18,11 @@ __all__ = [
     "display_names",
     "materials",
     "path",
+    "requirement_names",
     "resolve",
     "resolve_actuator",
     "resolve_observer",
+    "resolve_requirements",
     "resolve_study",
     "resolve_texture",
     "study_names",
@@ -44,6 +46,11 @@ def actuator_names() -> tuple[str, ...]:
 def texture_names() -> tuple[str, ...]:
     """The names of all preset textures, sorted."""
     return _names(_FOLDER / "textures")
+
+
+def requirement_names() -> tuple[str, ...]:
+    """The names of all preset requirements for a design search, sorted."""
+    return _names(_FOLDER / "requirements")
 
 
 def study_names() -> tuple[str, ...]:
@@ -81,6 +88,13 @@ def resolve(name_or_path: str | Path) -> Path:
 def resolve_actuator(name_or_path: str | Path) -> Path:
     """The file of a preset actuator's name or of a path to a TOML file. As `resolve` does."""
     return _resolved(name_or_path, "actuator", actuator_names(), _FOLDER / "actuators")
+
+
+def resolve_requirements(name_or_path: str | Path) -> Path:
+    """The file of preset requirements' name or of a path to a TOML file. As `resolve` does."""
+    return _resolved(
+        name_or_path, "set of requirements", requirement_names(), _FOLDER / "requirements"
+    )
 
 
 def resolve_texture(name_or_path: str | Path) -> Path:

@@ -132,15 +132,18 @@ def beam_response(
         if mode.frequency > 2 * working.frequency:
             break
         modes.append(mode)
-    moment = moment_per_volt(plate, section, cross_section)
+    moment = {
+        face: moment_per_volt(plate, section, cross_section, face)
+        for face in {patch.face for patch in plate.patches}
+    }
     forces = []
     for mode in modes:
         # Work of the piezo moment on the section's rotation at both ends of each ceramic; a
         # ceramic narrower than the plate drives in proportion to its width.
         forces.append(
-            moment
-            * sum(
-                patch.polarity
+            sum(
+                moment[patch.face]
+                * patch.drive_sign
                 * (patch.width / plate.width)
                 * float(mode.rotation_at(patch.x + patch.length) - mode.rotation_at(patch.x))
                 for patch in plate.patches

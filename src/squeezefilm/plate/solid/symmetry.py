@@ -61,9 +61,7 @@ def mirror_map(plate: RectangularPlate, axis: int) -> list[int] | None:
 
 def drive_signs(plate: RectangularPlate) -> si.FloatArray:
     """The sign of each patch's potential under the drive; 0 where it is not driven."""
-    return np.array(
-        [p.polarity * p.poling if p.electrode == "driven" else 0.0 for p in plate.patches]
-    )
+    return np.array([float(patch.drive_sign) for patch in plate.patches])
 
 
 def drive_classes(plate: RectangularPlate) -> list[Symmetry]:

@@ -1,0 +1,1 @@
+"""Design search: requirements in, plates that meet them out."""

@@ -1,0 +1,169 @@
+"""One design of a search: what was chosen, the display that follows, and what it was found to do."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from squeezefilm import quantities as si
+from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.display import Display
+from squeezefilm.errors import SqueezefilmError
+from squeezefilm.kept_arrays import in_passing
+from squeezefilm.plate.working_mode import PlateTheory
+from squeezefilm.search.design.criteria import (
+    Breach,
+    breaches,
+    numbers_of_prediction,
+    numbers_of_solved,
+)
+from squeezefilm.search.design.requirements import Requirements
+from squeezefilm.search.design.space import Setting
+
+Level = Literal["screened", "solved"]
+
+_SCREENING: Mapping[str, PlateTheory | None] = {
+    "strips": "timoshenko",
+    "edge_strips": "shear",
+    "disc": None,
+    "ring": None,
+}
+"""By which theory a shape is screened; None: as it is solved, since a ring's solver is quick."""
+
+
+def screening_theory(requirements: Requirements, design: Design) -> PlateTheory | None:
+    """By which theory a design is screened; a bimorph's upper ceramics are known to beams only."""
+    return _SCREENING[requirements.shapes[design.shape].type]
+
+
+@dataclass(frozen=True)
+class Design:
+    """What is chosen: the number of the shape in the requirements, and a value for each of its
+    variables."""
+
+    shape: int
+    values: tuple[tuple[str, Setting], ...]
+
+    @property
+    def settings(self) -> dict[str, Setting]:
+        """The values by name (SI)."""
+        return dict(self.values)
+
+    @property
+    def address(self) -> str:
+        """A short name that no other design has."""
+        text = json.dumps([self.shape, sorted(self.values)])
+        return hashlib.sha256(text.encode()).hexdigest()[:10]
+
+
+def design_of(shape: int, values: Mapping[str, Setting]) -> Design:
+    """A design of values by name; numbers to eleven digits, so that equal ones have one address."""
+    plain = {
+        name: float(f"{value:.11g}") if isinstance(value, int | float) else value
+        for name, value in values.items()
+    }
+    return Design(shape, tuple(plain.items()))
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """What a design does: its criteria by key (SI), whether by the screening theory or solved in
+    three dimensions, the limits that it breaks, why it cannot be built ("" where it can), and what
+    it took (s)."""
+
+    design: Design
+    level: Level
+    numbers: Mapping[str, float]
+    broken: tuple[Breach, ...] = ()
+    reason: str = ""
+    seconds: float = field(default=0.0, compare=False)
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def is_feasible(self) -> bool:
+        """Whether it can be built and keeps all limits that are known of it."""
+        return not self.reason and not self.broken
+
+    def objectives(self, names: tuple[str, ...]) -> tuple[float, ...]:
+        """What is made small, in the order of names; infinite where it is not known."""
+        found = (self.numbers.get(_KEYS.get(name, name), float("inf")) for name in names)
+        return tuple(float("inf") if value != value else value for value in found)
+
+
+_KEYS = {"thickness": "total_thickness"}
+
+
+def display_of(requirements: Requirements, design: Design) -> Display:
+    """The display of a design. Raises `GeometryError` for one that cannot be built."""
+    shape, settings = requirements.shapes[design.shape], design.settings
+    base = requirements.base
+    body = shape.body(
+        settings, requirements.own, requirements.assembly_quality, requirements.workspace.room
+    )
+    return replace(
+        base,
+        name=f"{requirements.name}-{design.address}",
+        title=f"{requirements.title}: {shape.type} {design.address}",
+        actuator=body,
+        drive=replace(base.drive, voltage=float(settings["voltage"])),
+        provenance={},
+    )
+
+
+def evaluate(requirements: Requirements, design: Design, level: Level) -> Evaluated:
+    """What a design does, by the screening theory or solved. What is refused is an answer, too."""
+    began = time.perf_counter()
+    theory = screening_theory(requirements, design) if level == "screened" else None
+    try:
+        with in_passing(), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            display = display_of(requirements, design)
+            found = predict(display, theory=theory)
+            numbers = judged(requirements, display, found, design, level)
+    except SqueezefilmError as error:
+        return Evaluated(design, level, {}, reason=str(error), seconds=_since(began))
+    except Exception as error:
+        # One design of thousands: a fault of ours is told, and the others are not lost.
+        reason = f"not foreseen: {type(error).__name__}: {error}"
+        return Evaluated(design, level, {}, reason=reason, seconds=_since(began))
+    if (
+        level == "solved"
+        and isinstance(found.mode.model, str)
+        and found.mode.model.endswith("beam")
+    ):
+        return Evaluated(design, level, {}, reason=found.objections[-1], seconds=_since(began))
+    return Evaluated(
+        design,
+        level,
+        numbers,
+        breaches(numbers, requirements.limits),
+        seconds=_since(began),
+        warnings=found.warnings if level == "solved" else (),
+    )
+
+
+def evaluate_all(
+    requirements: Requirements, designs: tuple[Design, ...], level: Level
+) -> list[Evaluated]:
+    """What several designs do, in their order: one task of a search."""
+    return [evaluate(requirements, design, level) for design in designs]
+
+
+def judged(
+    requirements: Requirements, display: Display, found: Prediction, design: Design, level: Level
+) -> dict[str, float]:
+    """The criteria of a prediction, and those that only a solved plate has."""
+    cost = requirements.shapes[design.shape].cost_class(design.settings)
+    numbers = numbers_of_prediction(requirements, display, found, cost)
+    if level == "solved":
+        numbers |= numbers_of_solved(requirements, display, found)
+    return numbers
+
+
+def _since(began: float) -> si.Second:
+    return time.perf_counter() - began

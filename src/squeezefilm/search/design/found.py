@@ -1,0 +1,218 @@
+"""What a design search found: the front, the plate that it would build, and why others fail."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from scipy.stats import spearmanr
+
+from squeezefilm import quantities as si
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError
+from squeezefilm.results import Result, to_json
+from squeezefilm.search.design.candidate import Evaluated, display_of
+from squeezefilm.search.design.correction import Correction
+from squeezefilm.search.design.criteria import CRITERIA
+from squeezefilm.search.design.front import dominates, hypervolume, knee_of
+from squeezefilm.search.design.reasons import EmptyCorner, LimitReason
+from squeezefilm.search.design.requirements import Requirements
+from squeezefilm.search.design.tolerance import Made
+
+_NATURAL_WORST: Mapping[str, float] = {"relative_friction": 1.0, "finest_period": 5e-3}
+
+
+@dataclass(frozen=True)
+class FrontMember:
+    """A plate of the front, solved in three dimensions, and what is made of its drawing (None where
+    it was not asked)."""
+
+    evaluated: Evaluated
+    made: Made | None = None
+
+    @property
+    def name(self) -> str:
+        """The design's short name."""
+        return self.evaluated.design.address
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DesignSearch(Result):
+    """A search: every design that was looked at, and what follows.
+
+    `front` are the feasible solved designs that none other beats, the best in the first objective
+    first. `reference` is the display of `compare_with`, judged by the same questions. `corrections`
+    are by shape what solved plates taught the screening. `stopped` says that not all was done.
+    """
+
+    requirements: Requirements
+    seed: int
+    screened: tuple[Evaluated, ...]
+    solved: tuple[Evaluated, ...]
+    front: tuple[FrontMember, ...]
+    reference: Evaluated | None
+    limits: tuple[LimitReason, ...]
+    corners: tuple[EmptyCorner, ...]
+    corrections: tuple[Correction | None, ...]
+    computed: int
+    kept: int
+    seconds: si.Second
+    stopped: bool
+    provenance: Mapping[str, Any]
+    _shown: ClassVar[str] = "requirements.name chosen_name hypervolume seconds"
+
+    @functools.cached_property
+    def objectives(self) -> si.FloatArray:
+        """The objectives of the front (SI), shape (plates, objectives)."""
+        names = self.requirements.objectives
+        rows = [one.evaluated.objectives(names) for one in self.front]
+        return np.array(rows).reshape(len(rows), len(names))
+
+    @property
+    def chosen(self) -> FrontMember | None:
+        """The plate nearest to the best of every objective; None where the front is empty."""
+        return self.front[knee_of(self.objectives)] if self.front else None
+
+    @property
+    def chosen_name(self) -> str:
+        """Its short name."""
+        return "none" if self.chosen is None else self.chosen.name
+
+    @functools.cached_property
+    def worst(self) -> si.FloatArray:
+        """The corner from which the hypervolume is measured (SI): limits where there are any, µ′/µ
+        of 1, gratings of 5 mm, else a tenth beyond the worst of the front."""
+        limits = self.requirements.limits
+        found = []
+        for number, name in enumerate(self.requirements.objectives):
+            own = CRITERIA["total_thickness" if name == "thickness" else name].limit
+            bound = getattr(limits, own) if own else None
+            natural = _NATURAL_WORST.get(name)
+            if bound is None and natural is None:
+                natural = 1.1 * float(np.max(self.objectives[:, number], initial=0.0)) or 1.0
+            found.append(float(bound if bound is not None else natural or 1.0))
+        return np.array(found)
+
+    @property
+    def hypervolume(self) -> si.Dimensionless:
+        """The share of the box between nothing and `worst` that the front dominates."""
+        return hypervolume(self.objectives, self.worst) if self.front else 0.0
+
+    @functools.cached_property
+    def beats_reference(self) -> tuple[FrontMember, ...]:
+        """The plates that are better than the reference in every objective or in one with none
+        worse."""
+        if self.reference is None:
+            return ()
+        own = np.array(self.reference.objectives(self.requirements.objectives))
+        return tuple(
+            one for one, row in zip(self.front, self.objectives, strict=True) if dominates(row, own)
+        )
+
+    @functools.cached_property
+    def ranks(self) -> dict[str, si.Dimensionless]:
+        """Spearman's rank correlation of screened and solved numbers over the solved designs, by
+        objective, where there are ten or more."""
+        before = {one.design: one for one in self.screened}
+        pairs = [
+            (before[one.design], one)
+            for one in self.solved
+            if not one.reason and one.design in before and not before[one.design].reason
+        ]
+        if len(pairs) < 10:
+            return {}
+        names = self.requirements.objectives
+        first = np.array([one.objectives(names) for one, _ in pairs])
+        second = np.array([one.objectives(names) for _, one in pairs])
+        return {
+            name: float(spearmanr(first[:, k], second[:, k]).statistic)
+            for k, name in enumerate(names)
+        }
+
+    def member(self, name: str) -> FrontMember:
+        """The plate of the front with a short name, or with the beginning of one. Raises
+        `InputError` for a name that none has, or several."""
+        found = [one for one in self.front if one.name.startswith(name)] if name else []
+        if len(found) == 1:
+            return found[0]
+        known = ", ".join(one.name for one in self.front) or "none"
+        raise InputError(
+            f"the front has {'several plates' if found else 'no plate'} '{name}'. It has: {known}"
+        )
+
+    def display(self, name: str | None = None) -> Display:
+        """The display of a plate of the front, the chosen one without a name. Raises `InputError`
+        as `member`, or where the front is empty."""
+        if name is None and self.chosen is None:
+            raise InputError("the front is empty: no plate meets the requirements")
+        one = self.member(name or self.chosen_name)
+        return display_of(self.requirements, one.evaluated.design)
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints; keys carry units."""
+        chosen = self.chosen
+        return {
+            "requirements": self.requirements.name,
+            "title": self.requirements.title,
+            "objectives": list(self.requirements.objectives),
+            "screened": len(self.screened),
+            "screened_feasible": sum(one.is_feasible for one in self.screened),
+            "solved": len(self.solved),
+            "solved_feasible": sum(one.is_feasible for one in self.solved),
+            "front": [_row(self.requirements, one) for one in self.front],
+            "chosen": None if chosen is None else chosen.name,
+            "reference": None
+            if self.reference is None
+            else {
+                "name": self.requirements.compare_with,
+                **_numbers(self.reference),
+                "breaks": [one.sentence for one in self.reference.broken],
+                "reason": self.reference.reason,
+                "beaten_by": [one.name for one in self.beats_reference],
+            },
+            "hypervolume": self.hypervolume,
+            "hypervolume_corner": self.worst.tolist(),
+            "limits": to_json(self.limits),
+            "empty_corners": to_json(self.corners),
+            "screening_ranks": self.ranks,
+            "screening_errors": {
+                space.shape: None
+                if one is None
+                else {"pairs": one.pairs, "raw": dict(one.raw), "corrected": dict(one.errors)}
+                for space, one in zip(self.requirements.spaces, self.corrections, strict=True)
+            },
+            "assumed": list(self.requirements.assumed),
+            "answers_computed": self.computed,
+            "answers_kept": self.kept,
+            "seconds": self.seconds,
+            "stopped": self.stopped,
+            "provenance": dict(self.provenance),
+        }
+
+    def _table(self) -> Any:
+        return [_row(self.requirements, one) for one in self.front]
+
+
+def _numbers(one: Evaluated) -> dict[str, Any]:
+    return {key + CRITERIA[key].unit.suffix: to_json(value) for key, value in one.numbers.items()}
+
+
+def _row(requirements: Requirements, one: FrontMember) -> dict[str, Any]:
+    design, space = one.evaluated.design, requirements.spaces[one.evaluated.design.shape]
+    chosen = {
+        variable.name + (getattr(variable, "unit", None) or si.Unit("1")).suffix: design.settings[
+            variable.name
+        ]
+        for variable in space
+    }
+    made = None if one.made is None else {"yield": one.made.kept, "draws": one.made.draws}
+    return {
+        "name": one.name,
+        "shape": space.shape,
+        **chosen,
+        **_numbers(one.evaluated),
+        "made": made,
+    }

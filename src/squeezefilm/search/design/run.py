@@ -1,0 +1,422 @@
+"""A design search: screened by the thousand, corrected, solved, proposed anew, and judged."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.arguments import called_with
+from squeezefilm.chain.prediction import predict
+from squeezefilm.display import load_display
+from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
+from squeezefilm.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
+from squeezefilm.progress import SayProgress, about
+from squeezefilm.results import config_hash, stamp
+from squeezefilm.search.design.candidate import (
+    Design,
+    Evaluated,
+    Level,
+    evaluate_all,
+)
+from squeezefilm.search.design.correction import Correction, learned
+from squeezefilm.search.design.criteria import (
+    breaches,
+    numbers_of_prediction,
+    numbers_of_solved,
+)
+from squeezefilm.search.design.evolution import POPULATION, Proposals
+from squeezefilm.search.design.found import DesignSearch, FrontMember
+from squeezefilm.search.design.front import front_of, layers_of
+from squeezefilm.search.design.reasons import empty_corners, limit_reasons
+from squeezefilm.search.design.requirements import NamedRequirements, Requirements
+from squeezefilm.search.design.store import DesignStore
+from squeezefilm.search.design.tolerance import Made, made_of
+from squeezefilm.search.tasks import Lost, Workers
+from squeezefilm.search.workers import workers
+
+# Designs to a task: a screened one takes some ten milliseconds, a solved one up to seconds.
+_TOGETHER: Mapping[Level, int] = {"screened": 8, "solved": 1}
+_BATCH = 16
+# A design is solved though the screening says that it breaks a limit by up to this share.
+_DOUBT, _CORRECTED_DOUBT = 0.25, 0.08
+# The share of the solved designs that the Bayesian sampler proposes.
+_DEAR = 0.3
+
+
+@dataclass(frozen=True)
+class Glimpse:
+    """What a search has so far, for whoever watches: the stage in words, how many of how many
+    designs, and the objectives of screened and solved designs that are feasible now."""
+
+    stage: str
+    screened: int
+    solved: int
+    screened_front: tuple[tuple[float, ...], ...]
+    front: tuple[Evaluated, ...]
+
+
+@dataclass(frozen=True)
+class SearchRequest:
+    """What `search_designs` is asked for."""
+
+    requirements: NamedRequirements
+    _: KW_ONLY
+    screened: int = 2000
+    solved: int = 120
+    seed: int = 1
+    jobs: int = 1
+    scheduler: str | None = None
+    out: str | Path | None = None
+    member: int = 0
+    progress: SayProgress | None = None
+    watch: Callable[[Glimpse], None] | None = None
+
+
+@reads_text
+@called_with(SearchRequest)
+def search_designs(asked: SearchRequest) -> DesignSearch:
+    """The plates that meet requirements and that none other beats, solved in three dimensions.
+
+    Args:
+        requirements: what is asked of a display; a preset's name, or a TOML file.
+        screened: designs that are looked at by the screening theory.
+        solved: designs that are solved in three dimensions, at most.
+        seed: of everything that is drawn.
+        jobs: processes; more than one in a script needs ``if __name__ == "__main__":``.
+        scheduler: of a Dask cluster that computes in place of processes, "tcp://host:8786".
+        out: a folder that keeps every design as it comes, and has those of before.
+        member: tells hosts apart that search in one folder.
+        progress: is told what is being done, and how long it takes.
+        watch: is shown what there is after every batch.
+
+    Raises `InputError` before anything is computed for requirements that contradict themselves,
+    and where none of the screened designs can be built.
+    """
+    run = SearchRun(asked)
+    run.finish()
+    return run.result()
+
+
+def search_until_stopped(asked: SearchRequest) -> DesignSearch:
+    """A search that Ctrl-C stops, with what was found until then. Raises as `search_designs`."""
+    run = SearchRun(asked)
+    with contextlib.suppress(KeyboardInterrupt):
+        run.finish()
+    return run.result()
+
+
+class SearchRun:
+    """A search under way: what it knows, and what it does next."""
+
+    def __init__(self, asked: SearchRequest) -> None:
+        require_within(DESIGNS_SCREENED, asked.screened, "screened")
+        require_within(DESIGNS_SOLVED, asked.solved, "solved")
+        si.require("jobs", asked.jobs, at_least=1)
+        si.require("member", asked.member, at_least=0)
+        self._asked, self.requirements = asked, asked.requirements
+        self._folder = None if asked.out is None else Path(asked.out)
+        self._store = DesignStore(self.requirements, self._folder)
+        self._tell = asked.progress or (lambda _: None)
+        self._made: dict[Design, Made] = {}
+        self._reference: Evaluated | None = None
+        self._corrections: list[Correction | None] = [None] * len(self.requirements.spaces)
+        self._seen: dict[Level, dict[Design, Evaluated]] = {"screened": {}, "solved": {}}
+        self._began, self._done = time.monotonic(), False
+
+    def finish(self) -> None:
+        """All that is left to do. What came is kept where this is interrupted."""
+        asked = self._asked
+        with workers(jobs=asked.jobs, scheduler=asked.scheduler, tell=self._tell) as pool:
+            self._compare()
+            self._screen(pool)
+            self._solve_the_best(pool)
+            self._propose_dear(pool)
+            self._make(pool)
+        self._done = True
+
+    def _compare(self) -> None:
+        """The display of `compare_with`, by the same questions."""
+        requirements = self.requirements
+        if not requirements.compare_with:
+            return
+        self._tell(f"{requirements.compare_with}, to compare with")
+        display = load_display(requirements.compare_with)
+        base = requirements.base
+        display = replace(
+            display,
+            finger=base.finger,
+            surfaces=base.surfaces,
+            gas=base.gas,
+            thermal=base.thermal,
+            active_area=None,
+        )
+        found = predict(display, voltage=requirements.drive.voltage)
+        numbers = numbers_of_prediction(requirements, display, found)
+        numbers |= numbers_of_solved(requirements, display, found)
+        numbers.pop("cost")
+        self._reference = Evaluated(
+            Design(0, ()), "solved", numbers, breaches(numbers, requirements.limits)
+        )
+
+    def _screen(self, pool: Workers) -> None:
+        spaces = self.requirements.spaces
+        share = -(-self._asked.screened // len(spaces))
+        begun = time.monotonic()
+        for shape, space in enumerate(spaces):
+            proposals = self._proposals(shape, dear=False)
+            size = min(POPULATION, share)
+            for batch in range(-(-share // size)):
+                self._say_screening(space.shape, shape * share + batch * size, begun)
+                asked = proposals.ask(size, batch)
+                found = self._evaluated(pool, [design for _, design in asked], "screened")
+                proposals.tell([(trial, found[design]) for trial, design in asked])
+                self._show(f"screening {space.shape}")
+        if all(one.reason for one in self._seen["screened"].values()):
+            first = next(iter(self._seen["screened"].values()), None)
+            raise InputError(
+                "none of the screened designs can be built, for example: "
+                f"{'none was asked for' if first is None else first.reason}"
+            )
+
+    def _say_screening(self, shape: str, done: int, begun: float) -> None:
+        every = self._asked.screened
+        left = ""
+        if done:
+            seconds = (time.monotonic() - begun) / done * (every - done)
+            left = f", {about(max(seconds, 0.0))} left"
+        feasible = sum(one.is_feasible for one in self._seen["screened"].values())
+        self._tell(f"screening {shape}: {done} of {every} designs, {feasible} feasible{left}")
+
+    def _proposals(self, shape: int, *, dear: bool) -> Proposals:
+        asked = self._asked
+        return Proposals(
+            self.requirements, shape, self._folder, asked.seed, member=asked.member, dear=dear
+        )
+
+    def _solve_the_best(self, pool: Workers) -> None:
+        """Solve the designs that the screening, corrected by what was solved, takes for the best,
+        until none is left that might enter the front."""
+        most = round((1 - _DEAR) * self._asked.solved)
+        while (left := most - len(self._seen["solved"])) > 0:
+            self._learn()
+            chosen = self._worth_solving(min(_BATCH, left))
+            if not chosen:
+                return
+            self._say_solving("the best that were screened")
+            self._evaluated(pool, chosen, "solved")
+            self._show("solving the best that were screened")
+
+    def _worth_solving(self, count: int) -> list[Design]:
+        """Designs not solved yet, of all shapes together, by what is expected of them."""
+        pool: list[tuple[Design, tuple[float, ...]]] = []
+        names, limits = self.requirements.objectives, self.requirements.limits
+        for shape, correction in enumerate(self._corrections):
+            here = [
+                one
+                for one in self._seen["screened"].values()
+                if one.design.shape == shape
+                and not one.reason
+                and one.design not in self._seen["solved"]
+            ]
+            numbers = [one.numbers for one in here]
+            slack = _DOUBT
+            if correction is not None:
+                numbers, slack = correction.of_all(here), _CORRECTED_DOUBT
+            for one, expected in zip(here, numbers, strict=True):
+                if breaches(expected, limits, slack=slack):
+                    continue
+                pool.append((one.design, replace(one, numbers=expected).objectives(names)))
+        if not pool:
+            return []
+        rows = np.array([row for _, row in pool])
+        known = np.array(
+            [one.objectives(names) for one in self._seen["solved"].values() if one.is_feasible]
+        ).reshape(-1, len(names))
+        # What the front beats by more than the correction errs has no chance.
+        might = np.array(
+            [not np.any(np.all(known <= row * (1 - self._error), axis=1)) for row in rows]
+        )
+        at = np.flatnonzero(might)
+        taken = at[layers_of(rows[at], count)]
+        if taken.size > count:
+            taken = _spread(rows, taken, count)
+        return [pool[k][0] for k in taken]
+
+    @property
+    def _error(self) -> float:
+        """By what share a corrected objective may be off."""
+        errors = [
+            one.errors.get(name, 0.0)
+            for one in self._corrections
+            if one is not None
+            for name in self.requirements.objectives
+        ]
+        return min(max(errors, default=0.1), 0.2)
+
+    def _learn(self) -> None:
+        solved = list(self._seen["solved"].values())
+        for shape, space in enumerate(self.requirements.spaces):
+            here = [one for one in solved if one.design.shape == shape]
+            self._corrections[shape] = learned(space, self._seen["screened"], here)
+
+    def _propose_dear(self, pool: Workers) -> None:
+        """Let a Bayesian sampler propose plates beside the front, and solve them."""
+        solved = self._seen["solved"]
+        shapes = sorted({one.design.shape for one in self._front()})
+        batch = 0
+        studies = {}
+        for shape in shapes:
+            studies[shape] = self._proposals(shape, dear=True)
+            if not studies[shape].answered:
+                studies[shape].known([o for o in solved.values() if o.design.shape == shape])
+        while shapes and len(solved) < self._asked.solved:
+            before = len(solved)
+            for shape in shapes:
+                count = min(_BATCH // len(shapes) or 1, self._asked.solved - len(solved))
+                if count <= 0:
+                    break
+                self._say_solving("what lies beside the front")
+                asked = studies[shape].ask(count, batch)
+                fresh = list(dict.fromkeys(design for _, design in asked))
+                # Where it lies beside its screened number is asked, too.
+                self._evaluated(pool, fresh, "screened")
+                found = self._evaluated(pool, fresh, "solved")
+                studies[shape].tell([(trial, found[design]) for trial, design in asked])
+                self._show("solving what lies beside the front")
+            batch += 1
+            if len(solved) == before:
+                return  # it proposes nothing new
+        self._learn()
+
+    def _say_solving(self, what: str) -> None:
+        solved = self._seen["solved"]
+        took = [one.seconds for one in solved.values()]
+        left = ""
+        if took:
+            rest = (self._asked.solved - len(solved)) * float(np.mean(took)) / self._asked.jobs
+            left = f", {about(rest)} left at most"
+        self._tell(
+            f"solving {what}: {len(solved)} of at most {self._asked.solved} plates, "
+            f"{len(self._front())} on the front{left}"
+        )
+
+    def _make(self, pool: Workers) -> None:
+        """Draw what is made of the front's drawings; where a yield is asked for, leave out what
+        misses it."""
+        front = self._front()
+        self._tell(f"what is made of {len(front)} drawings with the tolerances")
+        tasks = {one.design: (self.requirements, one) for one in front}
+        for design, made in pool.answers(made_of, tasks):
+            if not isinstance(made, Lost):
+                self._made[design] = made
+
+    def _evaluated(
+        self, pool: Workers, designs: Sequence[Design], level: Level
+    ) -> Mapping[Design, Evaluated]:
+        """Designs at a level, kept ones as they are."""
+        found: dict[Design, Evaluated] = {}
+        missing: dict[Design, None] = {}
+        for design in designs:
+            known = self._store.get(design, level)
+            if known is None:
+                missing[design] = None
+            else:
+                found[design] = known
+        parts = list(_parts(list(missing), _TOGETHER[level]))
+        tasks = {number: (self.requirements, part, level) for number, part in enumerate(parts)}
+        for number, answers in pool.answers(evaluate_all, tasks):
+            if isinstance(answers, Lost):
+                answers = [
+                    Evaluated(one, level, {}, reason=answers.reason) for one in parts[number]
+                ]
+            self._store.add(answers)
+            found.update((one.design, one) for one in answers)
+        self._seen[level].update((design, found[design]) for design in designs)
+        return found
+
+    def _front(self) -> list[Evaluated]:
+        """The feasible solved designs that none other beats, the first objective rising."""
+        wanted = self.requirements.limits.least_yield
+        feasible = [
+            one
+            for one in self._seen["solved"].values()
+            if one.is_feasible
+            and (
+                wanted is None
+                or one.design not in self._made
+                or self._made[one.design].kept >= wanted
+            )
+        ]
+        if not feasible:
+            return []
+        rows = np.array([one.objectives(self.requirements.objectives) for one in feasible])
+        at = front_of(rows)
+        return [feasible[k] for k in sorted(at, key=lambda k: tuple(rows[k]))]
+
+    def _show(self, stage: str) -> None:
+        if self._asked.watch is None:
+            return
+        names = self.requirements.objectives
+        feasible = [o.objectives(names) for o in self._seen["screened"].values() if o.is_feasible]
+        rows = np.array(feasible).reshape(len(feasible), len(names))
+        screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows)) if feasible else ()
+        counts = len(self._seen["screened"]), len(self._seen["solved"])
+        self._asked.watch(Glimpse(stage, *counts, screened, tuple(self._front())))
+
+    def result(self) -> DesignSearch:
+        """What was found until now."""
+        requirements, screened = self.requirements, tuple(self._seen["screened"].values())
+        return DesignSearch(
+            requirements=requirements,
+            seed=self._asked.seed,
+            screened=screened,
+            solved=tuple(self._seen["solved"].values()),
+            front=tuple(FrontMember(one, self._made.get(one.design)) for one in self._front()),
+            reference=self._reference,
+            limits=limit_reasons(requirements, screened),
+            corners=empty_corners(requirements, screened),
+            corrections=tuple(self._corrections),
+            computed=self._store.computed,
+            kept=len(screened) + len(self._seen["solved"]) - self._store.computed,
+            seconds=time.monotonic() - self._began,
+            stopped=not self._done,
+            provenance=stamp(requirements.base, self._asked.seed)
+            | {"requirements_sha256": _hash(requirements)},
+        )
+
+
+def _hash(requirements: Requirements) -> str:
+    from dataclasses import fields
+
+    values: dict[str, Any] = {f.name: getattr(requirements, f.name) for f in fields(requirements)}
+    return config_hash(values)
+
+
+def _parts(designs: list[Design], size: int) -> Iterator[tuple[Design, ...]]:
+    each = iter(designs)
+    while part := tuple(itertools.islice(each, size)):
+        yield part
+
+
+def _spread(rows: si.FloatArray, taken: si.IntArray, count: int) -> si.IntArray:
+    """So many of the rows taken, far from each other: the ends, then always the farthest from all
+    chosen, each objective over its spread."""
+    here = rows[taken]
+    span = np.ptp(here, axis=0)
+    here = (here - here.min(axis=0)) / np.where(span > 0, span, 1.0)
+    chosen = [int(np.argmin(here[:, 0]))]
+    distance = np.linalg.norm(here - here[chosen[0]], axis=1)
+    while len(chosen) < count:
+        far = int(np.argmax(distance))
+        chosen.append(far)
+        distance = np.minimum(distance, np.linalg.norm(here - here[far], axis=1))
+    return taken[chosen]

@@ -1,0 +1,160 @@
+"""The numbers that a search may choose, and a choice of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+
+Setting = float | int | str
+Values = Mapping[str, Setting]
+
+
+@dataclass(frozen=True)
+class Number:
+    """A length or a voltage between `low` and `high` (SI), equal ends where it is fixed."""
+
+    name: str
+    low: float
+    high: float
+    unit: si.Unit
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether there is nothing to choose."""
+        return self.low == self.high
+
+    def at(self, share: float, chosen: Values) -> float:
+        """The value at a share of the way from `low` to `high`, from 0 to 1."""
+        return self.low + share * (self.high - self.low)
+
+    def share(self, values: Values) -> float:
+        """How far along the value of a design lies, from 0 to 1: what distances are measured in."""
+        return (float(values[self.name]) - self.low) / (self.high - self.low)
+
+    def place(self, values: Values) -> float:
+        """A share from which `at` makes the value of a design."""
+        return min(max(self.share(values), 0.0), 1.0)
+
+
+@dataclass(frozen=True)
+class Step:
+    """One of rising values (SI), as of counts and stock thicknesses; of the list that goes with the
+    name chosen for `by`, where the list depends on one."""
+
+    name: str
+    lists: Mapping[str, tuple[float, ...]]
+    unit: si.Unit
+    by: str = ""
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether there is nothing to choose."""
+        return all(len(one) == 1 for one in self.lists.values())
+
+    def _values(self, chosen: Values) -> tuple[float, ...]:
+        return self.lists[str(chosen[self.by]) if self.by else ""]
+
+    def at(self, share: float, chosen: Values) -> float:
+        """The value at a share of the way through the list, from 0 to 1."""
+        values = self._values(chosen)
+        return values[min(int(share * len(values)), len(values) - 1)]
+
+    def share(self, values: Values) -> float:
+        """Where the value of a design lies among all that there are, from 0 to 1."""
+        every = [value for one in self.lists.values() for value in one]
+        low, high = min(every), max(every)
+        return (float(values[self.name]) - low) / ((high - low) or 1.0)
+
+    def place(self, values: Values) -> float:
+        """A share from which `at` makes the value of a design: the middle of its part."""
+        known, value = self._values(values), float(values[self.name])
+        nearest = min(range(len(known)), key=lambda k: abs(known[k] - value))
+        return (nearest + 0.5) / len(known)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of several names without an order, as of materials."""
+
+    name: str
+    values: tuple[str, ...]
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether there is nothing to choose."""
+        return len(self.values) == 1
+
+    def at(self, share: float, chosen: Values) -> str:
+        """The name at a share of the way through the list, from 0 to 1."""
+        return self.values[min(int(share * len(self.values)), len(self.values) - 1)]
+
+    def share(self, values: Values) -> float:
+        """Where the name of a design stands in the list, from 0 to 1."""
+        return self.values.index(str(values[self.name])) / max(len(self.values) - 1, 1)
+
+    def place(self, values: Values) -> float:
+        """A share from which `at` makes the name of a design: the middle of its part."""
+        return (self.values.index(str(values[self.name])) + 0.5) / len(self.values)
+
+
+Variable = Number | Step | Choice
+
+
+@dataclass(frozen=True)
+class Space:
+    """What may be chosen of one shape: its name and its variables."""
+
+    shape: str
+    variables: tuple[Variable, ...]
+
+    def __iter__(self) -> Iterator[Variable]:
+        return iter(self.variables)
+
+    @property
+    def free(self) -> tuple[Variable, ...]:
+        """The variables with something to choose."""
+        return tuple(one for one in self.variables if not one.is_fixed)
+
+    def at(self, shares: Mapping[str, float]) -> dict[str, Setting]:
+        """The values at shares (0 to 1) by name; what is fixed needs none."""
+        chosen: dict[str, Setting] = {}
+        for one in self:
+            chosen[one.name] = one.at(0.0 if one.is_fixed else shares[one.name], chosen)
+        return chosen
+
+    def places(self, values: Values) -> dict[str, float]:
+        """Shares from which `at` makes these values, by name, of what is free."""
+        return {one.name: one.place(values) for one in self.free}
+
+    def shares(self, values: Values) -> list[float]:
+        """Where values lie, each from 0 to 1, of what is free: features of a design."""
+        return [one.share(values) for one in self.free]
+
+
+def number(name: str, low: float, high: float, unit: str) -> Number:
+    """A number that may be chosen. Raises `InputError` where its range ends before it begins."""
+    if high < low:
+        symbol = si.Unit(unit)
+        first, last = (si.format_quantity(one, symbol) for one in (low, high))
+        raise InputError(
+            f"{name} may be from {first} to {last}, which is no range; make the largest at least "
+            "the least",
+            quantity=name,
+        )
+    return Number(name, low, high, si.Unit(unit))
+
+
+def step(name: str, lists: Mapping[str, tuple[float, ...]], unit: str, by: str = "") -> Step:
+    """One of a list of values, in rising order, by the name chosen for `by` where there is one.
+
+    Raises `InputError` for an empty list.
+    """
+    for of, values in lists.items():
+        if not values:
+            whose = f" of {of}" if of else ""
+            raise InputError(f"{name}{whose} is an empty list; give at least one", quantity=name)
+    rising = {of: tuple(sorted(set(values))) for of, values in lists.items()}
+    return Step(name, rising, si.Unit(unit), by)

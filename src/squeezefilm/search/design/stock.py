@@ -1,0 +1,100 @@
+"""The materials and sheets that a search may build from, by name and by thickness."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from squeezefilm import hard_limits as hard
+from squeezefilm import presets
+from squeezefilm import quantities as si
+from squeezefilm.config.references import References
+from squeezefilm.errors import InputError
+from squeezefilm.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.presets.materials import Kind
+
+OWN = "as described"
+"""In place of a material's name: that of the display which the search starts from."""
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class Sheet:
+    """A substrate in the thicknesses (m) in which it is sold, with a class of cost (1 is cheap;
+    the file's own judgement)."""
+
+    material: str
+    thicknesses: tuple[Annotated[si.Metre, hard.LAYER], ...]
+    cost_class: Annotated[int, si.AtLeast(1), si.AtMost(9)] = 1
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class CeramicStock:
+    """A ceramic in the thicknesses (m) in which it is sold.
+
+    `lengths` (m) are those of a catalogue along the wave, or the diameters of discs; without any,
+    pieces are cut to size.
+    """
+
+    material: str
+    thicknesses: tuple[Annotated[si.Metre, hard.LAYER], ...]
+    lengths: tuple[Annotated[si.Metre, hard.SIDE], ...] = ()
+    cost_class: Annotated[int, si.AtLeast(1), si.AtMost(9)] = 1
+
+
+@dataclass(frozen=True)
+class _Substrate:
+    part: ElasticMaterial
+    references: ClassVar[References] = References(
+        original=lambda name: None,
+        parts={"part": functools.partial(presets.materials.table, kind="substrate")},
+    )
+
+
+@dataclass(frozen=True)
+class _Ceramic:
+    part: Piezoceramic
+    references: ClassVar[References] = References(
+        original=lambda name: None,
+        parts={"part": functools.partial(presets.materials.table, kind="ceramic")},
+    )
+
+
+def substrate_named(name: str, own: RectangularPlate | DiscPlate) -> ElasticMaterial:
+    """The substrate of a name in the library, or that of `own` for "as described".
+
+    Raises `InputError` for a name that is not known.
+    """
+    return own.substrate if name == OWN else _read(name, "substrate").part
+
+
+def ceramic_named(name: str, own: RectangularPlate | DiscPlate) -> Piezoceramic:
+    """The ceramic of a name in the library, or that of `own` for "as described".
+
+    Raises `InputError` for a name that is not known.
+    """
+    return own.ceramic if name == OWN else _read(name, "ceramic").part
+
+
+@functools.cache
+def _read(name: str, kind: Kind) -> _Substrate | _Ceramic:
+    from squeezefilm import config
+
+    found = presets.materials.named(name, kind)
+    owner = _Substrate if kind == "substrate" else _Ceramic
+    text = f'[part]\nmaterial = "{found.name}"\n'
+    made: _Substrate | _Ceramic = config.load_text(owner, text)
+    return made
+
+
+def require_known(name: str, kind: Kind) -> None:
+    """Refuse a material that is not in the library, before anything is computed. Raises
+    `InputError` as `presets.materials.named` does."""
+    if name != OWN:
+        try:
+            presets.materials.named(name, kind)
+        except InputError as error:
+            raise InputError(f'{error}; or write "{OWN}"', quantity="material") from error

@@ -1,0 +1,138 @@
+"""What a search knows, in a folder: every evaluated design, kept as it comes, by all that it depends
+on. A search that was stopped asks none of them again, and several hosts may write into one file."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from squeezefilm import __version__
+from squeezefilm.errors import InputError
+from squeezefilm.results import config_hash, to_json
+from squeezefilm.search.design.candidate import Design, Evaluated, Level
+from squeezefilm.search.design.criteria import breaches
+from squeezefilm.search.design.requirements import Requirements
+
+FILE = "designs.jsonl"
+"""Its name in the folder of a search: a line for every evaluated design."""
+
+
+def asked_hash(requirements: Requirements) -> str:
+    """A hash of all that a design's numbers depend on beside the design: version, display,
+    materials and shapes; limits are judged anew."""
+    text = json.dumps(
+        [
+            __version__,
+            config_hash(requirements.base),
+            to_json(requirements.shapes),
+            to_json(requirements.workspace),
+            requirements.assembly_quality,
+            requirements.limits.press,
+            # What is computed of solved plates only where it is asked for.
+            requirements.limits.most_relative_friction,
+            requirements.limits.confidence,
+            requirements.limits.least_area is None,
+            requirements.limits.most_sound_level is None,
+            sorted(requirements.objectives),
+        ],
+        sort_keys=True,
+    )
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+class DesignStore:
+    """Evaluated designs by design and level; without a folder in memory only.
+
+    Raises `InputError` where the folder's file cannot be read or written.
+    """
+
+    def __init__(self, requirements: Requirements, folder: Path | None) -> None:
+        self._requirements, self._hash = requirements, asked_hash(requirements)
+        self._file = None if folder is None else folder / FILE
+        self._known: dict[tuple[Design, Level], Evaluated] = {}
+        self.computed, self.read = 0, 0
+        if self._file is not None:
+            self._load(self._file)
+
+    def _load(self, file: Path) -> None:
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            lines = file.read_bytes().splitlines() if file.exists() else []
+        except OSError as error:
+            raise InputError(
+                f"cannot use {file}: {error.strerror}; choose another folder"
+            ) from error
+        for line in lines:
+            try:
+                known = self._evaluated(json.loads(line))
+            except (ValueError, KeyError, TypeError, AttributeError):
+                continue  # the last line of a search that was killed: computed again
+            if known is not None:
+                self._known[known.design, known.level] = known
+        self.read = len(self._known)
+
+    def __len__(self) -> int:
+        return len(self._known)
+
+    def get(self, design: Design, level: Level) -> Evaluated | None:
+        """What is known of a design at a level; None where nothing is."""
+        return self._known.get((design, level))
+
+    def all(self, level: Level) -> list[Evaluated]:
+        """All designs evaluated at a level, in the order in which they came."""
+        return [one for (_, at), one in self._known.items() if at == level]
+
+    def add(self, found: Iterable[Evaluated]) -> None:
+        """Keep evaluated designs, together on the disk. A fault of ours is kept in memory only."""
+        lines = []
+        for one in found:
+            self._known[one.design, one.level] = one
+            self.computed += 1
+            if not one.reason.startswith("not foreseen"):
+                lines.append(json.dumps(self._line(one), separators=(",", ":"), allow_nan=False))
+        if self._file is None or not lines:
+            return
+        try:
+            # In one write, that lines of several hosts do not mix; a cut-off line before ends here.
+            with self._file.open("ab") as file:
+                file.write(("\n" + "\n".join(lines) + "\n").encode())
+        except OSError as error:
+            raise InputError(
+                f"cannot write {self._file}: {error.strerror}; free space or choose another "
+                "folder, and the search goes on from there"
+            ) from error
+
+    def _line(self, one: Evaluated) -> dict[str, Any]:
+        return {
+            "asked": self._hash,
+            "shape": one.design.shape,
+            "values": one.design.settings,
+            "level": one.level,
+            "numbers": {key: _plain(value) for key, value in one.numbers.items()},
+            "reason": one.reason,
+            "seconds": round(one.seconds, 4),
+            "warnings": list(one.warnings),
+        }
+
+    def _evaluated(self, read: Mapping[str, Any]) -> Evaluated | None:
+        if read["asked"] != self._hash:
+            return None
+        numbers = {str(key): float(value) for key, value in read["numbers"].items()}
+        return Evaluated(
+            Design(int(read["shape"]), tuple(read["values"].items())),
+            read["level"],
+            numbers,
+            () if read["reason"] else breaches(numbers, self._requirements.limits),
+            read["reason"],
+            float(read["seconds"]),
+            tuple(read["warnings"]),
+        )
+
+
+def _plain(value: float) -> float | str:
+    """JSON has no infinity; `float` reads it from text."""
+    return value if math.isfinite(value) else str(value)
