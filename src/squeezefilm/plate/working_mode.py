@@ -140,10 +140,10 @@ def working_mode(
     """The working mode of an actuator.
 
     A plate is solved in three dimensions (see `solid_mode`), or taken as a beam (see
-    `beam_response` for its range and error) or as a shear plate (see `shear_working`); a disc is solved by Fourier harmonics; a stator
-    is taken as measured, linear in the voltage. `pace` says how long a solid may take. Raises
-    `InputError` for another theory or a disc's mode that crosses no two nodal lines, and what the
-    solvers raise.
+    `beam_response` for its range and error) or as a shear plate (see `shear_working`); a disc is
+    solved by Fourier harmonics; a stator is taken as measured, linear in the voltage. `pace` says
+    how long a solid may take. Raises `InputError` for another theory or a disc's mode that crosses
+    no two nodal lines, and what the solvers raise.
     """
     if isinstance(actuator, AnnularStator):
         return WorkingMode(

@@ -1,4 +1,4 @@
-"""One design of a search: what was chosen, the display that follows, and what it was found to do."""
+"""One design of a search: what was chosen, the display that follows, and what it does."""
 
 from __future__ import annotations
 
@@ -131,11 +131,7 @@ def evaluate(requirements: Requirements, design: Design, level: Level) -> Evalua
         # One design of thousands: a fault of ours is told, and the others are not lost.
         reason = f"not foreseen: {type(error).__name__}: {error}"
         return Evaluated(design, level, {}, reason=reason, seconds=_since(began))
-    if (
-        level == "solved"
-        and isinstance(found.mode.model, str)
-        and found.mode.model.endswith("beam")
-    ):
+    if level == "solved" and found.mode.solid is None and found.mode.disc is None:
         return Evaluated(design, level, {}, reason=found.objections[-1], seconds=_since(began))
     return Evaluated(
         design,

@@ -269,9 +269,8 @@ def _deflection(
             return math.nan
         held = float(np.max(np.abs(p.mode.line.nodal_positions), initial=0.0))
         radius = held or body.diameter / 2
-        return float(
-            pressed_disc_deflection(press, radius, stiffness, body.substrate.poisson_ratio)
-        )
+        poisson = body.substrate.poisson_ratio
+        return float(pressed_disc_deflection(press, radius, stiffness, poisson))
     if p.mode.line is None or not isinstance(body, RectangularPlate):
         return math.nan
     nodes = p.mode.line.nodal_positions

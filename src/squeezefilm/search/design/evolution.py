@@ -30,10 +30,10 @@ _EXCESS = "excess"
 class Proposals:
     """One Optuna study: the designs of one shape, proposed in batches and answered in batches.
 
-    `dear` proposes by a tree-structured Parzen estimator (Ozaki et al. 2020, 10.1145/3377930.3389817)
-    in place of NSGA-II (Deb et al. 2002, 10.1109/4235.996017). `member` tells hosts apart that share
-    a `folder`. The seed, the member and the number of the batch decide what is proposed, so that
-    what was interrupted goes on as it would have.
+    `dear` proposes by a tree-structured Parzen estimator (Ozaki et al. 2020,
+    10.1145/3377930.3389817) in place of NSGA-II (Deb et al. 2002, 10.1109/4235.996017). `member`
+    tells hosts apart that share a `folder`. The seed, the member and the number of the batch decide
+    what is proposed, so that what was interrupted goes on as it would have.
     """
 
     def __init__(

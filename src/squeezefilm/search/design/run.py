@@ -227,10 +227,10 @@ class SearchRun:
                 and not one.reason
                 and one.design not in self._seen["solved"]
             ]
-            numbers = [one.numbers for one in here]
+            numbers: list[Mapping[str, float]] = [one.numbers for one in here]
             slack = _DOUBT
             if correction is not None:
-                numbers, slack = correction.of_all(here), _CORRECTED_DOUBT
+                numbers, slack = list(correction.of_all(here)), _CORRECTED_DOUBT
             for one, expected in zip(here, numbers, strict=True):
                 if breaches(expected, limits, slack=slack):
                     continue
@@ -345,16 +345,11 @@ class SearchRun:
 
     def _front(self) -> list[Evaluated]:
         """The feasible solved designs that none other beats, the first objective rising."""
-        wanted = self.requirements.limits.least_yield
+        wanted, made = self.requirements.limits.least_yield or 0.0, self._made
         feasible = [
             one
             for one in self._seen["solved"].values()
-            if one.is_feasible
-            and (
-                wanted is None
-                or one.design not in self._made
-                or self._made[one.design].kept >= wanted
-            )
+            if one.is_feasible and (one.design not in made or made[one.design].kept >= wanted)
         ]
         if not feasible:
             return []

@@ -182,8 +182,8 @@ class Strips(Shape):
         pitch = (length + self.gap) / count
         if not _LEAST_PIECE <= piece <= pitch - self.gap + 1e-9:
             raise GeometryError(
-                f"{count} ceramics on {1e3 * length:.4g} mm are {1e3 * piece:.3g} mm long, and "
-                f"at least {1e3 * _LEAST_PIECE:g} mm and a gap of {1e3 * self.gap:.3g} mm are needed"
+                f"{count} ceramics on {1e3 * length:.4g} mm are {1e3 * piece:.3g} mm long, and at "
+                f"least {1e3 * _LEAST_PIECE:g} mm and a gap of {1e3 * self.gap:.3g} mm are needed"
             )
         inset = (pitch - self.gap - piece) / 2
         thickness = float(values["ceramic_thickness"])
@@ -304,8 +304,9 @@ def _rim(gasket: Gasket, length: si.Metre, width: si.Metre) -> tuple[FoamSupport
 @si.checked_numbers
 @dataclass(frozen=True)
 class Disc(Shape):
-    """A disc on a ceramic disc of `least_cover` to all of its diameter, in a mode of `least_circles`
-    to `most_circles` nodal circles. The workspace's longer side is its least diameter."""
+    """A disc on a ceramic disc of `least_cover` to all of its diameter, in a mode of
+    `least_circles` to `most_circles` nodal circles. The workspace's longer side is its least
+    diameter."""
 
     least_circles: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 1
     most_circles: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 1
@@ -376,7 +377,7 @@ class Ring(Shape):
         mean, track = float(values["mean_diameter"]), float(values["radial_width"])
         if track >= mean:
             raise GeometryError(
-                f"a track of {1e3 * track:.3g} mm closes a ring of {1e3 * mean:.3g} mm mean diameter"
+                f"a track of {1e3 * track:.3g} mm closes a ring of {1e3 * mean:.3g} mm in the mean"
             )
         m = int(values["nodal_diameters"])
         return DiscPlate(

@@ -6,8 +6,8 @@ import functools
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
+from squeezefilm import config, presets
 from squeezefilm import hard_limits as hard
-from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.config.references import References
 from squeezefilm.errors import InputError
@@ -68,7 +68,7 @@ def substrate_named(name: str, own: RectangularPlate | DiscPlate) -> ElasticMate
 
     Raises `InputError` for a name that is not known.
     """
-    return own.substrate if name == OWN else _read(name, "substrate").part
+    return own.substrate if name == OWN else _substrate(name)
 
 
 def ceramic_named(name: str, own: RectangularPlate | DiscPlate) -> Piezoceramic:
@@ -76,18 +76,21 @@ def ceramic_named(name: str, own: RectangularPlate | DiscPlate) -> Piezoceramic:
 
     Raises `InputError` for a name that is not known.
     """
-    return own.ceramic if name == OWN else _read(name, "ceramic").part
+    return own.ceramic if name == OWN else _ceramic(name)
 
 
 @functools.cache
-def _read(name: str, kind: Kind) -> _Substrate | _Ceramic:
-    from squeezefilm import config
+def _substrate(name: str) -> ElasticMaterial:
+    return config.load_text(_Substrate, _named(name, "substrate")).part
 
-    found = presets.materials.named(name, kind)
-    owner = _Substrate if kind == "substrate" else _Ceramic
-    text = f'[part]\nmaterial = "{found.name}"\n'
-    made: _Substrate | _Ceramic = config.load_text(owner, text)
-    return made
+
+@functools.cache
+def _ceramic(name: str) -> Piezoceramic:
+    return config.load_text(_Ceramic, _named(name, "ceramic")).part
+
+
+def _named(name: str, kind: Kind) -> str:
+    return f'[part]\nmaterial = "{presets.materials.named(name, kind).name}"\n'
 
 
 def require_known(name: str, kind: Kind) -> None:

@@ -1,5 +1,6 @@
-"""What a search knows, in a folder: every evaluated design, kept as it comes, by all that it depends
-on. A search that was stopped asks none of them again, and several hosts may write into one file."""
+"""What a search knows, in a folder: every evaluated design, kept as it comes, by all that it
+depends on. A search that was stopped asks none of them again, and several hosts may write into one
+file."""
 
 from __future__ import annotations
 

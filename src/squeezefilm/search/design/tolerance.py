@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
@@ -13,7 +13,7 @@ from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.plate.layout import DiscPlate, RectangularPlate, turned
 from squeezefilm.search.design.candidate import (
     Design,
     Evaluated,
@@ -125,9 +125,8 @@ def as_made(
     All of a plate's ceramics are alike. Raises what the plate raises.
     """
     display, made = display_of(requirements, design), requirements.tolerances
-    off = {
-        name: float(by) * getattr(made, name) for name, by in zip(_NAMES, deviations, strict=True)
-    }
+    pairs = zip(_NAMES, deviations, strict=True)
+    off = {name: float(by) * getattr(made, name) for name, by in pairs}
     body = display.actuator
     assert isinstance(body, RectangularPlate | DiscPlate), "shapes make no others"
     sheet = replace(
@@ -136,39 +135,50 @@ def as_made(
     ceramic = body.ceramic.scaled(
         stiffness=1 + off["ceramic_stiffness"], charge=1 + off["charge_coefficient"]
     )
-    common = {
-        "substrate": sheet,
-        "ceramic": ceramic,
-        "thickness": body.thickness + off["thickness"],
-        "quality_factor": body.quality_factor * (1 + off["quality_factor"]),
-    }
-    if isinstance(body, DiscPlate):
-        return replace(
-            display,
-            actuator=replace(
-                body, **common, ceramic_thickness=body.ceramic_thickness + off["ceramic_thickness"]
-            ),
-        )
-    return replace(display, actuator=replace(body, **common, **dict(_resized(body, off))))
+    body = replace(
+        body,
+        substrate=sheet,
+        ceramic=ceramic,
+        thickness=body.thickness + off["thickness"],
+        quality_factor=body.quality_factor * (1 + off["quality_factor"]),
+    )
+    made_body = (
+        _disc_resized(body, off) if isinstance(body, DiscPlate) else _plate_resized(body, off)
+    )
+    return replace(display, actuator=made_body)
 
 
-def _resized(body: RectangularPlate, off: Mapping[str, float]) -> Iterator[tuple[str, object]]:
-    """Sides and ceramics of a plate that came out longer: all along its length in proportion."""
-    longer = 1 + off["sides"] / body.length
-    yield "length", body.length * longer
-    yield (
-        "patches",
-        tuple(
+def _disc_resized(body: DiscPlate, off: Mapping[str, float]) -> DiscPlate:
+    larger = 1 + off["sides"] / body.diameter
+    return replace(
+        body,
+        diameter=body.diameter * larger,
+        inner_diameter=body.inner_diameter * larger,
+        ceramic_outer_diameter=body.ceramic_outer_diameter * larger,
+        ceramic_inner_diameter=body.ceramic_inner_diameter * larger,
+        ceramic_thickness=body.ceramic_thickness + off["ceramic_thickness"],
+    )
+
+
+def _plate_resized(body: RectangularPlate, off: Mapping[str, float]) -> RectangularPlate:
+    """Sides and ceramics of a plate that came out longer: all along its wave in proportion."""
+    turn = body.lines_across == "width"
+    plate = turned(body) if turn else body
+    longer = 1 + off["sides"] / plate.length
+    made = replace(
+        plate,
+        length=plate.length * longer,
+        patches=tuple(
             replace(
                 one,
                 x=one.x * longer,
                 length=one.length * longer,
                 thickness=one.thickness + off["ceramic_thickness"],
             )
-            for one in body.patches
+            for one in plate.patches
+        ),
+        supports=tuple(
+            replace(one, x=one.x * longer, length=one.length * longer) for one in plate.supports
         ),
     )
-    yield (
-        "supports",
-        tuple(replace(one, x=one.x * longer, length=one.length * longer) for one in body.supports),
-    )
+    return turned(made) if turn else made
