@@ -133,7 +133,7 @@ NOT_CALLED = {
     plate.solid.model.PlateModel.evaluation
     plate.solid.model.PlateModel.field plate.solid.model.PlateModel.force
     plate.solid.modes.label_of plate.solid.modes.profiles plate.solid.modes.surface_shapes
-    plate.solid.modes.zero_crossings plate.solid.symmetry.mirror_map
+    plate.elements.nodal_lines.zero_crossings plate.solid.symmetry.mirror_map
     plate.solid.reduced.ReducedClass
     plate.solid.reduced.harmonic_solution
     plate.solid.reduced.reduced_class plate.solid.reduced.resolved_frequency

@@ -19,7 +19,7 @@ from squeezefilm.plate.beam.modes import (
 )
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.laminate import Laminate, Layer, laminate, plate_laminate
-from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.working_mode import working_mode
 
 
@@ -203,3 +203,44 @@ def test_reversed_polarity_reverses_and_equal_polarity_hardly_drives(
         plate, patches=tuple(dataclasses.replace(p, polarity=1) for p in plate.patches)
     )
     assert beam_response(same).amplitude_per_volt < 0.25 * response.amplitude_per_volt
+
+
+def test_a_bimorphs_ceramics_pull_together() -> None:
+    """Equal ceramics on both faces, driven against each other: twice the moment of one of them, on
+    a section whose neutral axis is its middle; driven alike they only stretch it."""
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    half = tuple(dataclasses.replace(one, thickness=0.5e-3) for one in plate.patches)
+    above = tuple(
+        dataclasses.replace(one, face="top", polarity=-one.polarity)  # type: ignore[arg-type]
+        for one in half
+    )
+    both = dataclasses.replace(plate, patches=(*half, *above))
+    section = plate_laminate(both)
+    assert section.neutral_axis == pytest.approx(sum(one.thickness for one in section.layers) / 2)
+    one_face = dataclasses.replace(both, patches=(*half, *_idle(above)))
+    found, single = beam_response(both), beam_response(one_face)
+    assert found.amplitude_per_volt == pytest.approx(2 * single.amplitude_per_volt)
+    alike = dataclasses.replace(
+        both, patches=(*half, *(dataclasses.replace(one, face="top") for one in half))
+    )
+    assert beam_response(alike).amplitude_per_volt < 1e-9 * found.amplitude_per_volt
+
+
+def _idle(patches: tuple[CeramicPatch, ...]) -> tuple[CeramicPatch, ...]:
+    return tuple(dataclasses.replace(one, electrode="shorted") for one in patches)
+
+
+@pytest.mark.slow
+def test_a_bimorph_as_a_beam_stands_beside_the_solid() -> None:
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    half = tuple(dataclasses.replace(one, thickness=0.5e-3) for one in plate.patches)
+    above = tuple(
+        dataclasses.replace(one, face="top", polarity=-one.polarity)  # type: ignore[arg-type]
+        for one in half
+    )
+    both = dataclasses.replace(plate, patches=(*half, *above))
+    beam, solid = working_mode(both, "timoshenko"), working_mode(both)
+    assert beam.resonance_frequency == pytest.approx(solid.resonance_frequency, rel=0.04)
+    assert beam.amplitude_per_volt == pytest.approx(solid.amplitude_per_volt, rel=0.2)

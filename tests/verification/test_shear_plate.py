@@ -12,11 +12,11 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.materials import ElasticMaterial
 from squeezefilm.plate.beam.modes import free_beam_mode
+from squeezefilm.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.shear.modes import MODELLING_ERROR, ShearMode, shear_mode, shear_modes
 from squeezefilm.plate.shear.section import ShearLayout, isotropic_section, shear_layout
-from squeezefilm.plate.solid.modes import zero_crossings
 
 STEEL = ElasticMaterial("NAFEMS steel", 200e9, 0.3, 8000.0)
 

@@ -14,6 +14,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.ring.body import (
     half_wavelength_of,
@@ -23,7 +24,6 @@ from squeezefilm.plate.ring.body import (
 from squeezefilm.plate.ring.modes import AnnularMode
 from squeezefilm.plate.shear.working import shear_working
 from squeezefilm.plate.solid.guess import bare_frequency
-from squeezefilm.plate.solid.modes import zero_crossings
 from squeezefilm.plate.solid.resonances import Neighbour
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.progress import NO_HURRY, Pace

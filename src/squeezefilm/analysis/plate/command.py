@@ -24,16 +24,11 @@ from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
 from squeezefilm.plate.solid.layers import COARSE, Resolution
-from squeezefilm.plate.solid.modes import (
-    Label,
-    PlateModes,
-    check_band,
-    profiles,
-    zero_crossings,
-)
+from squeezefilm.plate.solid.modes import Label, PlateModes, check_band, profiles
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.solve import solve_for_response, solve_modes
 from squeezefilm.plate.sound import SoundField

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
 from squeezefilm.plate.ring.section import (
@@ -20,7 +21,6 @@ from squeezefilm.plate.ring.section import (
     full_drive,
 )
 from squeezefilm.plate.ring.stator import StatorAssumptions, StatorFit, fit_stator
-from squeezefilm.plate.solid.modes import zero_crossings
 
 Direction = Literal["circumference", "diameter"]
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.plate.elements.nodal_lines import line_distance, zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import ShearMode, shear_mode
 
@@ -20,7 +21,7 @@ class ShearWorking:
     """A mode of a shear plate along the line that crosses its nodal lines in the middle.
 
     `deflection` along `position` (m) is 1 at the largest lobe between the outermost lines, at
-    `lobe` (x, y); `half_wavelength` (m) is the mean distance of the inner lines;
+    `lobe` (x, y); `half_wavelength` (m) is that of `line_distance`;
     `amplitude_per_volt` (m/V) and `modal_mass` (kg) are those of that lobe.
     """
 
@@ -61,14 +62,13 @@ def shear_working(plate: RectangularPlate, near: si.Hertz) -> ShearWorking:
     inside = slice(turns[0], turns[-1] + 1)
     peak = turns[0] + int(np.argmax(np.abs(w[inside])))
     size = abs(float(w[peak]))
-    nodes = line[turns] - w[turns] * (line[turns + 1] - line[turns]) / (w[turns + 1] - w[turns])
     place = float(line[peak]), float(across[at])
     return ShearWorking(
         mode=mode,
         position=line,
         deflection=w / float(w[peak]),
         lobe=place if along_x else place[::-1],
-        half_wavelength=float((nodes[-1] - nodes[0]) / (nodes.size - 1)),
+        half_wavelength=line_distance(zero_crossings(line, w)),
         amplitude_per_volt=size * mode.amplitude_per_volt(plate.quality_factor),
         modal_mass=mode.modal_mass / size**2,
     )

@@ -15,11 +15,12 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError, SqueezefilmError
 from squeezefilm.plate.beam.modes import free_beam_mode, timoshenko_frequency
 from squeezefilm.plate.beam.response import LEAST_COVERAGE
+from squeezefilm.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import ShearMode, shear_modes
 from squeezefilm.plate.shear.section import shear_layout
-from squeezefilm.plate.solid.modes import Label, profiles, zero_crossings
+from squeezefilm.plate.solid.modes import Label, profiles
 
 # So many modes of one class of symmetry around the bare plate's frequency are looked at: strips on
 # a part of the face move a mode by some ten percent.

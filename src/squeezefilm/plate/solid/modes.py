@@ -13,6 +13,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.elements.again import SolvedAgain
+from squeezefilm.plate.elements.nodal_lines import line_distance, zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.layers import COARSE, NORMAL, Resolution
 from squeezefilm.plate.solid.model import PlateModel
@@ -144,15 +145,9 @@ class PlateModes(SolvedAgain):
 
     @si.checked_numbers
     def half_wavelength(self, mode: int) -> si.Metre:
-        """The mean distance of nodal lines along the side that more of them cross (m); NaN with
-        fewer than two.
-
-        Of six or more, the outermost at each end is left out: the free edge's near field moves it.
-        """
-        nodes = self.nodal_positions(mode)
-        if nodes.size >= 6:
-            nodes = nodes[1:-1]
-        return float(np.mean(np.diff(nodes))) if nodes.size > 1 else float("nan")
+        """The mean distance of nodal lines along the side that more of them cross (m), see
+        `line_distance`."""
+        return line_distance(self.nodal_positions(mode))
 
     @functools.cached_property
     def half_wavelengths(self) -> si.MetreArray:
@@ -164,14 +159,6 @@ def profiles(shape: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, float]
     """The product X(x) Y(y) nearest to a shape, and its share of the shape's square."""
     U, s, V = np.linalg.svd(shape, full_matrices=False)
     return U[:, 0] * s[0], V[0], float(s[0] ** 2 / np.sum(s**2)) if s[0] > 0 else 0.0
-
-
-def zero_crossings(position: si.FloatArray, profile: si.FloatArray) -> si.FloatArray:
-    """Where a profile changes sign; values below 1e-6 of its largest count as none."""
-    strong = np.abs(profile) > 1e-6 * np.max(np.abs(profile))
-    x, w = position[strong], profile[strong]
-    at = np.flatnonzero(np.signbit(w[1:]) != np.signbit(w[:-1]))
-    return np.asarray(x[at] - w[at] * (x[at + 1] - x[at]) / (w[at + 1] - w[at]))
 
 
 _POINTS = (97, 65)

@@ -17,17 +17,12 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.kept_arrays import KeptResults
+from squeezefilm.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.layers import Resolution
 from squeezefilm.plate.solid.model import PlateModel
-from squeezefilm.plate.solid.modes import (
-    COARSE_AMPLITUDE_ERROR,
-    MODEL,
-    Label,
-    PlateModes,
-    zero_crossings,
-)
+from squeezefilm.plate.solid.modes import COARSE_AMPLITUDE_ERROR, MODEL, Label, PlateModes
 from squeezefilm.plate.solid.reduced import class_drive
 from squeezefilm.plate.solid.refined_modes import RefinedModes
 from squeezefilm.plate.solid.resonances import Neighbour

@@ -9,7 +9,7 @@ import numpy as np
 
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
-from squeezefilm.plate.solid.modes import zero_crossings
+from squeezefilm.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.report.display.plate_figures import half_power
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder

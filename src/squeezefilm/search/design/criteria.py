@@ -17,6 +17,7 @@ from squeezefilm.chain.active_area import active_area
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.materials import VACUUM_PERMITTIVITY
 from squeezefilm.perception.felt import (
     Rubbed,
     grating_evidence,
@@ -24,6 +25,7 @@ from squeezefilm.perception.felt import (
     tried_periods,
 )
 from squeezefilm.perception.observer import Observer, load_observer
+from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.electronics import load_of_mode
 from squeezefilm.plate.heat.thermal import driven_thickness
 from squeezefilm.plate.laminate import Laminate, plate_laminate
@@ -146,10 +148,7 @@ def excess_of(one: Criterion, value: float, bound: float) -> float:
 def numbers_of_prediction(
     requirements: Requirements, display: Display, p: Prediction, cost: int = 1
 ) -> dict[str, float]:
-    """The criteria that any prediction tells, of a beam as of a solved plate (SI).
-
-    The current of a plate that is not solved is that of its ceramics' capacitance and its losses.
-    """
+    """The criteria that any prediction tells, of a beam as of a solved plate (SI)."""
     actuator = display.actuator
     assert isinstance(actuator, RectangularPlate | DiscPlate), "shapes make no others"
     section = plate_laminate(actuator)
@@ -174,13 +173,9 @@ def numbers_of_prediction(
     thickness = driven_thickness(actuator)
     if p.voltage and thickness:
         numbers["field"] = p.voltage / thickness
-    load = load_of_mode(actuator, p.mode, p.voltage, p.frequency)
-    if load is not None:
-        numbers["current"] = load.current
-    elif p.voltage and isinstance(actuator, RectangularPlate) and p.heat is not None:
-        from squeezefilm.plate.beam.response import patch_capacitance
-
-        reactive = 2 * math.pi * p.frequency * patch_capacitance(actuator) * p.voltage
+    if p.voltage and p.heat is not None:
+        # Of its capacitance and its losses; that of a solved plate takes its place.
+        reactive = 2 * math.pi * p.frequency * _capacitance(actuator) * p.voltage
         numbers["current"] = math.hypot(reactive, 2 * p.heat.cold_power / p.voltage)
     return numbers
 
@@ -188,9 +183,12 @@ def numbers_of_prediction(
 def numbers_of_solved(
     requirements: Requirements, display: Display, p: Prediction
 ) -> dict[str, float]:
-    """The criteria that only a solved plate has, those that a limit asks for."""
+    """The criteria that only a solved plate has; those that take long where a limit asks."""
     limits = requirements.limits
     found: dict[str, float] = {}
+    load = load_of_mode(display.actuator, p.mode, p.voltage, p.frequency)
+    if load is not None:
+        found["current"] = load.current
     beside = p.mode.neighbour
     found["neighbour"] = math.inf if beside is None or beside.share < 0.02 else abs(beside.distance)
     if limits.least_area is not None or limits.most_relative_friction is not None:
@@ -256,6 +254,15 @@ def mass_of(body: RectangularPlate | DiscPlate) -> si.Kilogram:
         sheet = body.area * body.thickness
     glue = 0.0 if body.glue is None else under * body.glue.thickness * body.glue.density
     return metal * sheet + piezo * volume + glue
+
+
+def _capacitance(body: RectangularPlate | DiscPlate) -> si.Farad:
+    """Of all ceramics in parallel, fringes neglected."""
+    if isinstance(body, RectangularPlate):
+        return patch_capacitance(body)
+    area = math.pi / 4 * (body.ceramic_outer_diameter**2 - body.ceramic_inner_diameter**2)
+    permittivity = body.ceramic.relative_permittivity * VACUUM_PERMITTIVITY
+    return permittivity * area / body.ceramic_thickness
 
 
 def _deflection(

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.plate.solid.modes import profiles, zero_crossings
+from squeezefilm.plate.elements.nodal_lines import zero_crossings
+from squeezefilm.plate.solid.modes import profiles
 
 
 def test_a_shape_is_split_into_its_nearest_product() -> None:

@@ -1,0 +1,25 @@
+"""Where a vibration stands still along a line, and the half wavelength that follows."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from squeezefilm import quantities as si
+
+
+def zero_crossings(position: si.FloatArray, profile: si.FloatArray) -> si.FloatArray:
+    """Where a profile changes sign; values below 1e-6 of its largest count as none."""
+    strong = np.abs(profile) > 1e-6 * np.max(np.abs(profile))
+    x, w = position[strong], profile[strong]
+    at = np.flatnonzero(np.signbit(w[1:]) != np.signbit(w[:-1]))
+    return np.asarray(x[at] - w[at] * (x[at + 1] - x[at]) / (w[at + 1] - w[at]))
+
+
+def line_distance(nodes: si.MetreArray) -> si.Metre:
+    """The mean distance (m) of nodal lines at rising places (m); NaN with fewer than two.
+
+    Of six or more, the outermost at each end is left out: the free edge's near field moves it.
+    """
+    if nodes.size >= 6:
+        nodes = nodes[1:-1]
+    return float(np.mean(np.diff(nodes))) if nodes.size > 1 else float("nan")
