@@ -107,6 +107,10 @@ class RecordError(SqueezefilmError):
     """A record that cannot be written: a full disk, a file that exists, a folder that refuses."""
 
 
+class WorkersError(SqueezefilmError):
+    """Those who were to answer cannot be reached, cannot be used, or are gone; says what to do."""
+
+
 class LoopError(SqueezefilmError):
     """A real-time loop that could not start, or that died; says which and what to do."""
 

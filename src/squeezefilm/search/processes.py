@@ -1,0 +1,124 @@
+"""Processes of this machine that answer, one task at a time each."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from types import TracebackType
+from typing import Any
+
+from squeezefilm.search.tasks import A, K, Lost, Shares, computed, grouped
+
+
+class Processes:
+    """`jobs` processes, begun when they have something to do; they end at the end of the block, and
+    with this process."""
+
+    def __init__(self, jobs: int) -> None:
+        self._jobs = jobs
+        # Each its own executor: only so a task goes to the process that has its plate.
+        self._executors: list[ProcessPoolExecutor] = []
+        self._before: set[Any] = set()
+
+    def __enter__(self) -> Processes:
+        self._before = set(multiprocessing.active_children())
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._end()
+
+    def answers(
+        self,
+        function: Callable[..., A],
+        tasks: Mapping[K, tuple[Any, ...]],
+        alike: Mapping[K, Hashable] | None = None,
+    ) -> Iterator[tuple[K, A | Lost]]:
+        """As `Workers.answers`."""
+        alone: list[K] = []
+        for key, answer in self._asked(function, tasks, grouped(tasks, alike), self._jobs):
+            if isinstance(answer, Lost):
+                alone.append(key)
+            else:
+                yield key, answer
+        # When no other runs: what it needs is all there is.
+        for key in alone:
+            yield from self._asked(function, tasks, [[key]], 1)
+
+    def _asked(
+        self,
+        function: Callable[..., A],
+        tasks: Mapping[K, tuple[Any, ...]],
+        groups: Sequence[Sequence[K]],
+        jobs: int,
+    ) -> Iterator[tuple[K, A | Lost]]:
+        """Answers of so many of the processes; `Lost` for one that a process died of."""
+        shares = Shares(groups)
+        running: dict[Future[A], tuple[int, K]] = {}
+
+        def begin(process: int) -> None:
+            key = shares.next(process)
+            if key is None:
+                return
+            if process == len(self._executors):
+                self._executors.append(_executor())
+            running[self._executors[process].submit(computed, function, tasks[key])] = process, key
+
+        try:
+            for process in range(min(jobs, sum(map(len, groups)))):
+                begin(process)
+            while running:
+                done, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in done:
+                    process, key = running.pop(future)
+                    found: A | Lost = Lost()
+                    try:
+                        found = future.result()
+                    except BrokenProcessPool:
+                        self._executors[process].shutdown(wait=False)
+                        self._executors[process] = _executor()
+                    yield key, found
+                    begin(process)
+        finally:
+            if running:  # stopped while some are at work: nobody waits for them
+                self._end()
+
+    def _end(self) -> None:
+        for executor in self._executors:
+            executor.shutdown(wait=False, cancel_futures=True)
+        self._executors = []
+        left = set(multiprocessing.active_children()) - self._before
+        for child in left:
+            child.terminate()
+        for child in left:
+            child.join(2.0)
+            if child.is_alive():
+                child.kill()
+
+
+def _executor() -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _prepare)
+
+
+def _prepare() -> None:
+    """A process of the pool: Ctrl-C ends it without a word, and so does the end of its parent."""
+    with contextlib.suppress(ValueError):
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

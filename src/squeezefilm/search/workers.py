@@ -1,0 +1,44 @@
+"""Who answers: this process, processes of this machine, or a Dask cluster; one method wide.
+
+with workers(jobs=2) as pool:                      # or workers(scheduler="tcp://host:8786")
+    for key, answer in pool.answers(function, {key: (argument, ...), ...}):
+        ...
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated
+
+from squeezefilm import quantities as si
+from squeezefilm.progress import SayProgress
+from squeezefilm.search.processes import Processes
+from squeezefilm.search.tasks import ThisProcess, Workers
+
+
+@contextmanager
+@si.checked_numbers
+def workers(
+    jobs: Annotated[int, si.AtLeast(1)] = 1,
+    scheduler: str | None = None,
+    tell: SayProgress | None = None,
+) -> Iterator[Workers]:
+    """Those who answer, for the block: `jobs` processes, one of which is this one, or all workers
+    of the Dask `scheduler` (``"tcp://host:8786"``) however many there are, `jobs` then counting
+    for nothing. `tell` is told of a cluster who is there and where its dashboard is.
+
+    Raises `InputError` where Dask is not installed, and `WorkersError` where no scheduler answers
+    or its workers cannot be used. More than one process in a script needs
+    ``if __name__ == "__main__":``.
+    """
+    if scheduler is not None:
+        from squeezefilm.search.cluster import Cluster
+
+        with Cluster(scheduler, tell or (lambda _: None)) as cluster:
+            yield cluster
+    elif jobs == 1:
+        yield ThisProcess()
+    else:
+        with Processes(jobs) as processes:
+            yield processes
