@@ -196,6 +196,7 @@ if TYPE_CHECKING:
         ask: Sequence[str] | str = ...,
         over: str | Path | None = ...,
         jobs: int = ...,
+        scheduler: str | None = ...,
         out: str | Path | None = ...,
         fresh: bool = ...,
         progress: SayProgress | None = ...,

@@ -57,6 +57,9 @@ class Cluster:
         self._admitted: list[str] = []
         self._looked = self._seen = 0.0
         self._waits = False
+        # One topic for all askings: the scheduler keeps the last answers of each.
+        self._topic, self._numbers = f"answers-{uuid.uuid4().hex}", itertools.count()
+        self._listener: Callable[[int, bytes], None] | None = None
 
     def __enter__(self) -> Cluster:
         # What it says of a scheduler that is gone is said by us, and in one sentence.
@@ -68,6 +71,7 @@ class Cluster:
             raise WorkersError(
                 f"no scheduler answers at {self._address}; start one with: dask scheduler"
             ) from error
+        self._client.subscribe_topic(self._topic, self._heard)
         self._seen = time.monotonic()
         offered = self._client.scheduler_info(n_workers=0).get("services", {})
         where = f", dashboard at {self._client.dashboard_link}" if "dashboard" in offered else ""
@@ -108,17 +112,25 @@ class Cluster:
         tasks: Mapping[K, tuple[Any, ...]],
         groups: Sequence[Sequence[K]],
     ) -> Iterator[tuple[K, A | Lost]]:
-        asking: _Asking[K, A] = _Asking(self._client, function)
+        asking: _Asking[K, A] = _Asking(self._client, self._topic, self._numbers, function)
+        self._listener = asking.take
         shares = Shares(groups)
         left = sum(map(len, groups))
         try:
             while left:
-                asking.hand_out(self._present(), shares, tasks)
+                present = self._present()
+                asking.hand_out(present, shares, tasks)
+                asking.seek(present, tasks)
                 for key, answer in asking.arrived(self._address):
                     left -= 1
                     yield key, answer
         finally:
+            self._listener = None
             asking.end()
+
+    def _heard(self, event: tuple[float, tuple[int, bytes]]) -> None:
+        if self._listener is not None:
+            self._listener(*event[1])
 
     def _present(self) -> Sequence[str]:
         """The addresses of the workers, looked up now and then. Raises `WorkersError` where there
@@ -177,17 +189,17 @@ class Cluster:
 class _Asking(Generic[K, A]):
     """One asking under way: which task is where, and what came of it."""
 
-    def __init__(self, client: Any, function: Callable[..., A]) -> None:
-        self._client, self._function = client, function
-        self._topic = f"answers-{uuid.uuid4().hex}"
-        self._numbers = itertools.count()
+    def __init__(
+        self, client: Any, topic: str, numbers: Iterator[int], function: Callable[..., A]
+    ) -> None:
+        self._client, self._topic, self._numbers, self._function = client, topic, numbers, function
         self._keys: dict[int, K] = {}
         self._where: dict[int, str] = {}
         self._futures: dict[int, Any] = {}
         self._there: set[int] = set()
         self._came: queue.SimpleQueue[tuple[int, Any]] = queue.SimpleQueue()
         self._began, self._answered = time.monotonic(), 0
-        client.subscribe_topic(self._topic, self._take)
+        self._sought, self._missed = self._began, set[int]()
 
     def hand_out(
         self, workers: Sequence[str], shares: Shares[K], tasks: Mapping[K, tuple[Any, ...]]
@@ -212,37 +224,59 @@ class _Asking(Generic[K, A]):
             while not self._came.empty():
                 came.append(self._came.get())
             for number, what in came:
-                if number in self._keys:
+                # That a task is done is heard after its answer, and says nothing more.
+                if number in self._keys and getattr(what, "status", "") != "finished":
                     answer = self._answer(what, address)
                     self._where.pop(number)
                     self._forget(number)
                     self._answered += 1
                     yield self._keys.pop(number), answer
 
+    def seek(self, workers: Sequence[str], tasks: Mapping[K, tuple[Any, ...]]) -> None:
+        """Ask again for tasks that nobody does: Dask gives those of a worker that died to another,
+        but where there was no other just then it goes on waiting for the one that died."""
+        if not workers or time.monotonic() - self._sought < _LOOK:
+            return
+        self._sought = time.monotonic()
+        astray = [number for number, worker in self._where.items() if worker not in workers]
+        missed: set[int] = set()
+        if astray:
+            with contextlib.suppress(Exception):  # a scheduler that is gone is told elsewhere
+                done = {key for keys in self._client.processing().values() for key in keys}
+                missed = {
+                    n for n in astray if n in self._futures and self._futures[n].key not in done
+                }
+        # An answer may be on its way: what is missed twice.
+        for number in missed & self._missed:
+            self._where.pop(number)
+            self._forget(number)
+            key = self._keys.pop(number)
+            self._submit("", key, tasks[key])
+        self._missed = missed
+
     def end(self) -> None:
         """Nothing more is wanted."""
         with contextlib.suppress(Exception):
-            self._client.unsubscribe_topic(self._topic)
             self._client.cancel(list(self._futures.values()))
         self._futures.clear()
 
     def _submit(self, worker: str, key: K, arguments: tuple[Any, ...]) -> None:
+        """Have a task done, by a worker if it can be, or by any."""
         number = next(self._numbers)
         self._keys[number], self._where[number] = key, worker
         future = self._client.submit(
-            _work, self._topic, number, self._function, arguments,
+            _work, self._topic, number, worker, self._function, arguments,
             key=f"{getattr(self._function, '__name__', 'task')}-{self._topic}-{number}",
-            workers=[worker], allow_other_workers=True, pure=False,
+            workers=[worker] if worker else None, allow_other_workers=bool(worker), pure=False,
         )  # fmt: skip
         self._futures[number] = future
         future.add_done_callback(lambda one: self._came.put((number, one)))
         if number in self._there:
             self._forget(number)
 
-    def _take(self, event: tuple[float, tuple[int, bytes]]) -> None:
+    def take(self, number: int, data: bytes) -> None:
         """An answer; called by Dask's thread. The task is forgotten at once, so that nobody does it
         again when its worker dies before the answer is looked at."""
-        number, data = event[1]
         self._there.add(number)
         self._came.put((number, data))
         self._forget(number)
@@ -257,9 +291,6 @@ class _Asking(Generic[K, A]):
         if isinstance(what, bytes):
             answer: A = pickle.loads(what)
             return answer
-        if what.status == "finished":
-            found: A = what.result()
-            return found
         if what.status != "error":
             raise _gone(address)
         error = what.exception()
@@ -279,10 +310,20 @@ def _version_here() -> str:
     return __version__
 
 
-def _work(topic: str, number: int, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-    """One task at a worker: its answer goes out before the word that it is done."""
+def _work(
+    topic: str, number: int, meant: str, function: Callable[..., Any], arguments: tuple[Any, ...]
+) -> None:
+    """One task at a worker, that for which it was `meant` or another: its answer goes out before
+    the word that it is done."""
     from distributed import get_worker
+    from distributed.utils import sync
 
-    answer = computed(function, arguments)
-    get_worker().log_event(topic, (number, pickle.dumps(answer)))
-    return answer
+    worker, sent = get_worker(), f"{topic}-sent"
+    if worker.address != meant:
+        # The one before may have died between its answer and that word.
+        events = sync(worker.loop, worker.scheduler.events, topic=sent)
+        if any(one == number for _, one in events):
+            return
+    answer = pickle.dumps(computed(function, arguments))
+    worker.log_event(sent, number)
+    worker.log_event(topic, (number, answer))

@@ -24,6 +24,7 @@ from squeezefilm.search.kept import Kept, address
 from squeezefilm.search.plan import plan_of, told_apart
 from squeezefilm.search.points import Answer, Point, answered
 from squeezefilm.search.swept import NOT_YET, Column, Sweep, counted
+from squeezefilm.search.workers import workers
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class SweepRequest:
     ask: Sequence[str] | str = ()
     over: str | Path | None = None
     jobs: int = 1
+    scheduler: str | None = None
     out: str | Path | None = None
     fresh: bool = False
     progress: SayProgress | None = None
@@ -54,6 +56,7 @@ def sweep(asked: SweepRequest) -> Sweep:
             quickest verb that knows a name is asked. ``modes`` follows modes by their shapes.
         over: a CSV file whose header names what is varied, a point in each row.
         jobs: processes; more than one in a script needs ``if __name__ == "__main__":``.
+        scheduler: a Dask cluster's, ``"tcp://host:8786"``; its workers answer in place of `jobs`.
         out: a folder that keeps every answer as it comes, and has those of before.
         fresh: compute again what the folder has.
         progress: is told how many points are done, and how long the rest takes.
@@ -97,12 +100,16 @@ class Run:
         addresses = list(waiting)
         began = time.monotonic()
         self._say(0, len(points), began)
-        for number, answer in answered(points, jobs=self._asked.jobs):
-            at = addresses[number]
-            self._kept.add(at, points[number], answer)
-            self._found.update(dict.fromkeys(waiting[at], answer))
-            self._computed += 1
-            self._say(self._computed, len(points), began)
+        if not points:
+            return
+        jobs = min(self._asked.jobs, len(points))
+        with workers(jobs, self._asked.scheduler, self._tell) as pool:
+            for number, answer in answered(points, pool):
+                at = addresses[number]
+                self._kept.add(at, points[number], answer)
+                self._found.update(dict.fromkeys(waiting[at], answer))
+                self._computed += 1
+                self._say(self._computed, len(points), began)
 
     def _say(self, done: int, of: int, began: float) -> None:
         """How far it is, and how long the rest takes if it goes on like this."""

@@ -79,8 +79,8 @@ def test_what_is_kept_is_not_computed_again_and_more_is_asked_for_nothing(tmp_pa
 def test_a_sweep_that_is_stopped_keeps_what_it_has_and_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def stopped(points: Any, *, jobs: int) -> Any:
-        for number, answer in answered(points, jobs=jobs):
+    def stopped(points: Any, pool: Any) -> Any:
+        for number, answer in answered(points, pool):
             if number == 2:
                 raise KeyboardInterrupt
             yield number, answer
@@ -172,7 +172,7 @@ def test_texts_that_differ_in_numbers_are_told_once() -> None:
 
 
 def test_an_answer_that_lacks_a_number_has_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    def nothing(points: Any, *, jobs: int) -> Any:
+    def nothing(points: Any, _: Any) -> Any:
         yield from ((number, Answer({})) for number in range(len(points)))
 
     monkeypatch.setattr(sweeps, "answered", nothing)

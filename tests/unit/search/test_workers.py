@@ -1,0 +1,42 @@
+"""Who answers is chosen in one place."""
+
+import builtins
+from typing import Any
+
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.search.processes import Processes
+from squeezefilm.search.tasks import ThisProcess
+from squeezefilm.search.workers import workers
+
+
+def test_one_process_is_this_one_and_more_are_a_pool() -> None:
+    with workers() as pool:
+        assert isinstance(pool, ThisProcess)
+        assert dict(pool.answers(divmod, {"a": (7, 2)})) == {"a": (3, 1)}
+    with workers(jobs=2) as pool:
+        assert isinstance(pool, Processes)
+
+
+def test_no_process_answers_nothing() -> None:
+    with pytest.raises(InputError, match="jobs = 0"), workers(jobs=0):
+        pass
+
+
+def test_a_scheduler_without_dask_is_refused_with_what_to_install(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    known = builtins.__import__
+
+    def without(name: str, *rest: Any) -> Any:
+        if name == "distributed":
+            raise ImportError(name)
+        return known(name, *rest)
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    with (
+        pytest.raises(InputError, match=r"squeezefilm\[cluster\].*--jobs"),
+        workers(scheduler="tcp://127.0.0.1:8786"),
+    ):
+        pass
