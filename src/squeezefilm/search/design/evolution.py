@@ -12,6 +12,7 @@ import numpy as np
 
 from squeezefilm.search.design.candidate import Design, Evaluated, design_of
 from squeezefilm.search.design.criteria import bounded, excess_of
+from squeezefilm.search.design.journal import journal
 from squeezefilm.search.design.requirements import Requirements
 
 if TYPE_CHECKING:
@@ -51,12 +52,7 @@ class Proposals:
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         self._requirements, self._shape, self._dear = requirements, shape, dear
         self._seed, self._space = (seed, member, shape, int(dear)), requirements.spaces[shape]
-        storage: Any = None
-        if folder is not None:
-            from optuna.storages import JournalStorage
-            from optuna.storages.journal import JournalFileBackend
-
-            storage = JournalStorage(JournalFileBackend(str(folder / JOURNAL)))
+        storage = None if folder is None else journal(folder / JOURNAL)
         kind = "solved" if dear else "screened"
         self._study = optuna.create_study(
             study_name=f"{self._space.shape}, {kind}, seed {seed}",

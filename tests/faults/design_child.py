@@ -1,0 +1,38 @@
+"""A search for designs in a process of its own, by formulas in place of plates: to be killed.
+
+    python -m tests.faults.design_child FOLDER
+
+A line is appended to FOLDER/asked for each design that is computed.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+from tests.unit.search.design.made_up import formula, requirements
+
+import squeezefilm.search.design.run as run
+from squeezefilm.search.design.candidate import Design, Evaluated, Level
+from squeezefilm.search.design.found import DesignSearch
+from squeezefilm.search.design.requirements import Requirements
+from squeezefilm.search.design.tolerance import Made
+
+
+def searched(folder: Path, pause: float = 0.0) -> DesignSearch:
+    """The search, each design counted; `pause` (s) is what a task takes."""
+
+    def counted(wanted: Requirements, designs: tuple[Design, ...], level: Level) -> list[Evaluated]:
+        time.sleep(pause)
+        with (folder / "asked").open("a") as there:
+            there.write("".join(f"{one.address} {level}\n" for one in designs))
+        return [formula(wanted, one, level) for one in designs]
+
+    run.evaluate_all = counted  # type: ignore[assignment]
+    run.made_of = lambda wanted, one: Made(64, 1.0, {}, {}, {})  # type: ignore[assignment]
+    return run.search_designs(requirements(), screened=300, solved=50, out=folder)
+
+
+if __name__ == "__main__":
+    searched(Path(sys.argv[1]), pause=0.004)

@@ -1,0 +1,163 @@
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.unit.search.design.made_up import evaluated_by_formula, requirements
+
+import squeezefilm.search.design.run as run
+from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.results import config_hash
+from squeezefilm.search.design.candidate import Evaluated
+from squeezefilm.search.design.found import DesignSearch
+from squeezefilm.search.design.reasons import limit_in_words, margins
+from squeezefilm.search.design.tolerance import Made
+
+
+def _made(wanted: object, one: Evaluated) -> Made:
+    return Made(64, 0.9, {}, {}, {})
+
+
+@pytest.fixture
+def by_formula(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run, "evaluate_all", evaluated_by_formula)
+    monkeypatch.setattr(run, "made_of", _made)
+
+
+def _search(folder: Path | None = None, **changes: int) -> DesignSearch:
+    asked = {"screened": 400, "solved": 60, "seed": 1} | changes
+    return run.search_designs(requirements(), out=folder, **asked)  # type: ignore[arg-type]
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_the_front_is_feasible_and_nobody_beats_it() -> None:
+    found = _search()
+    assert len(found.front) >= 8
+    assert all(one.evaluated.is_feasible for one in found.front)
+    assert all(one.evaluated.level == "solved" for one in found.front)
+    first = found.objectives[:, 0]
+    assert np.all(np.diff(first) > 0)
+    assert np.all(np.diff(found.objectives[:, 1]) < 0)
+    assert len(found.solved) <= 60
+    assert found.ranks["relative_friction"] > 0.9
+    assert 0 < found.hypervolume < 1
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_seeds_agree() -> None:
+    volumes = [_search(seed=seed).hypervolume for seed in range(1, 6)]
+    assert np.ptp(volumes) < 0.03 * np.mean(volumes)
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_asked_again_it_computes_nothing_and_says_the_same(tmp_path: Path) -> None:
+    first = _search(tmp_path)
+    again = _search(tmp_path)
+    assert again.computed == 0
+    assert [one.evaluated for one in again.front] == [one.evaluated for one in first.front]
+    assert again.hypervolume == first.hypervolume
+
+
+@pytest.mark.parametrize("after", [3, 40, 55, 80])
+@pytest.mark.usefixtures("by_formula")
+def test_a_search_that_was_stopped_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int
+) -> None:
+    whole = _search()
+    count = 0
+
+    def stopping(*args: object) -> list[Evaluated]:
+        nonlocal count
+        count += 1
+        if count > after:
+            raise KeyboardInterrupt
+        return evaluated_by_formula(*args)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(run, "evaluate_all", stopping)
+    stopped = run.search_until_stopped(
+        run.SearchRequest(requirements(), screened=400, solved=60, out=tmp_path)
+    )
+    assert stopped.stopped
+    monkeypatch.setattr(run, "evaluate_all", evaluated_by_formula)
+    found = _search(tmp_path)
+    assert not found.stopped
+    assert [one.evaluated for one in found.front] == [one.evaluated for one in whole.front]
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_whoever_watches_sees_the_front_grow() -> None:
+    seen: list[run.Glimpse] = []
+    found = run.search_designs(requirements(), screened=200, solved=40, watch=seen.append)
+    assert seen[-1].solved == len(found.solved)
+    assert seen[0].screened_front
+    assert list(seen[-1].front) == [one.evaluated for one in found.front]
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_the_reasons_name_the_limits_and_what_they_cost() -> None:
+    found = _search()
+    said = [limit_in_words(one, len(found.screened)) for one in found.limits]
+    hot = next(text for text in said if text.startswith("temperature rise"))
+    assert "at most 60 K" in hot
+    assert "without it" in hot
+    chosen = found.chosen
+    assert chosen is not None
+    near = margins(found.requirements, chosen.evaluated)
+    assert list(near.values()) == sorted(near.values())
+    assert min(near.values()) >= 0
+    corner = [one for one in found.corners if "nodal lines 5" in one.where]
+    assert corner
+    assert corner[0].key == "resonance_frequency"
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_a_plate_of_the_front_is_a_display_that_can_be_written_and_read() -> None:
+    from squeezefilm import config
+    from squeezefilm.config.write import text_of
+    from squeezefilm.display import Display
+
+    found = _search()
+    display = found.display()
+    again = config.load_text(Display, text_of(display, display.provenance))
+    assert config_hash(replace(again, provenance={})) == config_hash(display)
+    with pytest.raises(InputError, match="no plate 'zzz'"):
+        found.display("zzz")
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_requirements_that_nothing_meets_end_with_reasons_and_no_front() -> None:
+    hard = requirements(**{'most_temperature_rise = "60 K"': 'most_temperature_rise = "0.1 K"'})
+    found = run.search_designs(hard, screened=100, solved=20)
+    assert found.front == ()
+    assert found.chosen is None
+    assert found.limits[0].broken == len(found.screened)
+    assert found.summary()["chosen"] is None
+    with pytest.raises(InputError, match="front is empty"):
+        found.display()
+
+
+def test_bad_asking_is_refused_before_anything_is_computed() -> None:
+    with pytest.raises(InputError, match="screened"):
+        run.search_designs(requirements(), screened=0)
+    with pytest.raises(ConfigError, match="neither a file"):
+        run.search_designs("biet2008-plat")
+
+
+@pytest.mark.slow
+def test_a_small_search_of_real_plates(tmp_path: Path) -> None:
+    """Against the paper's plate: whatever is on the front keeps the limits, solved."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = run.search_designs("biet2008-plate", screened=100, solved=16, jobs=2, out=tmp_path)
+    assert found.reference is not None
+    assert found.reference.is_feasible
+    assert found.front
+    for one in found.front:
+        assert one.evaluated.is_feasible
+        assert one.made is not None
+    again = run.search_designs("biet2008-plate", screened=100, solved=16, jobs=1, out=tmp_path)
+    assert again.computed == 0
+    assert again.hypervolume == found.hypervolume

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import InputError
+from squeezefilm.search.design.space import Choice, Space, number, step
+
+SPACE = Space(
+    "strips",
+    (
+        Choice("substrate", ("steel", "glass", "brass")),
+        step("thickness", {"steel": (2e-3, 1e-3), "glass": (5e-4,), "brass": (1e-3,) * 2}, "m",
+             "substrate"),
+        number("length", 0.05, 0.08, "m"),
+        number("width", 0.04, 0.04, "m"),
+    ),
+)  # fmt: skip
+
+
+def test_what_is_chosen_lies_in_its_range() -> None:
+    draw = np.random.default_rng(3)
+    for _ in range(200):
+        values = SPACE.at({one.name: draw.random() for one in SPACE.free})
+        assert 0.05 <= float(values["length"]) <= 0.08
+        assert values["width"] == 0.04
+        stock = {"steel": (1e-3, 2e-3), "glass": (5e-4,), "brass": (1e-3,)}
+        assert values["thickness"] in stock[str(values["substrate"])]
+        assert all(0 <= one <= 1 for one in SPACE.shares(values))
+
+
+def test_places_lead_back_to_the_values() -> None:
+    draw = np.random.default_rng(4)
+    for _ in range(200):
+        values = SPACE.at({one.name: draw.random() for one in SPACE.free})
+        again = SPACE.at(SPACE.places(values))
+        assert again == pytest.approx(values)
+
+
+def test_what_is_fixed_is_not_free() -> None:
+    assert [one.name for one in SPACE.free] == ["substrate", "thickness", "length"]
+
+
+def test_ranges_that_are_none_are_refused() -> None:
+    with pytest.raises(InputError, match="length may be from 80 mm to 50 mm"):
+        number("length", 0.08, 0.05, "m")
+    with pytest.raises(InputError, match="of glass is an empty list"):
+        step("thickness", {"glass": ()}, "m", "substrate")
