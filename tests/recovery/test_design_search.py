@@ -91,8 +91,10 @@ def test_the_front_of_five_seeds() -> None:
         volumes.append(found.hypervolume)
         counts.append(len(found.front))
         better.append(len(found.beats_reference))
-        print(f"seed {seed}: hypervolume {found.hypervolume:.4f}, {counts[-1]} plates on the front, "
-              f"{better[-1]} better than the paper's, {found.seconds:.0f} s, ranks {found.ranks}")  # fmt: skip
+        print(
+            f"seed {seed}: hypervolume {found.hypervolume:.4f}, {counts[-1]} plates on the front, "
+            f"{better[-1]} better than the paper's, {found.seconds:.0f} s, ranks {found.ranks}"
+        )
     print(f"spread {np.ptp(volumes) / np.mean(volumes):.4f} of the mean")
     assert np.ptp(volumes) < 0.03 * np.mean(volumes)
     assert min(counts) >= 20

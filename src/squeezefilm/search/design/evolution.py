@@ -4,7 +4,7 @@ are solved; both are Optuna's, with a journal on disk that several hosts may sha
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,16 +25,20 @@ POPULATION = 100
 
 # In place of an objective that is infinite or not known, which no sampler takes.
 _NONE = 1e6
-_EXCESS = "excess"
+# Optuna's own name for it, beside a trial: above 0 where a limit is not kept.
+_EXCESS = "constraints"
+_GENERATION = "NSGAIISampler:generation"
+_MEMBER, _NUMBER = "member", "number"
 
 
 class Proposals:
     """One Optuna study: the designs of one shape, proposed in batches and answered in batches.
 
     `dear` proposes by a tree-structured Parzen estimator (Ozaki et al. 2020,
-    10.1145/3377930.3389817) in place of NSGA-II (Deb et al. 2002, 10.1109/4235.996017). `member`
-    tells hosts apart that share a `folder`. The seed, the member and the number of the batch decide
-    what is proposed, so that what was interrupted goes on as it would have.
+    10.1145/3377930.3389817) in place of NSGA-II (Deb et al. 2002, 10.1109/4235.996017). The seed
+    and the number of the batch decide what is proposed: whoever asks again from the beginning is
+    proposed the same. In a `folder` what was answered is published in a journal; hosts that search
+    there, each with a `member` of its own, learn from each other's answers.
     """
 
     def __init__(
@@ -51,66 +55,63 @@ class Proposals:
 
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         self._requirements, self._shape, self._dear = requirements, shape, dear
-        self._seed, self._space = (seed, member, shape, int(dear)), requirements.spaces[shape]
-        storage = None if folder is None else journal(folder / JOURNAL)
-        kind = "solved" if dear else "screened"
-        self._study = optuna.create_study(
-            study_name=f"{self._space.shape}, {kind}, seed {seed}",
-            storage=storage,
-            directions=["minimize"] * len(requirements.objectives),
-            load_if_exists=True,
-        )
-        self._end_what_was_left()
-
-    def _end_what_was_left(self) -> None:
-        """Trials of this member that were begun and never answered are nobody's any more."""
-        import optuna
-
-        running = optuna.trial.TrialState.RUNNING
-        for trial in self._study.get_trials(deepcopy=False, states=(running,)):
-            if trial.user_attrs.get("member", 0) == self._seed[1]:
-                self._study.tell(trial.number, state=optuna.trial.TrialState.FAIL)
-
-    @property
-    def answered(self) -> int:
-        """How many proposals have an answer."""
-        import optuna
-
-        done = (optuna.trial.TrialState.COMPLETE,)
-        return len(self._study.get_trials(deepcopy=False, states=done))
-
-    def known(self, found: Sequence[Evaluated]) -> None:
-        """Tell of designs that somebody else proposed, so that the sampler learns from them."""
-        import optuna
-
-        for one in found:
-            shares = self._space.places(one.design.settings)
-            self._study.add_trial(
-                optuna.trial.create_trial(
-                    params=shares,
-                    distributions={name: _distribution() for name in shares},
-                    values=self._values(one),
-                    user_attrs={_EXCESS: self._excess(one)},
-                )
+        self._seed, self._member = (seed, member, shape, int(dear)), member
+        self._space = requirements.spaces[shape]
+        directions = [optuna.study.StudyDirection.MINIMIZE] * len(requirements.objectives)
+        self._study = optuna.create_study(directions=directions)
+        self._shared: Any = None
+        self._others, self._published, self._told = 0, 0, 0
+        if folder is not None:
+            kind = "solved" if dear else "screened"
+            self._shared = optuna.create_study(
+                study_name=f"{self._space.shape}, {kind}, seed {seed}",
+                storage=journal(folder / JOURNAL),
+                directions=directions,
+                load_if_exists=True,
             )
+            self._published = len(self._of_members(own=True))
+
+    def _of_members(self, *, own: bool) -> list[Any]:
+        """The published trials of this member, or of all others."""
+        every = self._shared.get_trials(deepcopy=False)
+        return [one for one in every if (one.user_attrs.get(_MEMBER) == self._member) == own]
+
+    def known(self, found: Iterable[Evaluated]) -> None:
+        """Tell of designs that somebody else proposed, so that the sampler learns from them."""
+        for one in found:
+            places = self._space.places(one.design.settings)
+            self._study.add_trial(_trial(places, self._values(one), self._excess(one)))
 
     def ask(self, count: int, batch: int) -> list[tuple[Any, Design]]:
         """So many designs, each with the trial that is to be told of."""
+        if self._shared is not None:
+            others = self._of_members(own=False)
+            for one in others[self._others :]:
+                excess = one.system_attrs.get(_EXCESS, [0.0])
+                trial = _trial(one.params, one.values, excess)
+                # As one of the generation that the next one is bred from.
+                trial.system_attrs[_GENERATION] = max(batch - 1, 0)
+                self._study.add_trial(trial)
+            self._others = len(others)
         self._study.sampler = self._sampler(batch)
         found = []
         for _ in range(count):
             trial = self._study.ask()
             shares = {one.name: trial.suggest_float(one.name, 0.0, 1.0) for one in self._space.free}
-            if self._seed[1]:
-                trial.set_user_attr("member", self._seed[1])
             found.append((trial, design_of(self._shape, self._space.at(shares))))
         return found
 
     def tell(self, answers: Sequence[tuple[Any, Evaluated]]) -> None:
         """What was found of proposals."""
         for trial, one in answers:
-            trial.set_user_attr(_EXCESS, self._excess(one))
-            self._study.tell(trial, self._values(one))
+            values, excess = self._values(one), self._excess(one)
+            trial.set_user_attr(_EXCESS, excess)
+            self._study.tell(trial, values)
+            self._told += 1
+            # What a search that was stopped has published is there.
+            if self._shared is not None and self._told > self._published:
+                attrs = {_MEMBER: self._member, _NUMBER: self._told}
+                self._shared.add_trial(_trial(trial.params, values, excess, attrs))
 
     def _sampler(self, batch: int) -> optuna.samplers.BaseSampler:
         import optuna
@@ -150,12 +151,24 @@ class Proposals:
         return found or [0.0]
 
 
+def _trial(
+    params: dict[str, float],
+    values: Sequence[float],
+    excess: Sequence[float],
+    attrs: dict[str, Any] | None = None,
+) -> Any:
+    """A finished trial of designs' places, with its constraints where Optuna looks for them."""
+    import optuna
+
+    return optuna.trial.create_trial(
+        params=params,
+        distributions={name: optuna.distributions.FloatDistribution(0.0, 1.0) for name in params},
+        values=list(values),
+        system_attrs={_EXCESS: list(excess)},
+        user_attrs=attrs or {},
+    )
+
+
 def _constraints(trial: Any) -> Sequence[float]:
     found: Sequence[float] = trial.user_attrs[_EXCESS]
     return found
-
-
-def _distribution() -> Any:
-    import optuna
-
-    return optuna.distributions.FloatDistribution(0.0, 1.0)

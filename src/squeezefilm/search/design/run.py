@@ -25,6 +25,7 @@ from squeezefilm.search.design.candidate import (
     Design,
     Evaluated,
     Level,
+    design_of,
     evaluate_all,
 )
 from squeezefilm.search.design.correction import Correction, learned
@@ -49,7 +50,9 @@ _BATCH = 16
 # A design is solved though the screening says that it breaks a limit by up to this share.
 _DOUBT, _CORRECTED_DOUBT = 0.25, 0.08
 # The share of the solved designs that the Bayesian sampler proposes.
-_DEAR = 0.3
+_DEAR = 0.25
+# Designs near each of so many of the front that are screened before the next are solved.
+_NEAR, _FROM = 10, 16
 
 
 @dataclass(frozen=True)
@@ -208,12 +211,26 @@ class SearchRun:
         most = round((1 - _DEAR) * self._asked.solved)
         while (left := most - len(self._seen["solved"])) > 0:
             self._learn()
+            self._screen_beside_the_front(pool)
             chosen = self._worth_solving(min(_BATCH, left))
             if not chosen:
                 return
             self._say_solving("the best that were screened")
             self._evaluated(pool, chosen, "solved")
             self._show("solving the best that were screened")
+
+    def _screen_beside_the_front(self, pool: Workers) -> None:
+        """Look by the screening theory at what differs a little from the solved front: there its
+        correction is best, and limits can be met to the point."""
+        front, solved = self._front(), self._seen["solved"]
+        draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
+        beside = []
+        for one in [front[k] for k in draw.permutation(len(front))[:_FROM]]:
+            space = self.requirements.spaces[one.design.shape]
+            for _ in range(_NEAR):
+                places = space.moved(space.places(one.design.settings), draw)
+                beside.append(design_of(one.design.shape, space.at(places)))
+        self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
 
     def _worth_solving(self, count: int) -> list[Design]:
         """Designs not solved yet, of all shapes together, by what is expected of them."""
@@ -276,8 +293,7 @@ class SearchRun:
         studies = {}
         for shape in shapes:
             studies[shape] = self._proposals(shape, dear=True)
-            if not studies[shape].answered:
-                studies[shape].known([o for o in solved.values() if o.design.shape == shape])
+            studies[shape].known([one for one in solved.values() if one.design.shape == shape])
         while shapes and len(solved) < self._asked.solved:
             before = len(solved)
             for shape in shapes:

@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+
+# How far a neighbour moves along a range, and how often it takes another step or name.
+_STEP, _JUMP = 0.06, 0.12
 
 Setting = float | int | str
 Values = Mapping[str, Setting]
@@ -128,6 +133,18 @@ class Space:
     def places(self, values: Values) -> dict[str, float]:
         """Shares from which `at` makes these values, by name, of what is free."""
         return {one.name: one.place(values) for one in self.free}
+
+    def moved(self, places: Mapping[str, float], draw: np.random.Generator) -> dict[str, float]:
+        """Places a little beside others: lengths and voltages by some percent of their range, each
+        with even odds, steps and names to any other now and then."""
+        found = dict(places)
+        for one in self.free:
+            chance, step = draw.random(), _STEP * draw.standard_normal()
+            if isinstance(one, Number) and chance < 0.5:
+                found[one.name] = float(np.clip(places[one.name] + step, 0.0, 1.0))
+            elif not isinstance(one, Number) and chance < _JUMP:
+                found[one.name] = float(draw.random())
+        return found
 
     def shares(self, values: Values) -> list[float]:
         """Where values lie, each from 0 to 1, of what is free: features of a design."""

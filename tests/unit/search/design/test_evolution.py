@@ -7,7 +7,7 @@ import pytest
 from tests.unit.search.design.made_up import formula, random_designs, requirements
 
 from squeezefilm.search.design.candidate import Design
-from squeezefilm.search.design.evolution import Proposals
+from squeezefilm.search.design.evolution import JOURNAL, Proposals
 from squeezefilm.search.design.front import hypervolume
 
 WORST = np.array([0.7, 5e-4])
@@ -36,24 +36,41 @@ def test_generations_learn_what_is_feasible_and_lose_nothing_to_chance() -> None
 
 
 @pytest.mark.parametrize("dear", [False, True])
-def test_what_was_interrupted_goes_on_as_it_would_have(tmp_path: Path, dear: bool) -> None:
+def test_whoever_asks_again_is_proposed_the_same(tmp_path: Path, dear: bool) -> None:
+    """And publishes nothing twice, wherever the first was killed."""
     wanted = requirements()
-    whole = _run(Proposals(wanted, 0, tmp_path, 1, dear=dear), range(3), 20)
-    other = tmp_path / "other"
-    other.mkdir()
-    first = _run(Proposals(wanted, 0, other, 1, dear=dear), range(2), 20)
+    whole = _run(Proposals(wanted, 0, None, 1, dear=dear), range(3), 20)
+    first = _run(Proposals(wanted, 0, tmp_path, 1, dear=dear), range(2), 20)
     # Asked and never told: the process was killed.
-    Proposals(wanted, 0, other, 1, dear=dear).ask(20, 2)
-    rest = _run(Proposals(wanted, 0, other, 1, dear=dear), range(2, 3), 20)
-    assert first + rest == whole
+    Proposals(wanted, 0, tmp_path, 1, dear=dear).ask(20, 0)
+    again = _run(Proposals(wanted, 0, tmp_path, 1, dear=dear), range(3), 20)
+    assert first == whole[:40]
+    assert again == whole
+    assert len(_published(tmp_path)) == 60
 
 
-def test_hosts_that_share_a_folder_propose_different_designs(tmp_path: Path) -> None:
+def _published(folder: Path) -> list[object]:
+    """The trials in a folder's journal, as Optuna itself reads it."""
+    import optuna
+    from optuna.storages import JournalStorage
+    from optuna.storages.journal import JournalFileBackend
+
+    storage = JournalStorage(JournalFileBackend(str(folder / JOURNAL)))
+    (study,) = optuna.get_all_study_summaries(storage)
+    return list(optuna.load_study(study_name=study.study_name, storage=storage).trials)
+
+
+def test_hosts_that_share_a_folder_propose_different_designs_and_learn_from_each_other(
+    tmp_path: Path,
+) -> None:
     wanted = requirements()
-    one = Proposals(wanted, 0, tmp_path, 1).ask(10, 0)
-    two = Proposals(wanted, 0, tmp_path, 1, member=1).ask(10, 0)
-    assert {d for _, d in one}.isdisjoint(d for _, d in two)
-    assert len({trial.number for trial, _ in [*one, *two]}) == 20
+    one, two = Proposals(wanted, 0, tmp_path, 1), Proposals(wanted, 0, tmp_path, 1, member=1)
+    first = _run(one, range(2))
+    second = _run(two, range(2))
+    assert set(first).isdisjoint(second)
+    assert len(_published(tmp_path)) == len(first) + len(second)
+    alone = _run(Proposals(wanted, 0, None, 1, member=1), range(2))
+    assert second != alone
 
 
 def test_the_dear_sampler_learns_from_what_others_solved() -> None:
