@@ -43,8 +43,23 @@ class SweepOptions:
     answers: Annotated[
         bool, typer.Option("--answers", help="List all that can be asked for, and stop.")
     ] = False
+    sample: Annotated[
+        int | None,
+        typer.Option(
+            help='So many points drawn in the ranges without steps, "actuator.thickness='
+            '1 mm..3 mm", in place of a grid; more of them keep those before.'
+        ),
+    ] = None
+    seed: Annotated[int, typer.Option(help="Of the samples.")] = 0
     jobs: Annotated[
         int | None, typer.Option(help="Processes; as many as there are cores if not given.")
+    ] = None
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            help="A Dask cluster's scheduler, tcp://HOST:8786: its workers answer, not this "
+            "machine. Who reaches it can run any code there."
+        ),
     ] = None
     out: Annotated[
         Path | None,
@@ -82,15 +97,18 @@ def sweep(asked: SweepOptions) -> None:
             vary=asked.vary or (),
             ask=asked.ask or (),
             over=asked.over,
+            sample=asked.sample,
+            seed=asked.seed,
             jobs=asked.jobs or os.cpu_count() or 1,
+            scheduler=asked.scheduler,
             out=asked.out,
             fresh=asked.fresh,
             progress=step,
         )
-        found = sweep_until_stopped(request)
+        found, stopped = sweep_until_stopped(request)
         written = None if asked.out is None else write_sweep(found, asked.out, table=asked.table)
     answer(asked.as_json, found, show_sweep, table=written)
-    if found.missing:
+    if stopped:
         again = "the same command goes on" if asked.out else "add --out DIR to keep what is done"
-        typer.echo(f"stopped, {found.missing} points are missing; {again}", err=True)
-        raise typer.Exit(130)
+        typer.echo(f"{stopped}, {found.missing} points are missing; {again}", err=True)
+        raise typer.Exit(130 if stopped == "stopped" else 2)
