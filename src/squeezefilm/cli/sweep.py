@@ -63,8 +63,13 @@ class SweepOptions:
     ] = None
     out: Annotated[
         Path | None,
-        written_to("Folder for table, JSON and picture; what it has is not computed again."),
+        written_to("Folder for page, table and JSON; what it has is not computed again."),
     ] = None
+    less: Annotated[
+        list[str] | None,
+        typer.Option(help="Answers of which less is better: the page lists what no other beats."),
+    ] = None
+    more: Annotated[list[str] | None, typer.Option(help="Answers of which more is better.")] = None
     table: Annotated[str, typer.Option(help="The table as csv or parquet.")] = "csv"
     fresh: Annotated[bool, typer.Option("--fresh", help="Compute again what the folder has.")] = (
         False
@@ -82,7 +87,9 @@ def sweep(asked: SweepOptions) -> None:
     import os
 
     from squeezefilm.report.sweep.files import require_kind, write_sweep
+    from squeezefilm.report.sweep.page import wishes
     from squeezefilm.report.sweep.terminal import show_answers, show_sweep
+    from squeezefilm.search.answers import asked_for
     from squeezefilm.search.sweep import SweepRequest, sweep_until_stopped
 
     if asked.answers:
@@ -91,6 +98,9 @@ def sweep(asked: SweepOptions) -> None:
     if not asked.targets:
         raise InputError("sweep needs a display: squeezefilm sweep biet2008-plate --vary ... --ask")
     require_kind(asked.table)
+    if asked.less or asked.more:
+        wanted = [(one.column, one.unit) for one in asked_for(asked.ask or ())]
+        wishes(wanted, asked.less or (), asked.more or ())
     with working(asked.as_json) as step:
         request = SweepRequest(
             asked.targets,
@@ -106,8 +116,12 @@ def sweep(asked: SweepOptions) -> None:
             progress=step,
         )
         found, stopped = sweep_until_stopped(request)
-        written = None if asked.out is None else write_sweep(found, asked.out, table=asked.table)
-    answer(asked.as_json, found, show_sweep, table=written)
+        written = None
+        if asked.out is not None:
+            written = write_sweep(
+                found, asked.out, table=asked.table, less=asked.less or (), more=asked.more or ()
+            )
+    answer(asked.as_json, found, show_sweep, page=written)
     if stopped:
         again = "the same command goes on" if asked.out else "add --out DIR to keep what is done"
         typer.echo(f"{stopped}, {found.missing} points are missing; {again}", err=True)
