@@ -6,11 +6,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from contextlib import AbstractContextManager
-    from pathlib import Path
-    from typing import Any, Literal
-
     from numpy.typing import ArrayLike
-
+    from pathlib import Path
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.film.command import FilmAnswer
     from squeezefilm.analysis.friction.command import FrictionAnalysis
@@ -22,8 +19,7 @@ if TYPE_CHECKING:
     from squeezefilm.chain.pad_place import FacePlace
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.chain.rendered_texture import RenderAnalysis
-    from squeezefilm.display import Display, NamedDisplay
-    from squeezefilm.display import load_display as load_display
+    from squeezefilm.display import Display, NamedDisplay, load_display as load_display
     from squeezefilm.distributions import Distribution
     from squeezefilm.errors import SqueezefilmError as SqueezefilmError
     from squeezefilm.film.periodic.profile import GapFunction, GapProfile
@@ -31,13 +27,17 @@ if TYPE_CHECKING:
     from squeezefilm.measure.calibration.blind import BlindPrediction, Score
     from squeezefilm.measure.calibration.folder import FolderCalibration
     from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
-    from squeezefilm.measure.recordings.read import check_recording as check_recording
-    from squeezefilm.measure.recordings.read import read_recording as read_recording
+    from squeezefilm.measure.recordings.read import (
+        check_recording as check_recording,
+        read_recording as read_recording,
+    )
     from squeezefilm.perception.observer import NamedObserver
     from squeezefilm.plate.working_mode import PlateTheory
-    from squeezefilm.presets import display_names as display_names
-    from squeezefilm.presets import study_names as study_names
-    from squeezefilm.presets import texture_names as texture_names
+    from squeezefilm.presets import (
+        display_names as display_names,
+        study_names as study_names,
+        texture_names as texture_names,
+    )
     from squeezefilm.progress import Pace, SayProgress
     from squeezefilm.quantities import (
         Dimensionless,
@@ -56,43 +56,60 @@ if TYPE_CHECKING:
     from squeezefilm.render.motion.stroke import Stroke as _Stroke
     from squeezefilm.render.texture.coordinate import Coordinate, Length, Place
     from squeezefilm.render.texture.gates import speed as speed
-    from squeezefilm.render.texture.image import Image as _Image
-    from squeezefilm.render.texture.image import Share
-    from squeezefilm.render.texture.levels import Amplitude as _Amplitude
-    from squeezefilm.render.texture.levels import FrictionShare, VibrationAmplitude
-    from squeezefilm.render.texture.levels import RelativeFriction as _RelativeFriction
-    from squeezefilm.render.texture.noise import Noise as _Noise
-    from squeezefilm.render.texture.noise import Octaves, Persistence, Seed, Spacing
+    from squeezefilm.render.texture.image import Image as _Image, Share
+    from squeezefilm.render.texture.levels import (
+        Amplitude as _Amplitude,
+        FrictionShare,
+        RelativeFriction as _RelativeFriction,
+        VibrationAmplitude,
+    )
+    from squeezefilm.render.texture.noise import (
+        Noise as _Noise,
+        Octaves,
+        Persistence,
+        Seed,
+        Spacing,
+    )
     from squeezefilm.render.texture.pattern import Pattern
-    from squeezefilm.render.texture.shapes import Band as _Band
-    from squeezefilm.render.texture.shapes import Bump as _Bump
-    from squeezefilm.render.texture.shapes import SineWave as _SineWave
-    from squeezefilm.render.texture.shapes import SquareWave as _SquareWave
-    from squeezefilm.report.subjects import plot as plot
-    from squeezefilm.report.subjects import write_mode as write_mode
-    from squeezefilm.report.subjects import write_report as write_report
+    from squeezefilm.render.texture.shapes import (
+        Band as _Band,
+        Bump as _Bump,
+        SineWave as _SineWave,
+        SquareWave as _SquareWave,
+    )
+    from squeezefilm.report.subjects import (
+        plot as plot,
+        write_mode as write_mode,
+        write_report as write_report,
+    )
     from squeezefilm.search.swept import Sweep
     from squeezefilm.session.play.plan import PlayView
     from squeezefilm.session.record.trace import read_trace as read_trace
-    from squeezefilm.study.adaptive.bayesian import AdaptiveDesign as _AdaptiveDesign
-    from squeezefilm.study.adaptive.bayesian import BayesianAdaptive as BayesianAdaptive
-    from squeezefilm.study.adaptive.bayesian import Interest
+    from squeezefilm.study.adaptive.bayesian import (
+        AdaptiveDesign as _AdaptiveDesign,
+        BayesianAdaptive as BayesianAdaptive,
+        Interest,
+    )
     from squeezefilm.study.conduct.trial_by_trial import Examiner
     from squeezefilm.study.design.plan import StudyPlan
     from squeezefilm.study.design.study_design import NamedDesign
     from squeezefilm.study.psychometric.fit import PsychometricFit
-    from squeezefilm.study.psychometric.function import Axis, Shape
     from squeezefilm.study.psychometric.function import (
+        Axis,
         PsychometricFunction as _PsychometricFunction,
+        Shape,
     )
     from squeezefilm.study.psychometric.prior import PsychometricPrior as PsychometricPrior
     from squeezefilm.study.simulated.answers import SimulatedAnswers
     from squeezefilm.study.simulated.chain_tables import ChainTables
     from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.study.tasks.analyze import analyze_study as analyze_study
-    from squeezefilm.texture_file import NamedTexture
-    from squeezefilm.texture_file import load_texture as load_texture
-    from squeezefilm.texture_file import save_texture as save_texture
+    from squeezefilm.texture_file import (
+        NamedTexture,
+        load_texture as load_texture,
+        save_texture as save_texture,
+    )
+    from typing import Any, Literal
     def replaced(display: NamedDisplay | str | Path, values: Mapping[str, float | str]) -> Display:
         """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``."""
     def predict(
@@ -195,6 +212,8 @@ if TYPE_CHECKING:
         vary: Mapping[str, Any] | Sequence[str] = ...,
         ask: Sequence[str] | str = ...,
         over: str | Path | None = ...,
+        sample: int | None = ...,
+        seed: int = ...,
         jobs: int = ...,
         scheduler: str | None = ...,
         out: str | Path | None = ...,
