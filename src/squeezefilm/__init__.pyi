@@ -6,8 +6,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from contextlib import AbstractContextManager
-    from numpy.typing import ArrayLike
     from pathlib import Path
+    from typing import Any, Literal
+
+    from numpy.typing import ArrayLike
+
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.film.command import FilmAnswer
     from squeezefilm.analysis.friction.command import FrictionAnalysis
@@ -19,7 +22,8 @@ if TYPE_CHECKING:
     from squeezefilm.chain.pad_place import FacePlace
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.chain.rendered_texture import RenderAnalysis
-    from squeezefilm.display import Display, NamedDisplay, load_display as load_display
+    from squeezefilm.display import Display, NamedDisplay
+    from squeezefilm.display import load_display as load_display
     from squeezefilm.distributions import Distribution
     from squeezefilm.errors import SqueezefilmError as SqueezefilmError
     from squeezefilm.film.periodic.profile import GapFunction, GapProfile
@@ -29,13 +33,19 @@ if TYPE_CHECKING:
     from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
     from squeezefilm.measure.recordings.read import (
         check_recording as check_recording,
+    )
+    from squeezefilm.measure.recordings.read import (
         read_recording as read_recording,
     )
     from squeezefilm.perception.observer import NamedObserver
     from squeezefilm.plate.working_mode import PlateTheory
     from squeezefilm.presets import (
         display_names as display_names,
+    )
+    from squeezefilm.presets import (
         study_names as study_names,
+    )
+    from squeezefilm.presets import (
         texture_names as texture_names,
     )
     from squeezefilm.progress import Pace, SayProgress
@@ -56,15 +66,22 @@ if TYPE_CHECKING:
     from squeezefilm.render.motion.stroke import Stroke as _Stroke
     from squeezefilm.render.texture.coordinate import Coordinate, Length, Place
     from squeezefilm.render.texture.gates import speed as speed
-    from squeezefilm.render.texture.image import Image as _Image, Share
+    from squeezefilm.render.texture.image import Image as _Image
+    from squeezefilm.render.texture.image import Share
     from squeezefilm.render.texture.levels import (
         Amplitude as _Amplitude,
+    )
+    from squeezefilm.render.texture.levels import (
         FrictionShare,
-        RelativeFriction as _RelativeFriction,
         VibrationAmplitude,
+    )
+    from squeezefilm.render.texture.levels import (
+        RelativeFriction as _RelativeFriction,
     )
     from squeezefilm.render.texture.noise import (
         Noise as _Noise,
+    )
+    from squeezefilm.render.texture.noise import (
         Octaves,
         Persistence,
         Seed,
@@ -73,13 +90,23 @@ if TYPE_CHECKING:
     from squeezefilm.render.texture.pattern import Pattern
     from squeezefilm.render.texture.shapes import (
         Band as _Band,
+    )
+    from squeezefilm.render.texture.shapes import (
         Bump as _Bump,
+    )
+    from squeezefilm.render.texture.shapes import (
         SineWave as _SineWave,
+    )
+    from squeezefilm.render.texture.shapes import (
         SquareWave as _SquareWave,
     )
     from squeezefilm.report.subjects import (
         plot as plot,
+    )
+    from squeezefilm.report.subjects import (
         write_mode as write_mode,
+    )
+    from squeezefilm.report.subjects import (
         write_report as write_report,
     )
     from squeezefilm.search.swept import Sweep
@@ -87,7 +114,11 @@ if TYPE_CHECKING:
     from squeezefilm.session.record.trace import read_trace as read_trace
     from squeezefilm.study.adaptive.bayesian import (
         AdaptiveDesign as _AdaptiveDesign,
+    )
+    from squeezefilm.study.adaptive.bayesian import (
         BayesianAdaptive as BayesianAdaptive,
+    )
+    from squeezefilm.study.adaptive.bayesian import (
         Interest,
     )
     from squeezefilm.study.conduct.trial_by_trial import Examiner
@@ -96,8 +127,10 @@ if TYPE_CHECKING:
     from squeezefilm.study.psychometric.fit import PsychometricFit
     from squeezefilm.study.psychometric.function import (
         Axis,
-        PsychometricFunction as _PsychometricFunction,
         Shape,
+    )
+    from squeezefilm.study.psychometric.function import (
+        PsychometricFunction as _PsychometricFunction,
     )
     from squeezefilm.study.psychometric.prior import PsychometricPrior as PsychometricPrior
     from squeezefilm.study.simulated.answers import SimulatedAnswers
@@ -106,10 +139,13 @@ if TYPE_CHECKING:
     from squeezefilm.study.tasks.analyze import analyze_study as analyze_study
     from squeezefilm.texture_file import (
         NamedTexture,
+    )
+    from squeezefilm.texture_file import (
         load_texture as load_texture,
+    )
+    from squeezefilm.texture_file import (
         save_texture as save_texture,
     )
-    from typing import Any, Literal
     def replaced(display: NamedDisplay | str | Path, values: Mapping[str, float | str]) -> Display:
         """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``."""
     def predict(

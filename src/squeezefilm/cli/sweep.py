@@ -71,6 +71,10 @@ class SweepOptions:
     ] = None
     more: Annotated[list[str] | None, typer.Option(help="Answers of which more is better.")] = None
     table: Annotated[str, typer.Option(help="The table as csv or parquet.")] = "csv"
+    compare: Annotated[
+        str | None,
+        typer.Option(help="Two rows of what --out has, from 1, side by side: --compare 3,17."),
+    ] = None
     fresh: Annotated[bool, typer.Option("--fresh", help="Compute again what the folder has.")] = (
         False
     )
@@ -86,6 +90,7 @@ def sweep(asked: SweepOptions) -> None:
     """
     import os
 
+    from squeezefilm.report.sweep.compared import compared_rows, show_comparison
     from squeezefilm.report.sweep.files import require_kind, write_sweep
     from squeezefilm.report.sweep.page import wishes
     from squeezefilm.report.sweep.terminal import show_answers, show_sweep
@@ -94,6 +99,9 @@ def sweep(asked: SweepOptions) -> None:
 
     if asked.answers:
         show_answers()
+        return
+    if asked.compare is not None:
+        show_comparison(compared_rows(asked.out, asked.compare))
         return
     if not asked.targets:
         raise InputError("sweep needs a display: squeezefilm sweep biet2008-plate --vary ... --ask")
