@@ -15,7 +15,7 @@ Row = tuple[str, str, str, str]
 
 
 def compared_rows(folder: Path | None, rows: str) -> tuple[Row, ...]:
-    """Of two rows of ``sweep.csv`` in a folder, counted from 1 (``"3,17"``), the columns that differ.
+    """What differs between two rows of ``sweep.csv`` in a folder, counted from 1 (``"3,17"``).
 
     Raises `InputError` for a folder without a sweep, and for rows that it does not have.
     """
