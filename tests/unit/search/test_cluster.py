@@ -123,7 +123,11 @@ def test_a_sweep_is_the_same_through_a_cluster_whose_worker_and_scheduler_are_ki
                 cluster.kill_scheduler()
 
         request = SweepRequest(
-            "biet2008-stator", **asked, scheduler=cluster.address, out=tmp_path, progress=tell
+            sf.load_display("biet2008-stator"),
+            **asked,
+            scheduler=cluster.address,
+            out=tmp_path,
+            progress=tell,
         )
         part, why = sweep_until_stopped(request)
         assert "answers no more" in why
