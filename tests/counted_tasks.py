@@ -35,6 +35,14 @@ def whose(number: int, seconds: float = 0.0) -> tuple[int, int]:
     return number, os.getpid()
 
 
+def busy(seconds: float) -> int:
+    """Computes for so many seconds of this process's own time; how many rounds it made."""
+    rounds, ends = 0, time.process_time() + seconds
+    while time.process_time() < ends:
+        rounds += sum(range(1000)) > 0
+    return rounds
+
+
 def lines(folder: Path, name: str) -> Counter[int]:
     """How often each number stands in a file; of a process killed while it wrote, what is whole."""
     file = folder / name

@@ -195,6 +195,8 @@ if TYPE_CHECKING:
         vary: Mapping[str, Any] | Sequence[str] = ...,
         ask: Sequence[str] | str = ...,
         over: str | Path | None = ...,
+        sample: int | None = ...,
+        seed: int = ...,
         jobs: int = ...,
         scheduler: str | None = ...,
         out: str | Path | None = ...,

@@ -43,14 +43,38 @@ class SweepOptions:
     answers: Annotated[
         bool, typer.Option("--answers", help="List all that can be asked for, and stop.")
     ] = False
+    sample: Annotated[
+        int | None,
+        typer.Option(
+            help='So many points drawn in the ranges without steps, "actuator.thickness='
+            '1 mm..3 mm", in place of a grid; more of them keep those before.'
+        ),
+    ] = None
+    seed: Annotated[int, typer.Option(help="Of the samples.")] = 0
     jobs: Annotated[
         int | None, typer.Option(help="Processes; as many as there are cores if not given.")
     ] = None
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            help="A Dask cluster's scheduler, tcp://HOST:8786: its workers answer, not this "
+            "machine. Who reaches it can run any code there."
+        ),
+    ] = None
     out: Annotated[
         Path | None,
-        written_to("Folder for table, JSON and picture; what it has is not computed again."),
+        written_to("Folder for page, table and JSON; what it has is not computed again."),
     ] = None
+    less: Annotated[
+        list[str] | None,
+        typer.Option(help="Answers of which less is better: the page lists what no other beats."),
+    ] = None
+    more: Annotated[list[str] | None, typer.Option(help="Answers of which more is better.")] = None
     table: Annotated[str, typer.Option(help="The table as csv or parquet.")] = "csv"
+    compare: Annotated[
+        str | None,
+        typer.Option(help="Two rows of what --out has, from 1, side by side: --compare 3,17."),
+    ] = None
     fresh: Annotated[bool, typer.Option("--fresh", help="Compute again what the folder has.")] = (
         False
     )
@@ -66,31 +90,47 @@ def sweep(asked: SweepOptions) -> None:
     """
     import os
 
+    from squeezefilm.report.sweep.compared import compared_rows, show_comparison
     from squeezefilm.report.sweep.files import require_kind, write_sweep
+    from squeezefilm.report.sweep.page import wishes
     from squeezefilm.report.sweep.terminal import show_answers, show_sweep
+    from squeezefilm.search.answers import asked_for
     from squeezefilm.search.sweep import SweepRequest, sweep_until_stopped
 
     if asked.answers:
         show_answers()
         return
+    if asked.compare is not None:
+        show_comparison(compared_rows(asked.out, asked.compare))
+        return
     if not asked.targets:
         raise InputError("sweep needs a display: squeezefilm sweep biet2008-plate --vary ... --ask")
     require_kind(asked.table)
+    if asked.less or asked.more:
+        wanted = [(one.column, one.unit) for one in asked_for(asked.ask or ())]
+        wishes(wanted, asked.less or (), asked.more or ())
     with working(asked.as_json) as step:
         request = SweepRequest(
             asked.targets,
             vary=asked.vary or (),
             ask=asked.ask or (),
             over=asked.over,
+            sample=asked.sample,
+            seed=asked.seed,
             jobs=asked.jobs or os.cpu_count() or 1,
+            scheduler=asked.scheduler,
             out=asked.out,
             fresh=asked.fresh,
             progress=step,
         )
-        found = sweep_until_stopped(request)
-        written = None if asked.out is None else write_sweep(found, asked.out, table=asked.table)
-    answer(asked.as_json, found, show_sweep, table=written)
-    if found.missing:
+        found, stopped = sweep_until_stopped(request)
+        written = None
+        if asked.out is not None:
+            written = write_sweep(
+                found, asked.out, table=asked.table, less=asked.less or (), more=asked.more or ()
+            )
+    answer(asked.as_json, found, show_sweep, page=written)
+    if stopped:
         again = "the same command goes on" if asked.out else "add --out DIR to keep what is done"
-        typer.echo(f"stopped, {found.missing} points are missing; {again}", err=True)
-        raise typer.Exit(130)
+        typer.echo(f"{stopped}, {found.missing} points are missing; {again}", err=True)
+        raise typer.Exit(130 if stopped == "stopped" else 2)

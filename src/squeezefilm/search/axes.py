@@ -37,13 +37,14 @@ class Axis:
     """Values that change together: of one name, or of the columns of a file.
 
     `steps` has a row for each step and in it a value for each of `names`; numbers are SI in
-    `units`, words have None there.
+    `units`, words have None there. Of samples, `sampled` says how each name was drawn.
     """
 
     names: tuple[str, ...]
     units: tuple[si.Unit | None, ...]
     steps: tuple[tuple[Value, ...], ...]
     logarithmic: bool = False
+    sampled: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.steps)
@@ -83,7 +84,7 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
     of the operating options. Raises `InputError` for a name that is not known, with those near it,
     and for a value that is none, of another dimension, or twice the same.
     """
-    option, unit, whole = _what(name, display)
+    option, unit, whole = what_is_varied(name, display)
     logarithmic = False
     if isinstance(values, str):
         spaced = _RANGE.fullmatch(values)
@@ -95,7 +96,8 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
         else:
             if ".." in values and unit is not None:
                 raise InputError(
-                    f"{name}={values} has no number of steps; write it behind a colon: {values}:9"
+                    f"{name}={values} has no number of steps; write it behind a colon, {values}:9, "
+                    "or draw samples in it with --sample 200"
                 )
             parts = values.split("," if option is None else option.between)
             found = [_value(name, part.strip(), option, unit) for part in parts]
@@ -150,7 +152,7 @@ def _head(cell: str) -> tuple[str, str]:
 
 def _column(name: str, cells: list[str], display: Display, path: str | Path) -> Axis:
     """A column of a file; the same value may stand there more than once."""
-    option, unit, whole = _what(name, display)
+    option, unit, whole = what_is_varied(name, display)
     steps = []
     for line, cell in enumerate(cells, 2):
         try:
@@ -161,7 +163,7 @@ def _column(name: str, cells: list[str], display: Display, path: str | Path) -> 
     return Axis((name,), (unit,), tuple(steps))
 
 
-def _what(name: str, display: Display) -> tuple[Option | None, si.Unit | None, bool]:
+def what_is_varied(name: str, display: Display) -> tuple[Option | None, si.Unit | None, bool]:
     """The operating option of a name, if it is one; the unit of its numbers; whether they are
     whole."""
     if name in OPTIONS:
@@ -191,7 +193,7 @@ def _instead(name: str, display: Display, error: InputError) -> str:
 
 def _spaced(name: str, asked: re.Match[str], unit: si.Unit) -> Iterator[float]:
     """The values of a range, its ends as they are written."""
-    first, last = (_quantity(name, asked[end].strip(), unit) for end in ("first", "last"))
+    first, last = (quantity_of_text(name, asked[end].strip(), unit) for end in ("first", "last"))
     steps = int(asked["steps"])
     require_within(SWEEP_STEPS, steps, f"steps of {name}")
     if steps < 2 or first == last:
@@ -216,7 +218,7 @@ def _value(name: str, given: Any, option: Option | None, unit: si.Unit | None) -
         assert option is not None
         return option.word(given)
     if isinstance(given, str):
-        number = _quantity(name, given, unit)
+        number = quantity_of_text(name, given, unit)
         return number if option is None else option.number(number)
     if isinstance(given, bool) or not isinstance(given, int | float | np.number):
         raise InputError(f"{name} = {given!r:.60} is no number and no text; write a quantity")
@@ -225,7 +227,8 @@ def _value(name: str, given: Any, option: Option | None, unit: si.Unit | None) -
     return float(given) if option is None else option.number(float(given))
 
 
-def _quantity(name: str, text: str, unit: si.Unit) -> float:
+def quantity_of_text(name: str, text: str, unit: si.Unit) -> float:
+    """The number (SI) of a text for a name. Raises `InputError` for what is none of its unit."""
     try:
         return si.parse_quantity(text, unit)
     except InputError as error:
@@ -254,8 +257,13 @@ def axes_of(
     )
     if over is not None:
         axes.append(axis_of_file(over, display))
+    require_each_once(axes)
+    return tuple(axes)
+
+
+def require_each_once(axes: Sequence[Axis]) -> None:
+    """Refuse a name that is varied twice. Raises `InputError`."""
     names = [name for axis in axes for name in axis.names]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise InputError(f"{twice} is varied twice; vary it once", quantity=twice)
-    return tuple(axes)

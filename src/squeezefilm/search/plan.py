@@ -17,10 +17,11 @@ from squeezefilm.analysis.uncertainty import SAMPLES
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SWEEP_POINTS, require_within
-from squeezefilm.search.answers import Asked, asked_for
-from squeezefilm.search.axes import DISPLAY, Axis, axes_of
+from squeezefilm.search.answers import FOLLOWED, Asked, asked_for
+from squeezefilm.search.axes import DISPLAY, Axis, axes_of, require_each_once
 from squeezefilm.search.options import OPTIONS
 from squeezefilm.search.points import Point
+from squeezefilm.search.sampled import axes_of_ranges
 from squeezefilm.search.verbs import VERBS
 
 
@@ -29,14 +30,21 @@ def plan_of(
     vary: Mapping[str, Any] | Sequence[str],
     ask: Sequence[str] | str,
     over: str | Path | None,
+    sample: tuple[int | None, int] = (None, 0),
 ) -> Plan:
-    """The points of a sweep, all checked. Raises `InputError` for what cannot be asked."""
+    """The points of a sweep, all checked; `sample` is how many to draw in ranges, and the seed.
+
+    Raises `InputError` for what cannot be asked."""
     given = [display] if isinstance(display, Display) else display
     displays = [one if isinstance(one, Display) else load_display(one) for one in given]
     if not displays:
         raise InputError("there is no display to sweep; name at least one")
     asked = asked_for([ask] if isinstance(ask, str) else ask)
-    axes = axes_of(displays[0], vary, over)
+    varied = axes_of_ranges(displays[0], vary, *sample)
+    axes = (*varied.axes, *axes_of(displays[0], varied.others, over))
+    require_each_once(axes)
+    if varied.axes and any(one.verb == FOLLOWED for one in asked):
+        raise InputError("modes are followed over a grid, not over samples; give ranges steps")
     if len(displays) > 1:
         labels = tuple((name,) for name in told_apart(displays))
         axes = (Axis((DISPLAY,), (None,), labels), *axes)

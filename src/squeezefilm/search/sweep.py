@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,6 +14,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.display import Display, NamedDisplay
+from squeezefilm.errors import WorkersError
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import config_hash, stamp
@@ -36,6 +36,8 @@ class SweepRequest:
     vary: Mapping[str, Any] | Sequence[str] = ()
     ask: Sequence[str] | str = ()
     over: str | Path | None = None
+    sample: int | None = None
+    seed: int = 0
     jobs: int = 1
     scheduler: str | None = None
     out: str | Path | None = None
@@ -55,6 +57,9 @@ def sweep(asked: SweepRequest) -> Sweep:
         ask: names of numbers in the JSON of predict, render, plate, friction and analyze; the
             quickest verb that knows a name is asked. ``modes`` follows modes by their shapes.
         over: a CSV file whose header names what is varied, a point in each row.
+        sample: how many points to draw in the ranges of `vary` without steps (``"1 mm..3 mm"``,
+            ``"1 V..100 V:log"``), see `search.sampled`; more of them keep those before.
+        seed: of the samples.
         jobs: processes; more than one in a script needs ``if __name__ == "__main__":``.
         scheduler: a Dask cluster's, ``"tcp://host:8786"``; its workers answer in place of `jobs`.
         out: a folder that keeps every answer as it comes, and has those of before.
@@ -75,7 +80,9 @@ class Run:
 
     def __init__(self, asked: SweepRequest) -> None:
         si.require("jobs", asked.jobs, at_least=1)
-        self.plan = plan_of(asked.display, asked.vary, asked.ask, asked.over)
+        self.plan = plan_of(
+            asked.display, asked.vary, asked.ask, asked.over, (asked.sample, asked.seed)
+        )
         self._asked, self._tell = asked, asked.progress or (lambda _: None)
         self._kept = Kept(None if asked.out is None else Path(asked.out))
         self._found: dict[tuple[int, str], Answer] = {}
@@ -193,9 +200,15 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 3600:.1f} h"
 
 
-def sweep_until_stopped(asked: SweepRequest) -> Sweep:
-    """A sweep that Ctrl-C stops, with what was computed until then. Raises as `sweep`."""
+def sweep_until_stopped(asked: SweepRequest) -> tuple[Sweep, str]:
+    """A sweep that Ctrl-C or the end of a cluster stops, with what was computed until then, and
+    what stopped it (empty where nothing did). Raises as `sweep`."""
     run = Run(asked)
-    with contextlib.suppress(KeyboardInterrupt):
+    stopped = ""
+    try:
         run.finish()
-    return run.result()
+    except KeyboardInterrupt:
+        stopped = "stopped"
+    except WorkersError as error:
+        stopped = str(error)
+    return run.result(), stopped

@@ -24,7 +24,7 @@ def test_a_sweep_is_shown_and_written_where_asked(tmp_path: Path) -> None:
     shown = run(*ASKED, "--jobs", "1", "--out", str(tmp_path))
     assert "biet2008-stator: 3 points" in shown
     assert "3 answers computed" in shown
-    assert f"table: {tmp_path / 'sweep.csv'}" in shown.replace("\n", "")
+    assert f"page: {tmp_path / 'index.html'}" in shown.replace("\n", "")
     again = json.loads(run(*ASKED, "--jobs", "1", "--out", str(tmp_path), "--json"))
     assert (again["answers_computed"], again["answers_kept"]) == (0, 3)
     assert [row["voltage_V"] for row in again["rows"]] == [50.0, 75.0, 100.0]
@@ -41,6 +41,25 @@ def test_a_sweep_without_a_display_or_with_another_table_is_refused() -> None:
     ):
         with pytest.raises(InputError, match=message):
             CliRunner().invoke(app, arguments, catch_exceptions=False)
+
+
+def test_samples_are_drawn_and_what_no_other_beats_is_on_the_page(tmp_path: Path) -> None:
+    varied = ["--vary", "voltage=20 V..100 V:log", "--vary", "speed=20 mm/s..0.2 m/s"]
+    wanted = ["--ask", "relative_friction,vibration_amplitude"]
+    asked = ["sweep", STATOR, *varied, *wanted, "--jobs", "1", "--out", str(tmp_path)]
+    found = json.loads(run(*asked, "--sample", "10", "--json"))
+    assert len(found["rows"]) == 10
+    more = json.loads(
+        run(*asked, "--sample", "16", "--json", "--less", "relative_friction,vibration_amplitude")
+    )
+    assert (more["answers_computed"], more["answers_kept"]) == (6, 10)
+    assert more["rows"][:10] == found["rows"]
+    page = (tmp_path / "index.html").read_text()
+    assert "Points that no other beats" in page
+    assert "of 16 points; rows are those of the table" in page
+    assert "share" in page.lower()
+    with pytest.raises(InputError, match="--more lag was not asked for"):
+        CliRunner().invoke(app, [*asked, "--more", "lag"], catch_exceptions=False)
 
 
 def test_one_that_is_stopped_says_so_and_ends_as_interrupted(

@@ -7,8 +7,10 @@ import pytest
 from tests.cluster import LocalCluster, killed, local_cluster
 from tests.counted_tasks import counted, deadly, lines, refused, whose
 
+import squeezefilm as sf
 from squeezefilm.errors import WorkersError
 from squeezefilm.search import cluster as clusters
+from squeezefilm.search.sweep import SweepRequest, sweep_until_stopped
 from squeezefilm.search.tasks import Lost
 from squeezefilm.search.workers import workers
 
@@ -100,6 +102,43 @@ def test_a_scheduler_that_is_killed_is_told_and_the_rest_is_answered_by_the_next
     assert all(begun[key] == 1 for key in kept)
     # Of each of two workers the one that it was at, and one whose answer was on its way.
     assert sum(begun.values()) <= len(tasks) + 4
+
+
+def test_a_sweep_is_the_same_through_a_cluster_whose_worker_and_scheduler_are_killed(
+    tmp_path: Path,
+) -> None:
+    asked: dict[str, Any] = {
+        "vary": {"voltage": "20 V..100 V:20", "normal_force": "0.3 N, 0.5 N"},
+        "ask": "relative_friction,vibration_amplitude",
+    }
+    here = sf.sweep("biet2008-stator", **asked)
+    with local_cluster(2) as cluster:
+        told: list[str] = []
+
+        def tell(text: str) -> None:
+            told.append(text)
+            if text.startswith("8 of 40"):
+                killed(cluster.workers[0])
+            if text.startswith("16 of 40"):
+                cluster.kill_scheduler()
+
+        request = SweepRequest(
+            sf.load_display("biet2008-stator"),
+            **asked,
+            scheduler=cluster.address,
+            out=tmp_path,
+            progress=tell,
+        )
+        part, why = sweep_until_stopped(request)
+        assert "answers no more" in why
+        assert part.missing == 40 - part.answered <= 24
+        cluster.workers[1].wait(60)
+        cluster.start_scheduler()
+        cluster.start_workers(2)
+        there = sf.sweep("biet2008-stator", **asked, scheduler=cluster.address, out=tmp_path)
+    assert there.computed == part.missing
+    for name in here.names:
+        assert there.column(name).tolist() == here.column(name).tolist()
 
 
 def test_a_task_that_workers_die_of_is_lost_and_no_other(

@@ -88,12 +88,14 @@ def test_a_sweep_that_is_stopped_keeps_what_it_has_and_goes_on(
     asked = SweepRequest(sf.load_display(STATOR), vary=VOLTS, ask="relative_friction", out=tmp_path)
     with monkeypatch.context() as patched:
         patched.setattr(sweeps, "answered", stopped)
-        half = sweep_until_stopped(asked)
+        half, why = sweep_until_stopped(asked)
+        assert why == "stopped"
         with pytest.raises(KeyboardInterrupt):
             Run(dataclasses.replace(asked, fresh=True)).finish()
     assert half.reasons == ("", "", NOT_YET)
     assert (half.missing, half.answered) == (1, 2)
-    whole = sweep_until_stopped(asked)
+    whole, why = sweep_until_stopped(asked)
+    assert why == ""
     assert (whole.missing, whole.computed, whole.kept) == (0, 1, 2)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Sequence
 from pathlib import Path
 
 from squeezefilm.errors import InputError
@@ -11,6 +12,7 @@ from squeezefilm.formats.traces import parquet_of_columns
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.sweep.figures import sweep_figure
+from squeezefilm.report.sweep.page import sweep_page, wishes
 from squeezefilm.search.swept import Sweep
 
 KINDS = ("csv", "parquet")
@@ -41,12 +43,22 @@ def require_kind(table: str) -> None:
         raise InputError(f"a table cannot be '{table}'; it may be csv or parquet")
 
 
-def write_sweep(found: Sweep, folder: Path, *, table: str = "csv") -> Path:
-    """Write sweep.csv (or sweep.parquet), sweep.json and sweep.png into `folder`; the table's path.
+def write_sweep(
+    found: Sweep,
+    folder: Path,
+    *,
+    table: str = "csv",
+    less: Sequence[str] = (),
+    more: Sequence[str] = (),
+) -> Path:
+    """Write index.html with its pictures, sweep.csv (or sweep.parquet), sweep.json and sweep.png
+    into `folder`; the page's path. `less` and `more` name answers of which less or more is better.
 
-    Raises `InputError` for another kind of table, and where the folder cannot be written to.
+    Raises `InputError` for another kind of table, for a name that was not asked for, and where the
+    folder cannot be written to.
     """
     require_kind(table)
+    better = wishes([(one.name, one.unit) for one in found.columns], less, more)
     folder = require_folder(folder)
     name = f"sweep.{table}"
     summary = found.summary()
@@ -55,7 +67,8 @@ def write_sweep(found: Sweep, folder: Path, *, table: str = "csv") -> Path:
         if table == "csv"
         else parquet_of_columns(found.table(), summary["provenance"]),
         "sweep.json": json_text(summary),
-        "sweep.png": style.png(sweep_figure(found)),
     }
+    files |= sweep_page(found, list(files), better)
+    files.setdefault("sweep.png", style.png(sweep_figure(found)))
     write_folder(folder, files)
-    return folder / name
+    return folder / "index.html"

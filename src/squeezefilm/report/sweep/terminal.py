@@ -7,7 +7,7 @@ import re
 
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.terminal import heading, plain_console, table
-from squeezefilm.report.sweep.words import cells, labelled, name_of, step_words
+from squeezefilm.report.sweep.words import cells, each_name, labelled, name_of, step_words
 from squeezefilm.search.answers import catalogue, without_units
 from squeezefilm.search.swept import NOT_YET, Sweep, counted
 
@@ -25,8 +25,9 @@ def sweep_columns(found: Sweep) -> list[tuple[str, list[str]]]:
     every = list(itertools.product(*(range(len(axis)) for axis in found.axes)))
     columns = []
     for number, axis in enumerate(found.axes):
-        steps = [step_words(axis, k) for k in range(len(axis))]
-        columns.append((name_of(axis), [steps[point[number]] for point in every]))
+        for one in each_name(axis):
+            steps = [step_words(one, k) for k in range(len(one))]
+            columns.append((name_of(one), [steps[point[number]] for point in every]))
     for column in found.columns:
         symbol, words = cells(column.values, column.unit)
         columns.append((labelled(name_of(column), symbol), words))

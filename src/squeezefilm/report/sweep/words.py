@@ -31,6 +31,14 @@ def quantity_of(column: Column) -> str:
     return (name if mode_of(column) is None else name.rpartition(".")[2]).replace("_", " ")
 
 
+def each_name(axis: Axis) -> list[Axis]:
+    """An axis on which several values change together as one for each of them."""
+    return [
+        Axis((name,), (unit,), tuple((step[k],) for step in axis.steps))
+        for k, (name, unit) in enumerate(zip(axis.names, axis.units, strict=True))
+    ]
+
+
 def step_words(axis: Axis, number: int) -> str:
     """One step of an axis in words: ``1.5 mm``."""
     return ", ".join(

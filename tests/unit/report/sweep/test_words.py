@@ -178,12 +178,15 @@ def test_what_cannot_be_drawn_says_why(
 
 
 def test_files_are_written_whole_in_either_kind(tmp_path: Path) -> None:
-    assert write_sweep(LINE, tmp_path / "a") == tmp_path / "a" / "sweep.csv"
+    assert write_sweep(LINE, tmp_path / "a") == tmp_path / "a" / "index.html"
     names = {one.name for one in (tmp_path / "a").iterdir()}
-    assert names == {"sweep.csv", "sweep.json", "sweep.png"}
+    assert names == {"index.html", "effects.png", "tradeoffs.png"} | {
+        "sweep.csv", "sweep.json", "sweep.png",
+    }  # fmt: skip
     rows = json.loads((tmp_path / "a" / "sweep.json").read_text())["rows"]
     assert [row["relative_friction"] for row in rows] == [0.3, None, 0.5]
-    assert write_sweep(LINE, tmp_path / "b", table="parquet").name == "sweep.parquet"
+    write_sweep(LINE, tmp_path / "b", table="parquet")
+    assert (tmp_path / "b" / "sweep.parquet").exists()
     with pytest.raises(InputError, match="may be csv or parquet"):
         require_kind("xlsx")
     (tmp_path / "file").write_text("")

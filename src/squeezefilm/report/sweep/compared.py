@@ -1,0 +1,66 @@
+"""Two rows of a sweep's table side by side: what differs between them, and what both answer."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from squeezefilm.errors import InputError
+from squeezefilm.report.kit.terminal import heading, plain_console, table
+
+Row = tuple[str, str, str, str]
+"""A name with its unit, both values as they stand in the table, and the second over the first."""
+
+
+def compared_rows(folder: Path | None, rows: str) -> tuple[Row, ...]:
+    """What differs between two rows of ``sweep.csv`` in a folder, counted from 1 (``"3,17"``).
+
+    Raises `InputError` for a folder without a sweep, and for rows that it does not have.
+    """
+    file = None if folder is None else folder / "sweep.csv"
+    if file is None or not file.is_file():
+        raise InputError(
+            "rows are compared of a sweep's table; name the folder that has its sweep.csv with "
+            "--out DIR",
+            quantity="compare",
+        )
+    with file.open(newline="", encoding="utf-8") as lines:
+        head, *body = list(csv.reader(lines))
+    numbers = re.fullmatch(r"\s*(\d{1,9})\s*,\s*(\d{1,9})\s*", rows)
+    places = [int(one) for one in numbers.groups()] if numbers else []
+    if not places or not all(1 <= one <= len(body) for one in places):
+        raise InputError(
+            f"--compare {rows:.40} names no two rows; write two numbers from 1 to {len(body)}, as "
+            "in --compare 1,2",
+            quantity="compare",
+        )
+    first, second = (body[one - 1] for one in places)
+    pairs = zip(head, first, second, strict=True)
+    return tuple((name, a, b, _ratio(a, b)) for name, a, b in pairs if a != b)
+
+
+def _ratio(first: str, second: str) -> str:
+    try:
+        return f"{float(second) / float(first):.4g}"
+    except (ValueError, ZeroDivisionError):
+        return ""
+
+
+def show_comparison(found: Sequence[Row]) -> None:
+    """Print what differs; numbers are SI with the unit in the name."""
+    console = plain_console()
+    heading(console, "What differs (SI units)")
+    if not found:
+        console.print("nothing: both rows say the same")
+        return
+    shown = [(name, _short(a), _short(b), ratio) for name, a, b, ratio in found]
+    table(console, ("", "first", "second", "second / first"), shown)
+
+
+def _short(text: str) -> str:
+    try:
+        return f"{float(text):.5g}"
+    except ValueError:
+        return text or "–"
