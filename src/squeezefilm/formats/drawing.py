@@ -159,3 +159,9 @@ class Drawing:
 def millimetres(length: si.Metre) -> str:
     """A length as drawings have it: millimetres without their unit, to a ten thousandth."""
     return f"{round(1e3 * length, 4):.10g}"
+
+
+@si.checked_numbers
+def arrows_outside(extent: si.Metre, height: si.Metre) -> bool:
+    """Whether a dimension so long, with a number so high (m), has no room for its arrows."""
+    return extent < 3.2 * height

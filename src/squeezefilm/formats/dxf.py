@@ -34,7 +34,7 @@ def dxf_text(drawing: Drawing) -> str:
     found = new("R2010", setup=True)
     found.header["$INSUNITS"] = MILLIMETRES
     # Dashes are as long on paper whatever the scale.
-    found.header["$LTSCALE"] = 6.0 / drawing.scale
+    found.header["$LTSCALE"] = 0.2 / drawing.scale
     found.appids.add(APPLICATION)
     for name, layer in drawing.layers.items():
         width = min(_WIDTHS, key=lambda known: abs(known - 1e5 * layer.width))
@@ -104,6 +104,9 @@ def _look(height: float) -> dict[str, Any]:
     return {
         "dimtxt": height,
         "dimasz": height,
+        # Filled arrows, not strokes.
+        "dimtsz": 0,
+        "dimblk": "",
         "dimexe": 0.5 * height,
         "dimexo": 0.5 * height,
         "dimgap": 0.3 * height,
@@ -127,7 +130,7 @@ def _dimension(space: Any, one: Dimension) -> None:
         p1=(1e3 * one.x_from, 1e3 * one.y_from),
         p2=(1e3 * one.x_to, 1e3 * one.y_to),
         location=(1e3 * one.text_x, 1e3 * one.text_y),
-        text=f"{one.prefix}<>{one.suffix}",
+        text=f"{one.prefix}<>{one.suffix}".replace("⌀", "%%c"),
         angle=90 if one.upright else 0,
         text_rotation=0,
         dimstyle="EZDXF",
@@ -145,7 +148,7 @@ def _ordinate(space: Any, one: Ordinate) -> None:
         (reach, 0) if one.upright else (0, reach),
         origin=(1e3 * one.origin_x, 1e3 * one.origin_y),
         dimstyle="EZDXF",
-        override=_look(1e3 * one.height),
+        override=_look(1e3 * one.height) | {"dimtad": 0},
         dxfattribs={"layer": "DIMENSIONS"},
     )
     _keep(style, one)

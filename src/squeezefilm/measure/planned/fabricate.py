@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, ClassVar
 
 from squeezefilm.analysis.fabrication.bill import BillRow, bill_of
@@ -13,9 +14,14 @@ from squeezefilm.analysis.parameters import Parameter
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
-from squeezefilm.errors import OutOfRangeError
+from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.from_text import reads_text
-from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted, predicted
+from squeezefilm.measure.calibration.blind import (
+    BlindPrediction,
+    Predicted,
+    load_prediction,
+    predicted,
+)
 from squeezefilm.measure.calibration.priors import calibration_parameters
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.measure.fits.estimate import Observation
@@ -106,6 +112,7 @@ def fabricate(
     uncertainty: UncertainFriction | None = None,
     samples: int = SAMPLES,
     intervals: bool = True,
+    blind: BlindPrediction | None = None,
     seed: int = 1,
     progress: SayProgress | None = None,
 ) -> Fabrication:
@@ -115,7 +122,8 @@ def fabricate(
     `Analysis`) are not computed again; without them it is predicted at its own voltage. Of
     `intervals` those of frequency, amplitude and the rest take 32 solved plates drawn from its
     spreads: a minute or so, and nothing once they are kept on disk. `samples` are those of the
-    amplitude's under the finger, 0 for none.
+    amplitude's under the finger, 0 for none. A `blind` prediction that was sealed before (see
+    `sealed_already`) stays what is expected.
 
     Raises `InputError` as `predict`, and `UnreachableError` for a stator that nothing fits.
     """
@@ -129,7 +137,11 @@ def fabricate(
     if uncertainty is None and samples and intervals:
         tell("how sure amplitude and friction are")
         uncertainty, _ = interval_or_reason(display, prediction, samples=samples, seed=seed)
-    blind, drawn, why_not = _expected(display, prediction, intervals, seed, tell)
+    drawn, why_not = _drawn(display)
+    if not intervals:
+        why_not = "none were asked for"
+    elif blind is None:
+        blind, why_not = _expected(display, prediction, why_not, seed, tell)
     nodal = nodal_lines_of(display.actuator, prediction.mode)
     p = prediction
     load = load_of_mode(display.actuator, p.mode, p.voltage, p.frequency)
@@ -158,23 +170,41 @@ def fabricate(
     )
 
 
-def _expected(
-    display: Display, prediction: Prediction, intervals: bool, seed: int, tell: SayProgress
-) -> tuple[BlindPrediction | None, tuple[Parameter, ...], str]:
-    """What a bench will see, what was drawn for it, and why there is nothing where it is so."""
-    if not intervals:
-        return None, (), "none were asked for"
-    asked: list[Observation] = []
-    drawn: tuple[Parameter, ...] = ()
-    why_not = ""
+def sealed_already(file: Path, display: Display) -> BlindPrediction | None:
+    """The prediction of this very display in a file, None where there is no file.
+
+    Raises `InputError` for a file that is none, or one of another description or version: what was
+    predicted is never overwritten.
+    """
+    if not file.exists():
+        return None
+    found, own = load_prediction(file), stamp(display)
+    for key, what in (
+        ("config_sha256", "another description"),
+        ("squeezefilm_version", "another version of squeezefilm"),
+    ):
+        if found.stamp.get(key) != own[key]:
+            raise InputError(
+                f"{file} is a prediction of {what}, and is never overwritten; name another folder"
+            )
+    return found
+
+
+def _drawn(display: Display) -> tuple[tuple[Parameter, ...], str]:
+    """The values that are drawn for the intervals, and why there are none of a stator."""
     if isinstance(display.actuator, AnnularStator):
-        why_not = (
+        return (), (
             "frequency and amplitude of a stator are measured values of its description; what a "
             "second one would have is not known"
         )
-    else:
-        drawn = calibration_parameters(display)
-        asked += [Observation(name, 0.0, 0.0) for name in ASKED]
+    return calibration_parameters(display), ""
+
+
+def _expected(
+    display: Display, prediction: Prediction, why_not: str, seed: int, tell: SayProgress
+) -> tuple[BlindPrediction | None, str]:
+    """What a bench will see, and why there is nothing (of the plate) where it is so."""
+    asked = [] if why_not else [Observation(name, 0.0, 0.0) for name in ASKED]
     amplitude = prediction.vibration_amplitude
     if amplitude > 0 and prediction.touch.sharing is not None:
         under = {"normal_force": prediction.normal_force, "finger_speed": prediction.speed}
@@ -183,8 +213,8 @@ def _expected(
             for share in SHARES
         ]
     if not asked:
-        return None, drawn, why_not
+        return None, why_not
     try:
-        return predicted(display, asked, seed=seed, progress=tell), drawn, why_not
+        return predicted(display, asked, seed=seed, progress=tell), why_not
     except OutOfRangeError as error:
-        return None, drawn, str(error)
+        return None, str(error)

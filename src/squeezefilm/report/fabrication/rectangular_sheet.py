@@ -51,26 +51,20 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     _plan(sheet, made, plate, face, sign)
     _cut_marks(sheet, plate, cut, sign)
     whole = _dimensions(sheet, made, plate, sign)
-    sizes = _keys_of_thickness(plate)
     low = top - size_y - 34.0
-    section_view(sheet, made.parts, cut, _MIDDLE, low, sizes, antiphase(made.electrodes))
+    section_view(sheet, made, made.parts, _MIDDLE, low, _keys_of_thickness(plate))
     rows = [
         ("Scale, sheet", f"{scale_said(scale)}, A3; lengths in mm"),
         ("Substrate", plate.substrate.name),
         ("Ceramic", plate.ceramic.name),
         ("Glue", "none" if plate.glue is None else f"{millimetres(plate.glue.thickness)} mm"),
-        ("Mass", f"{1e3 * made.mass:.4g} g with ceramics and glue"),
+        ("Mass", f"{1e3 * made.mass:.4g} g, assembled"),
         *origin_rows(made.display),
     ]
     block = title_block(sheet, made.display.title, made.display.name, rows)
     y = table(sheet, HEAD, electrode_rows(made.electrodes), VIEWS[3], block + 110.0)
     notes(sheet, [*_said(plate, face, whole), *common], y - 3.0)
     return sheet.drawing()
-
-
-def antiphase(electrodes: Sequence[Electrode]) -> frozenset[int]:
-    """The numbers of the ceramics that are driven in antiphase."""
-    return frozenset(one.ceramic for one in electrodes if one.connection == ANTIPHASE)
 
 
 def electrode_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:

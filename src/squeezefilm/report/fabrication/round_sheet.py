@@ -11,7 +11,7 @@ from squeezefilm.formats.drawing import Arc, Drawing, Polyline, millimetres
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.plate.parts import Part, Sector, teeth_of
 from squeezefilm.report.fabrication.rectangular_sheet import poling_mark
-from squeezefilm.report.fabrication.section_view import best_cut, section_view
+from squeezefilm.report.fabrication.section_view import section_view
 from squeezefilm.report.fabrication.sheet_parts import (
     LETTER,
     NUMBER,
@@ -57,16 +57,16 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
         ends = shape.inner_radius, shape.outer_radius
         rim = math.sqrt(outer**2 - ends[0] ** 2)
         away = reach + 8.0 - rim / sheet.unit
-        sheet.across(*ends, rim, away, value_of="actuator.radial_width")
+        sheet.across(*ends, rim, away, y_to=0.0, value_of="actuator.radial_width")
     # Of the teeth one stands for all of them.
     teeth = [one for one in made.parts if one.kind == "substrate"][1:]
     shown = [one for one in made.parts if one not in teeth[1:]]
     low = sheet.origin[1] - reach - 16.0 - 7.0 * len(lines)
-    section_view(sheet, shown, best_cut(shown), _MIDDLE, low, _keys_of_thickness(actuator))
+    section_view(sheet, made, shown, _MIDDLE, low, _keys_of_thickness(actuator))
     rows = [
         ("Scale, sheet", f"{scale_said(scale)}, A3; lengths in mm"),
         *_materials(made.parts),
-        ("Mass", f"{1e3 * made.mass:.4g} g with ceramic and glue"),
+        ("Mass", f"{1e3 * made.mass:.4g} g, assembled"),
         *origin_rows(made.display),
     ]
     block = title_block(sheet, made.display.title, made.display.name, rows)

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
-from squeezefilm.formats.drawing import rectangle
+from squeezefilm.analysis.fabrication.wiring import ANTIPHASE
+from squeezefilm.formats.drawing import millimetres, rectangle
 from squeezefilm.plate.parts import Part, Rectangle, Sector
-from squeezefilm.report.fabrication.sheet_parts import LETTER, NUMBER, SMALL, Sheet
+from squeezefilm.report.fabrication.sheet_parts import (
+    LETTER,
+    NUMBER,
+    SMALL,
+    Sheet,
+    tolerance_said,
+)
+
+if TYPE_CHECKING:
+    from squeezefilm.measure.planned.fabricate import Fabrication
 
 _STRETCHES = (200, 100, 50, 20, 10, 5, 2, 1)
 _LAYERS = {"substrate": "BODY", "ceramic": "CERAMICS", "glue": "GLUE"}
@@ -64,64 +75,68 @@ def best_cut(parts: Sequence[Part]) -> Cut:
 
 def section_view(
     sheet: Sheet,
+    made: Fabrication,
     parts: Sequence[Part],
-    cut: Cut,
     middle: float,
     top: float,
-    sizes: dict[int, str],
-    antiphase: frozenset[int] = frozenset(),
-) -> tuple[int, float]:
-    """Draw the section about a `middle` with its upper face at `top` (mm of paper), with the
-    thicknesses of substrate, and of one glue layer and one ceramic at the right end; `sizes` are
-    their keys by what they are of (0: the substrate, −n: the glue of ceramic n, n: ceramic n). How
-    many times larger thicknesses are drawn, and where it ends (mm)."""
-    met = [(one, spans(one, cut)) for one in parts]
-    met = [(one, found) for one, found in met if found]
+    keys: Mapping[int, str],
+) -> None:
+    """Draw the best cut through `parts` about a `middle` with its upper face at `top` (mm of
+    paper), with the thicknesses of the substrate and, at the right end, of what is bonded to each
+    face; `keys` are those of the description by what they are of (0: the substrate, n: ceramic n,
+    −n: its glue)."""
+    cut = best_cut(parts)
+    met = [(one, found) for one in parts if (found := spans(one, cut))]
     high, low = max(one.top for one, _ in met), min(one.bottom for one, _ in met)
     stretch = stretch_for(high - low, sheet.scale)
     ends = [end for _, found in met for span in found for end in span]
     _, y_top = sheet.at(0.0, top)
     centre, _ = sheet.at(middle, 0.0)
     shift = centre - (min(ends) + max(ends)) / 2
-    upwards = y_top - stretch * high
+    turned = {one.ceramic for one in made.electrodes if one.connection == ANTIPHASE}
 
     def height(z: float) -> float:
-        return upwards + stretch * z
+        return y_top + stretch * (z - high)
 
     for one, found in met:
+        other = one.kind == "ceramic" and one.number in turned
+        layer = "CERAMICS_B" if other else _LAYERS[one.kind]
         for start, end in found:
-            bottom = height(one.bottom)
-            other = one.kind == "ceramic" and one.number in antiphase
-            layer = "CERAMICS_B" if other else _LAYERS[one.kind]
-            box = rectangle(layer, start + shift, bottom, end - start, height(one.top) - bottom)
-            sheet.add(box)
-    right = max(ends) + shift
-    away = 7.0
-    base = next(one for one, _ in met if one.kind == "substrate")
-    for one in (base, *_last_stack(met)):
-        number = 0 if one is base else (one.number if one.kind == "ceramic" else -one.number)
-        where = right if one is base else max(spans(one, cut))[1] + shift
-        what = {"substrate": "", "ceramic": "", "glue": " glue"}[one.kind]
+            thick = stretch * one.thickness
+            sheet.add(rectangle(layer, start + shift, height(one.bottom), end - start, thick))
+    right, away = max(ends) + shift, 7.0
+    base = met[0][0]
+    for one in (base, *_stacks(met)):
+        number = {"ceramic": one.number, "glue": -one.number}.get(one.kind, 0)
+        key = keys.get(number, "") if one is base or number else ""
+        where = max(end for span in spans(one, cut) for end in span) + shift
+        what = " glue" if one.kind == "glue" else ""
+        suffix = what + (tolerance_said(made.display, key) if key else "")
         reach = away + (right - where) / sheet.unit
         sheet.upright(
             height(one.bottom), height(one.top), where, reach,
-            stretch=stretch, value_of=sizes.get(number, ""), suffix=what, beside=True,
+            stretch=stretch, value_of=key, suffix=suffix, beside=True,
         )  # fmt: skip
-        said = 1e3 * one.thickness
-        away += (len(f"{said:.6g}{what}") * LETTER + 3.6) * NUMBER
+        away += (len(f"{millimetres(one.thickness)}{suffix}") * LETTER + 3.6) * NUMBER
     bottom = top - 1e3 * (high - low) * sheet.scale * stretch
     label = "Section A–A" if isinstance(base.footprint, Rectangle) else "Section through the middle"
     larger = f"; heights drawn {stretch} times larger" if stretch > 1 else ""
     sheet.write(f"{label}{larger}", middle, bottom - 6.0, SMALL, "middle")
-    return stretch, bottom - 8.0
 
 
-def _last_stack(met: Sequence[tuple[Part, list[tuple[float, float]]]]) -> list[Part]:
-    """The rightmost ceramic of those met, with its glue, and teeth where there are any."""
-    ceramics = [(max(found)[1], one) for one, found in met if one.kind == "ceramic"]
-    if not ceramics:
-        return []
-    last = max(ceramics, key=lambda pair: pair[0])[1]
-    glue = [one for one, _ in met if one.kind == "glue" and one.number == last.number]
-    teeth = [one for one, _ in met if one.kind == "substrate"][1:]
-    return [*teeth[:1], last, *glue]
+def _stacks(met: Sequence[tuple[Part, list[tuple[float, float]]]]) -> list[Part]:
+    """A tooth where there are any; of each face the rightmost ceramic that was met, and its glue,
+    which is last: its number stands beside its short arrows, where no other line runs."""
+    found = [one for one, _ in met if one.kind == "substrate"][1:2]
+    for upper in (False, True):
+        ceramics = [
+            (max(span), one)
+            for one, ends in met
+            if one.kind == "ceramic" and (one.bottom > 0) == upper
+            for span in ends
+        ]
+        if ceramics:
+            last = max(ceramics, key=lambda pair: pair[0])[1]
+            glue = [one for one, _ in met if one.kind == "glue" and one.number == last.number]
+            found += [last, *glue]
+    return found

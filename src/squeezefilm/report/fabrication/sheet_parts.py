@@ -18,6 +18,7 @@ from squeezefilm.formats.drawing import (
     Ordinate,
     Polyline,
     Text,
+    arrows_outside,
     millimetres,
     rectangle,
 )
@@ -27,9 +28,9 @@ from squeezefilm.results import stamp
 LAYERS = {
     "FRAME": Layer(7, width=0.35e-3),
     "OUTLINE": Layer(7, width=0.5e-3),
-    "BODY": Layer(30, width=0.35e-3, fill="own"),
-    "CERAMICS": Layer(4, width=0.35e-3, fill="own"),
-    "CERAMICS_B": Layer(2, width=0.35e-3, fill="own"),
+    "BODY": Layer(45, width=0.35e-3, fill="own"),
+    "CERAMICS": Layer(151, width=0.35e-3, fill="own"),
+    "CERAMICS_B": Layer(21, width=0.35e-3, fill="own"),
     "CERAMICS_OTHER_FACE": Layer(8, "DASHED", 0.25e-3),
     "ELECTRODES": Layer(5, width=0.18e-3),
     "GLUE": Layer(3, width=0.18e-3, fill="own"),
@@ -125,9 +126,8 @@ class Sheet:
         def place(share: float) -> tuple[float, float]:
             if isinstance(line, Arc):
                 angle = line.start + share * (line.end - line.start)
-                return line.x + line.radius * math.cos(angle), line.y + line.radius * math.sin(
-                    angle
-                )
+                turn = math.cos(angle), math.sin(angle)
+                return line.x + line.radius * turn[0], line.y + line.radius * turn[1]
             (x, y), (x_to, y_to) = line.points[0], line.points[-1]
             return x + share * (x_to - x), y + share * (y_to - y)
 
@@ -177,27 +177,24 @@ class Sheet:
         y: si.Metre,
         away: float,
         *,
-        beside: float = 0.0,
+        y_to: si.Metre | None = None,
         value_of: str = "",
         prefix: str = "",
         suffix: str = "",
     ) -> None:
-        """A horizontal dimension of two places of the thing at a height (m), its line so many
-        millimetres of paper `away`, above where that is positive. Its number stands over the line,
-        or where there is no room, `beside` its right end by so much more."""
-        u, size = self.unit, NUMBER * self.unit
-        at, said = y + away * u, f"{prefix}{millimetres(abs(x_to - x_from))}{suffix}"
-        width = len(said) * LETTER * size
-        right = max(x_from, x_to)
+        """A horizontal dimension of two places of the thing at a height (m; the second may be at
+        another), its line so many millimetres of paper `away` from it, above where that is
+        positive. Its number stands over the line, or where it is wider than that, at its right."""
+        size = NUMBER * self.unit
+        at, said = y + away * self.unit, f"{prefix}{millimetres(abs(x_to - x_from))}{suffix}"
+        width, extent = len(said) * LETTER * size, abs(x_to - x_from)
         text_x, text_y = (x_from + x_to) / 2, at + 0.9 * size
-        if width > abs(x_to - x_from) - 2.5 * size:
-            text_x, text_y = right + width / 2 + (3.0 * size if beside == 0 else beside * u), at
-        self.add(
-            Dimension(
-                x_from, y, x_to, y, at, text_x, text_y, size,
-                prefix=prefix, suffix=suffix, value_of=value_of,
-            )
-        )  # fmt: skip
+        if width > extent:
+            beyond = 2.6 * size if arrows_outside(extent, size) else 0.8 * size
+            text_x, text_y = max(x_from, x_to) + width / 2 + beyond, at
+        ends = (x_from, y, x_to, y if y_to is None else y_to)
+        named = {"prefix": prefix, "suffix": suffix, "value_of": value_of}
+        self.add(Dimension(*ends, at, text_x, text_y, size, **named))
 
     def upright(
         self,
@@ -220,7 +217,7 @@ class Sheet:
         half = len(said) * LETTER * size / 2
         text_x = at + (half + 0.6 * size) * (1 if away > 0 else -1)
         text_y = (y_from + y_to) / 2
-        if not beside and abs(y_to - y_from) < 3.2 * size:
+        if not beside and arrows_outside(abs(y_to - y_from), size):
             text_y = max(y_from, y_to) + 1.6 * size
         self.add(
             Dimension(

@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.formats.drawing import Arc, Dimension, Drawing, Layer, Ordinate, Polyline, Text
+from squeezefilm.formats.drawing import (
+    Arc,
+    Dimension,
+    Drawing,
+    Layer,
+    Ordinate,
+    Polyline,
+    Text,
+    arrows_outside,
+)
 from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
@@ -18,9 +27,10 @@ if TYPE_CHECKING:
 _INCH, _POINT = 25.4e-3, 25.4e-3 / 72
 # Of the font: the height of a capital over the size of the letters.
 _CAPITAL = 0.729
+# What an AutoCAD index stands for here; that of a CAD program's own palette is near it.
 _COLOURS = {
-    1: style.ORANGE, 2: style.MINUS, 3: style.GREEN, 4: style.PLUS, 5: style.BLUE, 6: style.PURPLE,
-    7: style.INK, 8: style.MUTED, 9: style.GRID, 30: style.METAL, 31: style.SKIN,
+    1: style.ORANGE, 3: style.GREEN, 5: style.BLUE, 6: style.PURPLE, 7: style.INK, 8: style.MUTED,
+    21: style.MINUS, 45: style.METAL, 151: style.PLUS,
 }  # fmt: skip
 _DASHES = {"CONTINUOUS": "-", "DASHED": (0, (6, 3)), "DASHDOT": (0, (9, 3, 1.5, 3))}
 _THIN = 0.18e-3 / _POINT
@@ -150,7 +160,7 @@ def _dimension(axes: Axes, one: Dimension, scale: float) -> None:
         if abs(one.at - across) > size:
             _line(axes, turned(along, across + way), turned(along, one.at + way))
     low, high = sorted((ends[0][0], ends[1][0]))
-    inside = high - low > 3.2 * size
+    inside = not arrows_outside(high - low, size)
     _line(axes, turned(low if inside else low - 2.2 * size, one.at),
           turned(high if inside else high + 2.2 * size, one.at))  # fmt: skip
     way = size if inside else -size
