@@ -23,4 +23,4 @@ def stl_bytes(triangles: si.FloatArray, title: str) -> bytes:
     records["corners"] = scaled
     # A header that begins with "solid" would be taken for a file in words.
     head = f"millimetres; {title}".encode("ascii", "replace")[:80].ljust(80)
-    return head + np.uint32(len(records)).astype("<u4").tobytes() + records.tobytes()
+    return head + len(records).to_bytes(4, "little") + records.tobytes()

@@ -20,6 +20,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.kept_arrays import KeptArrays, in_passing
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.plate.electronics import ring_admittance
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.parts import assembly_mass
 from squeezefilm.plate.ring.body import ring_body
@@ -212,8 +213,14 @@ def _of_disc(disc: DiscPlate) -> tuple[_Named, Mapping[str, float]]:
     annular = mode.disc
     assert annular is not None
     assert mode.modal_mass is not None
-    held = clamped_capacitance(body.section, body.drive)
-    coupling = annular.coupling_coefficient(body.drive, held)
+    # Beside the mode, as a sweep reads it: all other modes are in it, not the clamped body's alone.
+    circuit = ring_admittance(disc).circuit
+    if circuit is None:
+        static = clamped_capacitance(body.section, body.drive)
+        coupling = annular.coupling_coefficient(body.drive, static)
+    else:
+        static, moving = circuit.static_capacitance, circuit.motional_capacitance
+        coupling = math.sqrt(moving / (moving + static))
     error = (mode.frequency_error or 0.0) / mode.resonance_frequency
     named = {
         "resonance_frequency": (mode.resonance_frequency, error),
@@ -222,7 +229,7 @@ def _of_disc(disc: DiscPlate) -> tuple[_Named, Mapping[str, float]]:
             error,
         ),
         "coupling_coefficient": (coupling, 0.0),
-        "static_capacitance": (held, 0.0),
+        "static_capacitance": (static, 0.0),
         "quality_factor": (mode.quality_factor, 0.0),
         "amplitude_per_volt": (mode.amplitude_per_volt, 0.0),
         "half_wavelength": (mode.half_wavelength, 0.0),

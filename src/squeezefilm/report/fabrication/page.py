@@ -162,8 +162,8 @@ _PLAN_SAID = (
     "should lie; tick what does. Put the recordings into one folder under the names given here, "
     "each with the small TOML file that says what is in it (<code>squeezefilm measure check</code> "
     "asks for what is missing). Then <code>squeezefilm measure calibrate display.toml "
-    "FOLDER</code> takes them, and <code>squeezefilm measure score prediction.json FOLDER</code> "
-    "compares them with what was expected."
+    "FOLDER</code> takes them, and <code>squeezefilm measure score prediction.json FOLDER "
+    "display.toml</code> compares them with what was expected."
 )
 
 

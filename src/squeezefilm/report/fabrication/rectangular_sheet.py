@@ -176,9 +176,9 @@ def _dimensions(sheet: Sheet, made: Fabrication, plate: RectangularPlate, sign: 
     key = f"{path}.length"
     sheet.across(first.x, first.x + first.length, edge, 9.5, value_of=key, suffix=tolerance(key))
     if first.width < plate.width - 1e-9:
-        ends = sorted((sign * first.y, sign * (first.y + first.width)))
+        low_y, high_y = sorted((sign * first.y, sign * (first.y + first.width)))
         key = f"{path}.width"
-        sheet.upright(*ends, 0.0, -8.0, value_of=key, suffix=tolerance(key))  # type: ignore[misc] # two of them
+        sheet.upright(low_y, high_y, 0.0, -8.0, value_of=key, suffix=tolerance(key))
     patches = list(enumerate(plate.patches))
     x = {one.x: (one.x, one.x, f"actuator.patches.{n}.x") for n, one in reversed(patches)}
     y = {one.y: (one.y, sign * one.y, f"actuator.patches.{n}.y") for n, one in reversed(patches)}

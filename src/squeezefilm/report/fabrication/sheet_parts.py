@@ -193,8 +193,12 @@ class Sheet:
             beyond = 2.6 * size if arrows_outside(extent, size) else 0.8 * size
             text_x, text_y = max(x_from, x_to) + width / 2 + beyond, at
         ends = (x_from, y, x_to, y if y_to is None else y_to)
-        named = {"prefix": prefix, "suffix": suffix, "value_of": value_of}
-        self.add(Dimension(*ends, at, text_x, text_y, size, **named))
+        self.add(
+            Dimension(
+                *ends, at, text_x, text_y, size,
+                prefix=prefix, suffix=suffix, value_of=value_of,
+            )
+        )  # fmt: skip
 
     def upright(
         self,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -69,7 +69,7 @@ def pdf(figure: Figure) -> bytes:
     return stream.getvalue()
 
 
-def _look(layer: Layer, closed: bool) -> dict[str, object]:
+def _look(layer: Layer, closed: bool) -> dict[str, Any]:
     colour, filled = _COLOURS[layer.colour], closed and layer.fill != "none"
     fill = style.PAPER if layer.fill == "paper" else colour
     return {
@@ -85,7 +85,7 @@ def _polyline(axes: Axes, one: Polyline, layer: Layer, order: int) -> None:
 
     look = _look(layer, one.closed)
     points = np.array(one.points)
-    axes.add_patch(Polygon(points, closed=one.closed, zorder=2 + order * 1e-4, **look))  # type: ignore[arg-type] # a look
+    axes.add_patch(Polygon(points, closed=one.closed, zorder=2 + order * 1e-4, **look))
 
 
 def _arc(axes: Axes, one: Arc, layer: Layer, order: int) -> None:
@@ -95,7 +95,7 @@ def _arc(axes: Axes, one: Arc, layer: Layer, order: int) -> None:
     centre, above = (one.x, one.y), 2 + order * 1e-4
     look = _look(layer, one.is_circle)
     if one.is_circle:
-        axes.add_patch(Circle(centre, one.radius, zorder=above, **look))  # type: ignore[arg-type] # a look
+        axes.add_patch(Circle(centre, one.radius, zorder=above, **look))
         return
     ends = math.degrees(one.start), math.degrees(one.end)
     size = 2 * one.radius

@@ -35,7 +35,11 @@ from squeezefilm.measure.calibration.written_display import (
     calibrated_text,
     write_calibrated,
 )
+from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+from squeezefilm.plate.electronics import ring_admittance
+from squeezefilm.plate.layout import DiscPlate
 from squeezefilm.plate.parts import assembly_mass
 
 STATOR = "biet2008-stator"
@@ -186,6 +190,22 @@ def test_solved_answers_of_plate_and_disc(tmp_path: Path, monkeypatch: pytest.Mo
     assert 0 < of_disc.values[1] < of_disc.values[2]
     with pytest.raises(InputError, match="has no answer"):
         solved_answers(disc, (Asked(MODE_FREQUENCY, (3, 0)),))
+
+
+@pytest.mark.slow
+def test_answers_of_a_disc_are_what_a_sweep_of_it_reads() -> None:
+    disc = load_display("winfield2007-tpad").actuator
+    assert isinstance(disc, DiscPlate)
+    swept = ring_admittance(disc)
+    fit = fit_impedance(ImpedanceSweep(swept.frequencies, swept.admittance))
+    read = {one.answer: one.value for one in fit.observations}
+    asked = tuple(Asked(name) for name in read)
+    solved = dict(zip(read, solved_answers(disc, asked).values, strict=True))
+    assert read["parallel_resonance_frequency"] == pytest.approx(
+        solved["parallel_resonance_frequency"], rel=1e-3
+    )
+    assert read["static_capacitance"] == pytest.approx(solved["static_capacitance"], rel=0.02)
+    assert read["quality_factor"] == pytest.approx(solved["quality_factor"], rel=0.01)
 
 
 @pytest.mark.slow
