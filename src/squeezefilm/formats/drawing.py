@@ -146,13 +146,17 @@ Item = Polyline | Arc | Text | Dimension | Ordinate
 class Drawing:
     """What a drawing shows. The paper's lower left corner lies at `corner` (x, y in m), its `paper`
     is width and height (m), and `scale` is paper over thing; the order of the items is that in
-    which they are drawn."""
+    which they are drawn. `views` is the part of the paper without tables and title (left, bottom,
+    right, top in m of paper), `notes` what is written beside it: for pages that show only these.
+    """
 
     layers: Mapping[str, Layer]
     items: Sequence[Item] = ()
     scale: si.Dimensionless = 1.0
     paper: Place = (0.42, 0.297)
     corner: Place = field(default=(0.0, 0.0))
+    views: tuple[float, float, float, float] = (0.0, 0.0, 0.42, 0.297)
+    notes: tuple[str, ...] = ()
 
 
 @si.checked_numbers

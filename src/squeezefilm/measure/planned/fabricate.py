@@ -14,7 +14,7 @@ from squeezefilm.analysis.parameters import Parameter
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, NamedDisplay
-from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.from_text import reads_text
 from squeezefilm.measure.calibration.blind import (
     BlindPrediction,
@@ -27,7 +27,7 @@ from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.measure.planned.test_plan import Known, TestStep, test_plan
 from squeezefilm.plate.electronics import ElectricalLoad, load_of_mode
-from squeezefilm.plate.layout import AnnularStator
+from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.plate.parts import Part, parts_of
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import Result, stamp, to_json
@@ -137,11 +137,10 @@ def fabricate(
     if uncertainty is None and samples and intervals:
         tell("how sure amplitude and friction are")
         uncertainty, _ = interval_or_reason(display, prediction, samples=samples, seed=seed)
-    drawn, why_not = _drawn(display)
-    if not intervals:
-        why_not = "none were asked for"
-    elif blind is None:
+    why_not = "none were asked for" if not intervals else _why_not_drawn(display, prediction)
+    if intervals and blind is None:
         blind, why_not = _expected(display, prediction, why_not, seed, tell)
+    drawn = () if why_not else calibration_parameters(display)
     nodal = nodal_lines_of(display.actuator, prediction.mode)
     p = prediction
     load = load_of_mode(display.actuator, p.mode, p.voltage, p.frequency)
@@ -190,14 +189,16 @@ def sealed_already(file: Path, display: Display) -> BlindPrediction | None:
     return found
 
 
-def _drawn(display: Display) -> tuple[tuple[Parameter, ...], str]:
-    """The values that are drawn for the intervals, and why there are none of a stator."""
+def _why_not_drawn(display: Display, prediction: Prediction) -> str:
+    """Why no bodies of this kind can be drawn and solved; "" where they can."""
     if isinstance(display.actuator, AnnularStator):
-        return (), (
+        return (
             "frequency and amplitude of a stator are measured values of its description; what a "
             "second one would have is not known"
         )
-    return calibration_parameters(display), ""
+    if isinstance(display.actuator, RectangularPlate) and prediction.mode.solid is None:
+        return "the plate was not solved in three dimensions; the warnings say why"
+    return ""
 
 
 def _expected(
@@ -216,5 +217,6 @@ def _expected(
         return None, why_not
     try:
         return predicted(display, asked, seed=seed, progress=tell), why_not
-    except OutOfRangeError as error:
+    except SqueezefilmError as error:
+        # A drawn plate that has no such mode, or a finger that is pressed through: the rest stands.
         return None, str(error)

@@ -13,6 +13,7 @@ from squeezefilm.analysis.fabrication.facets import CHORD_ERROR, triangles_of, v
 from squeezefilm.analysis.fabrication.wiring import wiring_said
 from squeezefilm.config.write import text_of
 from squeezefilm.errors import InputError
+from squeezefilm.formats.drawing import Drawing
 from squeezefilm.formats.dxf import dxf_text
 from squeezefilm.formats.stl import stl_bytes
 from squeezefilm.measure.calibration.blind import sealed
@@ -45,7 +46,7 @@ from squeezefilm.report.kit.page_style import (
     text_table,
 )
 from squeezefilm.report.kit.point_rows import electronics_rows
-from squeezefilm.report.kit.sheet import pdf, sheet_figure
+from squeezefilm.report.kit.sheet import pdf, sheet_figure, views_figure
 
 if TYPE_CHECKING:
     from squeezefilm.measure.planned.fabricate import Fabrication
@@ -70,14 +71,13 @@ def write_fabrication(made: Fabrication, folder: Path) -> Path:
             )
         files[PREDICTION] = sealed(made.blind)
     drawing = drawing_sheet(made)
-    figure = sheet_figure(drawing)
     title = f"Drawing of {style.plain(made.display.title, 80)}"
-    svg = style.svg(figure, "drawing", title)
+    views = style.svg(views_figure(drawing), "drawing", title)
     head, rows = layout_rows(made)
     files |= {
         "drawing.dxf": dxf_text(drawing),
         "drawing.pdf": pdf(sheet_figure(drawing)),
-        "drawing.svg": _alone(svg),
+        "drawing.svg": _alone(style.svg(sheet_figure(drawing), "drawing", title)),
         **_bodies(made),
         "bill-of-materials.csv": bill_csv(made.bill),
         "electrodes.csv": csv_text(head, rows),
@@ -87,7 +87,7 @@ def write_fabrication(made: Fabrication, folder: Path) -> Path:
         "fabrication.json": json_text(made.summary()),
     }
     names = [*files, *([PREDICTION] if made.blind is not None and made.blind.sha256 else [])]
-    files["index.html"] = _page(made, svg, sorted(names))
+    files["index.html"] = _page(made, drawing, views, sorted(names))
     write_folder(folder, files)
     return folder / "index.html"
 
@@ -126,13 +126,13 @@ def _bodies(made: Fabrication) -> dict[str, bytes]:
     return {"assembly.stl": stl_bytes(whole, title), **found}
 
 
-def _page(made: Fabrication, svg: str, names: list[str]) -> str:
+def _page(made: Fabrication, drawing: Drawing, views: str, names: list[str]) -> str:
     display = made.display
     title, name = as_html(display.title), as_html(display.name)
     parts = [
         section("What to expect", _expected(made)),
         section("Doubts and warnings", bullets(made.prediction.warnings)),
-        section("Drawing", _drawing(svg), "figure"),
+        section("Drawing", _drawing(drawing, views), "figure"),
         section("Ceramics, electrodes and poling", _layout(made)),
         section("Bill of materials", text_table(_BILL_SAID, BILL, bill_rows(made.bill))),
         section("Drive electronics", _electronics(made)),
@@ -178,11 +178,15 @@ def _expected(made: Fabrication) -> str:
     return found
 
 
-def _drawing(svg: str) -> str:
-    said = "An A3 sheet: the same as drawing.pdf and drawing.dxf. Print the PDF at full size."
+def _drawing(drawing: Drawing, views: str) -> str:
+    said = (
+        "The views of the A3 sheet that is drawing.pdf and drawing.dxf, in millimetres; print the "
+        "PDF at full size."
+    )
     return (
         '<figure id="figure-drawing">\n<div class="scroll" tabindex="0" role="region" '
-        f'aria-label="Drawing">{svg}</div>\n<figcaption>{said}</figcaption>\n</figure>'
+        f'aria-label="Drawing">{views}</div>\n<figcaption>{said}</figcaption>\n</figure>\n'
+        f"{bullets(drawing.notes)}"
     )
 
 
@@ -202,7 +206,9 @@ def _step(one: TestStep) -> str:
     kept = ""
     if one.file:
         kept = f" Kept as <code>{one.file}</code>, kind <code>{one.kind}</code>."
-    return f"<p>{as_html(one.do)}{kept}</p>\n" + text_table("", STEP, step_rows(one.checks))
+    return f"<p>{as_html(one.do)}{kept}</p>\n" + text_table(
+        "What to read", STEP, step_rows(one.checks)
+    )
 
 
 def _allowed(made: Fabrication) -> str:

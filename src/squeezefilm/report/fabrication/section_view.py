@@ -122,6 +122,7 @@ def section_view(
     label = "Section A–A" if isinstance(base.footprint, Rectangle) else "Section through the middle"
     larger = f"; heights drawn {stretch} times larger" if stretch > 1 else ""
     sheet.write(f"{label}{larger}", middle, bottom - 6.0, SMALL, "middle")
+    sheet.lowest = bottom - 12.0
 
 
 def _stacks(met: Sequence[tuple[Part, list[tuple[float, float]]]]) -> list[Part]:

@@ -79,12 +79,15 @@ class Sheet:
     """A drawing as it is composed: `scale` is paper over thing; places on paper are in millimetres
     from its lower left corner, and `origin` is where the thing's own (0, 0) lies there. Boxes that
     are `kept_free` (left, bottom, right, top in m) are not crossed by lines that are `interrupted`.
+    The views end at `lowest` (mm), `noted` is what the notes say.
     """
 
     scale: float
     origin: tuple[float, float]
     items: list[Item] = field(default_factory=list)
     kept_free: list[tuple[float, float, float, float]] = field(default_factory=list)
+    noted: list[str] = field(default_factory=list)
+    lowest: float = VIEWS[1]
 
     @property
     def unit(self) -> si.Metre:
@@ -255,7 +258,17 @@ class Sheet:
     def drawing(self) -> Drawing:
         """What was composed."""
         paper = (1e-3 * PAPER[0], 1e-3 * PAPER[1])
-        return Drawing(LAYERS, tuple(self.items), self.scale, paper, self.at(0.0, 0.0))
+        left, _, right, top = VIEWS
+        views = tuple(1e-3 * one for one in (left - 4.0, self.lowest, right + 4.0, top + 4.0))
+        return Drawing(
+            LAYERS,
+            tuple(self.items),
+            self.scale,
+            paper,
+            self.at(0.0, 0.0),
+            (views[0], views[1], views[2], views[3]),
+            tuple(self.noted),
+        )
 
 
 def table(
@@ -291,6 +304,7 @@ def notes(sheet: Sheet, texts: Iterable[str], top: float) -> float:
     letters = int((right - left - 6) / (LETTER * SMALL))
     y, step = top - 2.0, 3.5
     for number, text in enumerate(texts, 1):
+        sheet.noted.append(text)
         for at, line in enumerate(textwrap.wrap(printable(text), letters)):
             if at == 0:
                 sheet.write(f"{number}", left + 0.8, y)

@@ -36,17 +36,27 @@ _DASHES = {"CONTINUOUS": "-", "DASHED": (0, (6, 3)), "DASHDOT": (0, (9, 3, 1.5, 
 _THIN = 0.18e-3 / _POINT
 
 
-@style.drawn
 def sheet_figure(drawing: Drawing) -> Figure:
     """The drawing on its paper, to scale where it is printed at full size."""
+    return _figure((drawing, (0.0, 0.0, *drawing.paper)))
+
+
+def views_figure(drawing: Drawing) -> Figure:
+    """Its views only, for a page that has tables and notes of its own."""
+    return _figure((drawing, drawing.views))
+
+
+@style.drawn
+def _figure(shown: tuple[Drawing, tuple[float, float, float, float]]) -> Figure:
+    """A window (left, bottom, right, top in m of paper) of a drawing."""
     from matplotlib.figure import Figure
 
-    width, height = drawing.paper
-    figure = Figure(figsize=(width / _INCH, height / _INCH))
+    drawing, (left, bottom, right, top) = shown
+    figure = Figure(figsize=((right - left) / _INCH, (top - bottom) / _INCH))
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_axis_off()
-    x, y = drawing.corner
-    axes.set(xlim=(x, x + width / drawing.scale), ylim=(y, y + height / drawing.scale))
+    (x, y), scale = drawing.corner, drawing.scale
+    axes.set(xlim=(x + left / scale, x + right / scale), ylim=(y + bottom / scale, y + top / scale))
     for order, one in enumerate(drawing.items):
         if isinstance(one, Polyline):
             _polyline(axes, one, drawing.layers[one.layer], order)
