@@ -14,18 +14,20 @@ LineType = Literal["CONTINUOUS", "DASHED", "DASHDOT"]
 Place = tuple[float, float]
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Layer:
     """How a layer is drawn: colour (AutoCAD index), type of its lines, their width on paper (m),
     and with what closed shapes on it are filled where the format fills: nothing, the layer's own
     colour, or the paper's."""
 
-    colour: int
+    colour: Annotated[int, si.AtLeast(0), si.AtMost(256)]
     line: LineType = "CONTINUOUS"
-    width: si.Metre = 0.25e-3
+    width: Annotated[si.Metre, si.Above(0.0)] = 0.25e-3
     fill: Literal["none", "own", "paper"] = "none"
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Polyline:
     """Straight lines through `points` (x, y in m)."""
@@ -35,6 +37,7 @@ class Polyline:
     closed: bool = False
 
 
+@si.checked_numbers
 def rectangle(layer: str, x: si.Metre, y: si.Metre, width: si.Metre, height: si.Metre) -> Polyline:
     """A closed rectangle (m): lower left corner, width along x, height along y."""
     corners = (x, y), (x + width, y), (x + width, y + height), (x, y + height)
@@ -142,6 +145,7 @@ class Ordinate:
 Item = Polyline | Arc | Text | Dimension | Ordinate
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Drawing:
     """What a drawing shows. The paper's lower left corner lies at `corner` (x, y in m), its `paper`
@@ -152,7 +156,7 @@ class Drawing:
 
     layers: Mapping[str, Layer]
     items: Sequence[Item] = ()
-    scale: si.Dimensionless = 1.0
+    scale: Annotated[si.Dimensionless, si.Above(0.0)] = 1.0
     paper: Place = (0.42, 0.297)
     corner: Place = field(default=(0.0, 0.0))
     views: tuple[float, float, float, float] = (0.0, 0.0, 0.42, 0.297)

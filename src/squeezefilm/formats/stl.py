@@ -5,16 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
 
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def stl_bytes(triangles: si.FloatArray, title: str) -> bytes:
+@si.checked_numbers
+def stl_bytes(triangles: si.MetreArray, title: str) -> bytes:
     """A binary STL of triangles (m), shape (triangles, 3, 3), each anticlockwise from outside.
 
     `title` stands in the header, 80 bytes of ASCII. Single precision: corners within 6e-8 of their
-    size.
+    size. Raises `InputError` for another shape.
     """
+    if triangles.ndim != 3 or triangles.shape[1:] != (3, 3):
+        raise InputError(
+            f"triangles of the shape {triangles.shape} are none; give corners by coordinates, "
+            "(triangles, 3, 3)",
+            quantity="triangles",
+        )
     scaled = 1e3 * np.asarray(triangles, dtype=float)
     normal = np.cross(scaled[:, 1] - scaled[:, 0], scaled[:, 2] - scaled[:, 0])
     length = np.linalg.norm(normal, axis=1, keepdims=True)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from squeezefilm.cli import main
-
-Run = Callable[..., object]
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:

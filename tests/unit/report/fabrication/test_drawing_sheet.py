@@ -1,5 +1,5 @@
 """The drawings of all shapes: sound as DXF, their dimensions those of the description, their texts
-apart. Covers sheet_parts, section_view, rectangular_sheet and round_sheet."""
+apart."""
 
 from __future__ import annotations
 
@@ -24,6 +24,8 @@ from squeezefilm.formats.dxf import APPLICATION, dxf_text
 from squeezefilm.measure.planned.fabricate import Fabrication
 from squeezefilm.plate.layout import CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.report.fabrication.drawing_sheet import drawing_sheet
+from squeezefilm.report.fabrication.rectangular_sheet import electrode_rows
+from squeezefilm.report.fabrication.round_sheet import sector_rows
 from squeezefilm.report.fabrication.section_view import Cut, best_cut, spans, stretch_for
 from squeezefilm.report.fabrication.sheet_parts import (
     LETTER,
@@ -258,3 +260,10 @@ def test_a_table_that_is_too_long_says_what_is_left_out() -> None:
     assert any("more: electrodes.csv" in one for one in texts)
     longest = max(len(one) for one in texts)
     assert longest * LETTER * 2.0 < PAPER[0]
+
+
+def test_rows_of_ceramics_and_sectors_are_in_millimetres_and_degrees(preset: Preset) -> None:
+    rows = electrode_rows(preset("biet2008-plate").electrodes)
+    assert rows[1] == ("2", "12", "0", "11", "49", "1", "B", "away")
+    sectors = sector_rows(preset("biet2008-stator").electrodes)
+    assert sectors[1] == ("E2", "20°", "40°", "A", "towards")
