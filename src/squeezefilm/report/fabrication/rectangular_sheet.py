@@ -52,7 +52,7 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     _cut_marks(sheet, plate, cut, sign)
     whole = _dimensions(sheet, made, plate, sign)
     low = top - size_y - 34.0
-    section_view(sheet, made, made.parts, _MIDDLE, low, _keys_of_thickness(plate))
+    extra = section_view(sheet, made, made.parts, _MIDDLE, low, _keys_of_thickness(plate))
     rows = [
         ("Scale, sheet", f"{scale_said(scale)}, A3; lengths in mm"),
         ("Substrate", plate.substrate.name),
@@ -63,7 +63,7 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     ]
     block = title_block(sheet, made.display.title, made.display.name, rows)
     y = table(sheet, HEAD, electrode_rows(made.electrodes), VIEWS[3], block + 110.0)
-    notes(sheet, [*_said(plate, face, whole), *common], y - 3.0)
+    notes(sheet, [*_said(plate, face, whole), *extra, *common], y - 3.0)
     return sheet.drawing()
 
 

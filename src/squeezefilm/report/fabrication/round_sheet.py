@@ -62,7 +62,7 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     teeth = [one for one in made.parts if one.kind == "substrate"][1:]
     shown = [one for one in made.parts if one not in teeth[1:]]
     low = sheet.origin[1] - reach - 16.0 - 7.0 * len(lines)
-    section_view(sheet, made, shown, _MIDDLE, low, _keys_of_thickness(actuator))
+    extra = section_view(sheet, made, shown, _MIDDLE, low, _keys_of_thickness(actuator))
     rows = [
         ("Scale, sheet", f"{scale_said(scale)}, A3; lengths in mm"),
         *_materials(made.parts),
@@ -71,7 +71,7 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     ]
     block = title_block(sheet, made.display.title, made.display.name, rows)
     y = table(sheet, HEAD, sector_rows(made.electrodes), VIEWS[3], block + 110.0)
-    notes(sheet, [*_said(made), *common], y - 3.0)
+    notes(sheet, [*_said(made), *extra, *common], y - 3.0)
     return sheet.drawing()
 
 

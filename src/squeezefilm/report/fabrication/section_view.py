@@ -14,6 +14,7 @@ from squeezefilm.report.fabrication.sheet_parts import (
     LETTER,
     NUMBER,
     SMALL,
+    VIEWS,
     Sheet,
     tolerance_said,
 )
@@ -80,11 +81,11 @@ def section_view(
     middle: float,
     top: float,
     keys: Mapping[int, str],
-) -> None:
+) -> tuple[str, ...]:
     """Draw the best cut through `parts` about a `middle` with its upper face at `top` (mm of
     paper), with the thicknesses of the substrate and, at the right end, of what is bonded to each
     face; `keys` are those of the description by what they are of (0: the substrate, n: ceramic n,
-    −n: its glue)."""
+    −n: its glue). Notes of tolerances that have no room beside their numbers."""
     cut = best_cut(parts)
     met = [(one, found) for one in parts if (found := spans(one, cut))]
     high, low = max(one.top for one, _ in met), min(one.bottom for one, _ in met)
@@ -104,25 +105,57 @@ def section_view(
         for start, end in found:
             thick = stretch * one.thickness
             sheet.add(rectangle(layer, start + shift, height(one.bottom), end - start, thick))
-    right, away = max(ends) + shift, 7.0
-    base = met[0][0]
+    base, said = met[0][0], []
+    right = max(ends) + shift
     for one in (base, *_stacks(met)):
         number = {"ceramic": one.number, "glue": -one.number}.get(one.kind, 0)
         key = keys.get(number, "") if one is base or number else ""
+        said.append((one, key, tolerance_said(made.display, key) if key else ""))
+    room = VIEWS[2] + 4.0 - (right / sheet.unit + sheet.origin[0])
+    fits = max(end for *_, end in _columns(said)) <= room
+    for one, key, tolerance, away, _ in _columns(said if fits else [(*s[:2], "") for s in said]):
         where = max(end for span in spans(one, cut) for end in span) + shift
-        what = " glue" if one.kind == "glue" else ""
-        suffix = what + (tolerance_said(made.display, key) if key else "")
-        reach = away + (right - where) / sheet.unit
         sheet.upright(
-            height(one.bottom), height(one.top), where, reach,
-            stretch=stretch, value_of=key, suffix=suffix, beside=True,
+            height(one.bottom), height(one.top), where, away + (right - where) / sheet.unit,
+            stretch=stretch, value_of=key, suffix=f"{_what(one)}{tolerance}", beside=True,
         )  # fmt: skip
-        away += (len(f"{millimetres(one.thickness)}{suffix}") * LETTER + 3.6) * NUMBER
     bottom = top - 1e3 * (high - low) * sheet.scale * stretch
     label = "Section A–A" if isinstance(base.footprint, Rectangle) else "Section through the middle"
     larger = f"; heights drawn {stretch} times larger" if stretch > 1 else ""
     sheet.write(f"{label}{larger}", middle, bottom - 6.0, SMALL, "middle")
     sheet.lowest = bottom - 12.0
+    stated = [
+        f"{one.kind} {millimetres(one.thickness)}{tolerance}"
+        for one, _, tolerance in said
+        if tolerance
+    ]
+    return () if fits or not stated else (f"Thicknesses: {'; '.join(stated)}.",)
+
+
+_Said = tuple[Part, str, str]
+
+
+def _what(one: Part) -> str:
+    return " glue" if one.kind == "glue" else ""
+
+
+def _columns(said: Sequence[_Said]) -> list[tuple[Part, str, str, float, float]]:
+    """Each with how far from the section's right end its dimension stands, and where it ends (mm);
+    those above the substrate have their own columns over those below it."""
+    found: list[tuple[Part, str, str, float, float]] = []
+    first, away, was_above = 7.0, 7.0, False
+    for number, (one, key, tolerance) in enumerate(said):
+        above = number > 0 and one.kind != "substrate" and one.bottom > 0
+        if above and not was_above:
+            away = first
+        was_above = above
+        letters = len(f"{millimetres(one.thickness)}{_what(one)}{tolerance}")
+        end = away + (letters * LETTER + 0.6) * NUMBER
+        found.append((one, key, tolerance, away, end))
+        away = end + 3.0 * NUMBER
+        if one.kind == "substrate":
+            first = away
+    return found
 
 
 def _stacks(met: Sequence[tuple[Part, list[tuple[float, float]]]]) -> list[Part]:

@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.parameters import value_at
+from squeezefilm.display import Display
 from squeezefilm.distributions import Normal
 from squeezefilm.formats.drawing import (
     Arc,
@@ -342,7 +344,7 @@ def title_block(sheet: Sheet, title: str, name: str, rows: Sequence[tuple[str, s
     return top
 
 
-def origin_rows(display: object) -> list[tuple[str, str]]:
+def origin_rows(display: Display) -> list[tuple[str, str]]:
     """Which description the sheet is of, and when it was drawn by what."""
     made = stamp(display)
     return [
@@ -352,15 +354,18 @@ def origin_rows(display: object) -> list[tuple[str, str]]:
     ]
 
 
-def tolerance_said(display: object, path: str) -> str:
+def tolerance_said(display: Display, path: str) -> str:
     """What the description says of how far a length may be off, behind its number: " ±0.1" (two
     standard deviations, or half of an even range), or both ends of another; "" where it says
     nothing."""
-    origin = getattr(display, "provenance", {}).get(path)
+    origin = display.provenance.get(path)
     spread = None if origin is None else origin.distribution
     if spread is None:
         return ""
     if isinstance(spread, Normal):
         return f" ±{millimetres(2 * spread.standard_deviation)}"
     low, high = spread.support
+    value = value_at(display, path)[0]
+    if abs(low + high - 2 * value) < 1e-3 * (high - low):
+        return f" ±{millimetres((high - low) / 2)}"
     return f" ({millimetres(low)} to {millimetres(high)})"

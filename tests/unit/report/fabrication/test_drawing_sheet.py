@@ -218,16 +218,19 @@ def test_tolerances_of_the_description_stand_behind_their_numbers(
     stated = {
         **base.display.provenance,
         "actuator.length": Provenance("drawing 17", "measured", Normal(83e-3, 0.05e-3)),
-        "actuator.thickness": Provenance("sheet", "measured", Uniform(1.9e-3, 2.1e-3)),
+        "actuator.thickness": Provenance("sheet", "measured", Uniform(1.9e-3, 2.2e-3)),
     }
     made = with_body(base, base.display.actuator, provenance=stated)
     drawing = drawing_sheet(made)
     said = {one.value_of: one.said for one in drawing.items if isinstance(one, Dimension)}
     assert said["actuator.length"] == "83 ±0.1"
-    assert said["actuator.thickness"] == "2 (1.9 to 2.1)"
+    assert said["actuator.thickness"] == "2 (1.9 to 2.2)"
     assert said["actuator.width"] == "49"
     require_those_of_the_description(made)
     assert tolerance_said(made.display, "actuator.width") == ""
+    even = {"actuator.thickness": Provenance("sheet", "measured", Uniform(1.9e-3, 2.1e-3))}
+    narrow = with_body(base, base.display.actuator, provenance=even)
+    assert tolerance_said(narrow.display, "actuator.thickness") == " ±0.1"
     assert any("two standard deviations" in one for one in drawing.notes)
     assert any("states no tolerance" in one for one in drawing_sheet(base).notes)
 
@@ -267,3 +270,32 @@ def test_rows_of_ceramics_and_sectors_are_in_millimetres_and_degrees(preset: Pre
     assert rows[1] == ("2", "12", "0", "11", "49", "1", "B", "away")
     sectors = sector_rows(preset("biet2008-stator").electrodes)
     assert sectors[1] == ("E2", "20°", "40°", "A", "towards")
+
+
+def test_tolerances_without_room_are_a_note(preset: Preset, with_body: WithBody) -> None:
+    base = preset("winfield2007-tpad")
+    stated = {
+        f"actuator.{key}": Provenance("a", "measured", Uniform(0.123 * value, 1.0123 * value))
+        for key, value in (
+            ("thickness", 1.6e-3),
+            ("ceramic_thickness", 1e-3),
+            ("glue.thickness", 2e-5),
+        )
+    }
+    made = with_body(base, base.display.actuator, provenance=stated)
+    drawing = drawing_sheet(made)
+    require_apart(drawing)
+    assert any(one.startswith("Thicknesses: substrate 1.6 (") for one in drawing.notes)
+
+
+def test_ceramics_on_both_faces_have_their_thicknesses(preset: Preset, with_body: WithBody) -> None:
+    base = preset("biet2008-plate")
+    plate = base.display.actuator
+    assert isinstance(plate, RectangularPlate)
+    above = tuple(dataclasses.replace(one, face="top", thickness=0.3e-3) for one in plate.patches)
+    made = with_body(base, dataclasses.replace(plate, patches=(*plate.patches, *above)))
+    drawing = drawing_sheet(made)
+    require_apart(drawing)
+    found = require_those_of_the_description(made)
+    assert {"actuator.patches.6.thickness", "actuator.patches.13.thickness"} <= set(found)
+    assert "Dashed: 7 ceramics on the upper face." in drawing.notes
