@@ -51,6 +51,8 @@ _NAMES = {
     "calibrate_display": "measure.calibration.folder",
     "predict_measurement": "measure.calibration.questions",
     "score_prediction": "measure.calibration.folder",
+    # Built
+    "fabricate": "measure.planned.fabricate",
     # Studies
     "plan_study": "study.design.plan",
     "run_study": "report.study.session",

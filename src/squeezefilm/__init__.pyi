@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.plate.command import PlateAnalysis
     from squeezefilm.analysis.plate.ring import RingAnalysis
     from squeezefilm.analysis.sensitivities import Effort
+    from squeezefilm.analysis.uncertainty import UncertainFriction
     from squeezefilm.bench.play import PlayResult
     from squeezefilm.chain.friction_models import FrictionModel
     from squeezefilm.chain.pad_place import FacePlace
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from squeezefilm.measure.calibration.blind import BlindPrediction, Score
     from squeezefilm.measure.calibration.folder import FolderCalibration
     from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
+    from squeezefilm.measure.planned.fabricate import Fabrication
     from squeezefilm.measure.recordings.read import check_recording as check_recording
     from squeezefilm.measure.recordings.read import read_recording as read_recording
     from squeezefilm.perception.observer import NamedObserver
@@ -373,6 +375,18 @@ if TYPE_CHECKING:
         progress: SayProgress | None = ...,
     ) -> tuple[tuple[Score, ...], tuple[str, ...]]:
         """A prediction's file compared with a folder of recordings made since: error, inside its"""
+    def fabricate(
+        display: NamedDisplay | str | Path,
+        *,
+        prediction: Prediction | None = ...,
+        uncertainty: UncertainFriction | None = ...,
+        samples: int = ...,
+        intervals: bool = ...,
+        blind: BlindPrediction | None = ...,
+        seed: int = ...,
+        progress: SayProgress | None = ...,
+    ) -> Fabrication:
+        """What it takes to build a display and to measure it, with what is expected."""
     def plan_study(
         design: NamedDesign | str | Path, participants: int = ..., seed: int = ...
     ) -> StudyPlan:

@@ -40,6 +40,7 @@ NAMES = (
     "calibrate_display",
     "check_recording",
     "display_names",
+    "fabricate",
     "fit_psychometric",
     "fit_recording",
     "load_display",

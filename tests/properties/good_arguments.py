@@ -16,6 +16,7 @@ import numpy as np
 from squeezefilm.actuators.motor.assembled import Working
 from squeezefilm.actuators.motor.description import Motor
 from squeezefilm.control.force_law import ForceLaw
+from squeezefilm.plate.parts import Sector
 from squeezefilm.plate.shear.section import ShearLayout, ShearSection
 from squeezefilm.plate.solid.modes import PlateModes
 from squeezefilm.plate.sound import RadiatingSurface
@@ -192,8 +193,13 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "formats.hjif_read.friction_along": {"document": Later(hjif_document)},
     "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
-    "formats.dxf.DxfRectangle": {"layer": "BOARD"},
-    "formats.dxf.DxfText": {"text": "a board"},
+    "formats.drawing.Layer": {"colour": 7},
+    "formats.drawing.Polyline": {"layer": "BOARD", "points": ((0.0, 0.0), (1e-3, 0.0))},
+    "formats.drawing.rectangle": {"layer": "BOARD"},
+    "formats.drawing.Arc": {"layer": "BOARD"},
+    "formats.drawing.Text": {"text": "a board"},
+    "formats.drawing.Drawing": {"layers": {}},
+    "formats.stl.stl_bytes": {"triangles": np.zeros((2, 3, 3)), "title": "a board"},
     "formats.image_file.ImageFile": {"file": "picture.png"},
     "formats.traces.Table": {"columns": {"time_s": _GRID}},
     "formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
@@ -214,6 +220,15 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "plate.ring.pair.crest_speed": {"travelling": 1e-6},
     "plate.solid.screening.screened_modes": {"band": (30e3, 60e3)},
+    "plate.parts.Sector": {"inner_radius": 1e-3, "outer_radius": 2e-3},
+    "plate.parts.Part": {
+        "kind": "glue",
+        "number": 1,
+        "material": "epoxy",
+        "footprint": Sector(0.0, 1e-3),
+        "bottom": 0.0,
+        "top": 1e-3,
+    },
     "plate.ring.section.RingLayer": {
         "inner_radius": 1e-3,
         "outer_radius": 10e-3,

@@ -343,6 +343,7 @@ def unit_of(annotation: Any) -> Unit | None:
 Dimensionless = Annotated[float, Unit("1")]
 Metre = Annotated[float, Unit("m")]
 SquareMetre = Annotated[float, Unit("m2")]
+CubicMetre = Annotated[float, Unit("m3")]
 Second = Annotated[float, Unit("s")]
 Hertz = Annotated[float, Unit("Hz")]
 PerMetre = Annotated[float, Unit("1/m")]

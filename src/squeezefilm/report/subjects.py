@@ -24,12 +24,16 @@ from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.errors import InputError
 from squeezefilm.measure.calibration.folder import FolderCalibration
+from squeezefilm.measure.planned.fabricate import Fabrication
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.report import film_map
 from squeezefilm.report.display.figures import FIGURES
 from squeezefilm.report.display.page import write_analysis
+from squeezefilm.report.fabrication.drawing_sheet import drawing_sheet
+from squeezefilm.report.fabrication.page import write_fabrication
 from squeezefilm.report.friction import figures as friction
 from squeezefilm.report.kit.page_style import FigureOf
+from squeezefilm.report.kit.sheet import sheet_figure
 from squeezefilm.report.measured import calibration_figures
 from squeezefilm.report.measured.calibration_page import write_calibration
 from squeezefilm.report.plate import plate, ring, sensitivity_figures
@@ -95,6 +99,9 @@ SUBJECTS: Mapping[type, _Subject] = {
     RenderAnalysis: _Subject(_by_key(textures.FIGURES), write_render),
     PlayedSession: _Subject(_PLAYED),
     PlayResult: _Subject({key: _of_session(draw) for key, draw in _PLAYED.items()}, write_play),
+    Fabrication: _Subject(
+        {"drawing": lambda one: sheet_figure(drawing_sheet(one))}, write_fabrication
+    ),
     FolderCalibration: _Subject(_by_key(calibration_figures.FIGURES), write_calibration),
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
     TaskAnalysis: _Subject(_by_key(TASK_FIGURES), write_study),

@@ -121,6 +121,21 @@ def predict_blind(
         raise InputError(
             f"{target} is there already; a prediction is never overwritten, name another"
         )
+    write_whole(target, sealed(predicted(source, what, seed=seed, progress=progress)))
+    return load_prediction(target)
+
+
+def predicted(
+    source: Display | Calibration,
+    what: Sequence[Observation],
+    *,
+    seed: int = 1,
+    progress: SayProgress | None = None,
+) -> BlindPrediction:
+    """What will be measured, as `predict_blind` writes it, not yet sealed: its SHA-256 is empty.
+
+    Raises `InputError` where nothing is asked or an answer is not known.
+    """
     if not what:
         raise InputError("nothing is to be predicted; name at least one answer")
     for one in what:
@@ -138,11 +153,14 @@ def predict_blind(
         else _of_calibration(source, what)
     )
     predictions = tuple(_predicted(one, rows[id(one)]) for one in what)
-    whole = BlindPrediction(display.name, how, predictions, stamp(display, seed), "")
-    content = {"kind": KIND, **to_json(whole)}
+    return BlindPrediction(display.name, how, predictions, stamp(display, seed), "")
+
+
+def sealed(prediction: BlindPrediction) -> str:
+    """The text of a prediction's file, which ends with the SHA-256 of its own content."""
+    content = {"kind": KIND, **to_json(prediction)}
     content["sha256"] = _digest(content)
-    write_whole(target, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
-    return load_prediction(target)
+    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
 def _asked_friction(one: Observation) -> object:

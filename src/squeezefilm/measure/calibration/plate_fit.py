@@ -76,8 +76,6 @@ def answers_to_solve(display: Display, observations: tuple[Observation, ...]) ->
         lines = (n - 1, 0) if m == 0 else (0, m - 1)
         if max(lines) >= 2:
             asked.append(Asked(MODE_FREQUENCY, lines))
-    else:
-        asked.remove(Asked("mass"))
     asked += [asked_by(one) for one in observations]
     return tuple(dict.fromkeys(asked))
 

@@ -20,7 +20,9 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.kept_arrays import KeptArrays, in_passing
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.plate.electronics import ring_admittance
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.plate.parts import assembly_mass
 from squeezefilm.plate.ring.body import ring_body
 from squeezefilm.plate.ring.modes import clamped_capacitance
 from squeezefilm.plate.solid.solve import solve_modes
@@ -113,13 +115,13 @@ def solved_answers(actuator: Actuator, asked: tuple[Asked, ...]) -> SolvedAnswer
     """
     if isinstance(actuator, AnnularStator):
         raise InputError("a stator's answers are measured values; ask for a plate or a disc")
-    own = PLATE_ANSWERS if isinstance(actuator, RectangularPlate) else _OF_A_DISC
     for one in asked:
-        if one.name not in own and not (
+        if one.name not in PLATE_ANSWERS and not (
             one.lines is not None and isinstance(actuator, RectangularPlate)
         ):
             raise InputError(
-                f"the solved {actuator.type} has no answer '{one.said}'; it has: {', '.join(own)}"
+                f"the solved {actuator.type} has no answer '{one.said}'; it has: "
+                f"{', '.join(PLATE_ANSWERS)}"
             )
     found = _working(actuator)
     for one in asked:
@@ -127,9 +129,6 @@ def solved_answers(actuator: Actuator, asked: tuple[Asked, ...]) -> SolvedAnswer
             found[one] = _other_mode(actuator, one.lines)
     rows = np.array([found[one] for one in asked]).reshape(-1, 3)
     return SolvedAnswers(rows[:, 0], rows[:, 1], rows[:, 2])
-
-
-_OF_A_DISC = tuple(name for name in PLATE_ANSWERS if name != "mass")
 
 
 def _question(actuator: Actuator, mode: object) -> str:
@@ -180,7 +179,7 @@ def _of_plate(plate: RectangularPlate) -> tuple[_Named, Mapping[str, float]]:
             mode.amplitude_error / mode.amplitude_per_volt,
         ),
         "half_wavelength": (mode.half_wavelength, 0.0),
-        "mass": (plate_mass(plate), 0.0),
+        "mass": (assembly_mass(plate), 0.0),
         "modal_mass": (mode.modal_mass, 0.0),
     }
     return named, _read_beside(mode, named)
@@ -214,8 +213,14 @@ def _of_disc(disc: DiscPlate) -> tuple[_Named, Mapping[str, float]]:
     annular = mode.disc
     assert annular is not None
     assert mode.modal_mass is not None
-    held = clamped_capacitance(body.section, body.drive)
-    coupling = annular.coupling_coefficient(body.drive, held)
+    # Beside the mode, as a sweep reads it: all other modes are in it, not the clamped body's alone.
+    circuit = ring_admittance(disc).circuit
+    if circuit is None:
+        static = clamped_capacitance(body.section, body.drive)
+        coupling = annular.coupling_coefficient(body.drive, static)
+    else:
+        static, moving = circuit.static_capacitance, circuit.motional_capacitance
+        coupling = math.sqrt(moving / (moving + static))
     error = (mode.frequency_error or 0.0) / mode.resonance_frequency
     named = {
         "resonance_frequency": (mode.resonance_frequency, error),
@@ -224,10 +229,11 @@ def _of_disc(disc: DiscPlate) -> tuple[_Named, Mapping[str, float]]:
             error,
         ),
         "coupling_coefficient": (coupling, 0.0),
-        "static_capacitance": (held, 0.0),
+        "static_capacitance": (static, 0.0),
         "quality_factor": (mode.quality_factor, 0.0),
         "amplitude_per_volt": (mode.amplitude_per_volt, 0.0),
         "half_wavelength": (mode.half_wavelength, 0.0),
+        "mass": (assembly_mass(disc), 0.0),
         "modal_mass": (mode.modal_mass, 0.0),
     }
     # Its modes are far apart, and none is solved beside the working one.
@@ -249,14 +255,3 @@ def _other_mode(plate: RectangularPlate, lines: tuple[int, int]) -> tuple[float,
             kept = np.array([frequency, float(modes.errors[at]) / frequency])
         _KEPT.put(question, kept)
     return float(kept[0]), float(kept[1]), 0.0
-
-
-def plate_mass(plate: RectangularPlate) -> si.Kilogram:
-    """What a plate weighs with its ceramics and their glue (kg)."""
-    glue = 0.0 if plate.glue is None else plate.glue.thickness * plate.glue.density
-    area_mass = sum(
-        patch.length * patch.width * (patch.thickness * plate.ceramic.density + glue)
-        for patch in plate.patches
-    )
-    body = plate.length * plate.width * plate.thickness * plate.substrate.density
-    return float(body + area_mass)

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
-from squeezefilm.formats.dxf import DxfDimension, DxfDrawing, DxfRectangle, DxfText, dxf_text
+from squeezefilm.formats.drawing import Dimension, Drawing, Item, Layer, Text, rectangle
+from squeezefilm.formats.dxf import dxf_text
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import M, printable, shown
@@ -32,7 +33,7 @@ TOLERANCE: si.Metre = 20e-6
 """Of widths, where none is asked for: what an etched board keeps; assumed."""
 
 _GAP: si.Metre = 12e-3
-_LAYERS = {"BOARD": 7, "RIDGES": 1}
+_LAYERS = {"BOARD": Layer(7), "RIDGES": Layer(1)}
 
 
 def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERANCE) -> Path:
@@ -56,8 +57,8 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
     }
     files: dict[str, str | bytes] = {
         **picture_files(figures),
-        "boards.dxf": dxf_text(dxf_of(found)),
-        **{f"board-{k + 1}.dxf": dxf_text(dxf_of((one,))) for k, one in enumerate(found)},
+        "boards.dxf": dxf_text(drawing_of(found)),
+        **{f"board-{k + 1}.dxf": dxf_text(drawing_of((one,))) for k, one in enumerate(found)},
         "boards.json": json_text(numbers),
     }
     names = [name for name in files if not name.endswith(".png")]
@@ -128,25 +129,32 @@ def _table(found: tuple[Board, ...], tolerance: si.Metre) -> str:
     return text_table(caption, HEAD, board_rows(found, tolerance))
 
 
-def dxf_of(found: tuple[Board, ...]) -> DxfDrawing:
+def drawing_of(found: tuple[Board, ...]) -> Drawing:
     """The boards one above the other, with a ridge's and a period's dimension on each."""
-    rectangles, dimensions, texts, y = [], [], [], 0.0
+    items: list[Item] = []
+    y = 0.0
     for board in found:
         one = board.grating
-        rectangles.append(DxfRectangle("BOARD", 0.0, y, one.length, one.width))
-        rectangles += [
-            DxfRectangle("RIDGES", float(begin), y, float(end - begin), one.width)
+        items.append(rectangle("BOARD", 0.0, y, one.length, one.width))
+        items += [
+            rectangle("RIDGES", float(begin), y, float(end - begin), one.width)
             for begin, end in zip(board.begin, board.end, strict=True)
         ]
         top = y + one.width
-        dimensions.append(DxfDimension(0.0, board.ridge_width, top))
-        dimensions.append(DxfDimension(board.ridge_width, one.period, top + 3e-3))
-        dimensions.append(DxfDimension(0.0, one.length, top + 6e-3))
-        texts.append(
-            DxfText(f"{one.name}: ridges {1e6 * one.ridge_height:g} um high", 0.0, y - 4e-3)
-        )
+        items += [
+            _along(0.0, board.ridge_width, top),
+            _along(board.ridge_width, one.period, top + 3e-3),
+            _along(0.0, one.length, top + 6e-3),
+            Text(f"{one.name}: ridges {1e6 * one.ridge_height:g} um high", 0.0, y - 4e-3),
+        ]
         y += one.width + 1.5 * _GAP + 6e-3
-    return DxfDrawing(_LAYERS, rectangles, dimensions, texts)
+    return Drawing(_LAYERS, items)
+
+
+def _along(start: si.Metre, end: si.Metre, y: si.Metre) -> Dimension:
+    """A dimension along the stroke, its line 4 mm above a height (m)."""
+    at = y + 4e-3
+    return Dimension(start, y, end, y, at, (start + end) / 2, at + 1.5e-3)
 
 
 @style.drawn

@@ -28,7 +28,6 @@ from squeezefilm.measure.calibration.solved_answers import (
     MODE_FREQUENCY,
     Asked,
     asked_by,
-    plate_mass,
     solved_answers,
 )
 from squeezefilm.measure.calibration.written_display import (
@@ -36,7 +35,12 @@ from squeezefilm.measure.calibration.written_display import (
     calibrated_text,
     write_calibrated,
 )
+from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+from squeezefilm.plate.electronics import ring_admittance
+from squeezefilm.plate.layout import DiscPlate
+from squeezefilm.plate.parts import assembly_mass
 
 STATOR = "biet2008-stator"
 
@@ -159,7 +163,7 @@ def test_what_is_solved_of_a_display() -> None:
     asked = answers_to_solve(plate, ())
     assert Asked(MODE_FREQUENCY, (7, 0)) in asked
     assert Asked("mass") in asked
-    assert Asked("mass") not in answers_to_solve(load_display("winfield2007-tpad"), ())
+    assert Asked("mass") in answers_to_solve(load_display("winfield2007-tpad"), ())
     assert sum(design_sizes(8)) < 150
 
 
@@ -169,7 +173,7 @@ def test_solved_answers_of_plate_and_disc(tmp_path: Path, monkeypatch: pytest.Mo
     plate, disc = (load_display(one).actuator for one in ("biet2008-plate", "winfield2007-tpad"))
     asked = (Asked("mass"), Asked("resonance_frequency"), Asked("parallel_resonance_frequency"))
     found = solved_answers(plate, asked)
-    assert found.values[0] == pytest.approx(plate_mass(plate))  # type: ignore[arg-type]
+    assert found.values[0] == pytest.approx(assembly_mass(plate))
     assert found.values[1] < found.values[2]
     assert found.errors[1] < 3e-3
     # A fit of one circuit sees the neighbours in its band as a higher parallel resonance.
@@ -181,10 +185,27 @@ def test_solved_answers_of_plate_and_disc(tmp_path: Path, monkeypatch: pytest.Mo
     # The numbers, and not the plate: a hundred of them would push out those that a user works on.
     assert "plate_answers" in kept
     assert "solved-plates" not in kept
-    of_disc = solved_answers(disc, asked[1:])
-    assert 0 < of_disc.values[0] < of_disc.values[1]
+    of_disc = solved_answers(disc, asked)
+    assert of_disc.values[0] == pytest.approx(assembly_mass(disc))
+    assert 0 < of_disc.values[1] < of_disc.values[2]
     with pytest.raises(InputError, match="has no answer"):
-        solved_answers(disc, asked)
+        solved_answers(disc, (Asked(MODE_FREQUENCY, (3, 0)),))
+
+
+@pytest.mark.slow
+def test_answers_of_a_disc_are_what_a_sweep_of_it_reads() -> None:
+    disc = load_display("winfield2007-tpad").actuator
+    assert isinstance(disc, DiscPlate)
+    swept = ring_admittance(disc)
+    fit = fit_impedance(ImpedanceSweep(swept.frequencies, swept.admittance))
+    read = {one.answer: one.value for one in fit.observations}
+    asked = tuple(Asked(name) for name in read)
+    solved = dict(zip(read, solved_answers(disc, asked).values, strict=True))
+    assert read["parallel_resonance_frequency"] == pytest.approx(
+        solved["parallel_resonance_frequency"], rel=1e-3
+    )
+    assert read["static_capacitance"] == pytest.approx(solved["static_capacitance"], rel=0.02)
+    assert read["quality_factor"] == pytest.approx(solved["quality_factor"], rel=0.01)
 
 
 @pytest.mark.slow

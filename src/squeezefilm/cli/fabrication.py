@@ -1,0 +1,53 @@
+"""The verb that turns a display into what a workshop and a bench need."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.cli.app import AsJson, Target, answer, app, to_be_solved, working, written_to
+from squeezefilm.errors import InputError
+
+
+@app.command()
+def fabricate(
+    target: Target,
+    out: Annotated[Path, written_to("Folder for drawing, bodies, tables, plan and a page.")],
+    quick: Annotated[
+        bool,
+        typer.Option(
+            "--quick", help="Without intervals: seconds in place of a minute or two of solving."
+        ),
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Write what it takes to build a display and to measure it: dimensioned drawing (DXF, PDF,
+    SVG), bodies (STL), electrodes and poling, bill of materials, drive electronics, and a test plan
+    with what is expected."""
+    from squeezefilm.actuators.described import is_actuator
+    from squeezefilm.loading import loading
+
+    if is_actuator(target):
+        raise InputError(
+            f"'{target}' describes a motor or a skin-stretch array; fabricate takes a display: "
+            "squeezefilm presets lists those that come with the package"
+        )
+    with loading():
+        from squeezefilm.measure.planned.fabricate import fabricate as run
+        from squeezefilm.measure.planned.fabricate import sealed_already
+        from squeezefilm.report.fabrication.page import (
+            PREDICTION,
+            show_fabrication,
+            write_fabrication,
+        )
+        from squeezefilm.report.kit.folder import require_folder
+    folder = require_folder(out)
+    display = to_be_solved(target, quiet=as_json)
+    blind = None if quick else sealed_already(folder / PREDICTION, display)
+    with working(as_json) as step:
+        made = run(display, intervals=not quick, blind=blind, progress=step)
+        step("drawing and files")
+        written = write_fabrication(made, folder)
+    answer(as_json, made, show_fabrication, page=written)

@@ -1,0 +1,1 @@
+"""A display as a workshop and a bench get it: drawing, tables, files."""

@@ -1,0 +1,51 @@
+"""Displays made ready for a workshop without solving a plate: as beams, without intervals."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable
+
+import pytest
+
+import squeezefilm as sf
+from squeezefilm.analysis.fabrication.bill import bill_of
+from squeezefilm.analysis.fabrication.wiring import electrodes_of
+from squeezefilm.chain.prediction import predict
+from squeezefilm.display import Display
+from squeezefilm.measure.planned.fabricate import Fabrication, fabricate
+from squeezefilm.plate.layout import Actuator, RectangularPlate
+from squeezefilm.plate.parts import parts_of
+
+
+@functools.cache
+def made_ready(name: str) -> Fabrication:
+    """A preset."""
+    display = sf.load_display(name)
+    plate = isinstance(display.actuator, RectangularPlate)
+    prediction = predict(display, theory="timoshenko" if plate else None)
+    return fabricate(display, prediction=prediction, intervals=False)
+
+
+def another(made: Fabrication, actuator: Actuator, **display: object) -> Fabrication:
+    """The same with another body in its place; what was predicted stays that of the first."""
+    parts = parts_of(actuator)
+    electrodes = electrodes_of(actuator, parts)
+    changed: Display = dataclasses.replace(made.display, actuator=actuator, **display)  # type: ignore[arg-type] # fields
+    return dataclasses.replace(
+        made,
+        display=changed,
+        parts=parts,
+        electrodes=electrodes,
+        bill=bill_of(actuator, parts, electrodes),
+    )
+
+
+@pytest.fixture(scope="session")
+def preset() -> Callable[[str], Fabrication]:
+    return made_ready
+
+
+@pytest.fixture(scope="session")
+def with_body() -> Callable[..., Fabrication]:
+    return another
