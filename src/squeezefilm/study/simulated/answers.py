@@ -17,7 +17,7 @@ from squeezefilm.results import Result, stamp
 from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.judgements import ASSUMED, simulate_judgements
+from squeezefilm.study.simulated.judgements import assumed, simulate_judgements
 from squeezefilm.study.simulated.participants import (
     SimulatedStudy,
     require_people,
@@ -52,7 +52,7 @@ class SimulatedAnswers(Result):
         """What they say, by display; a psychometric function a person takes some 20 ms."""
         design = self.tables.design
         return analyze_answers(
-            self.answers, design.name, assumed=ASSUMED[design.task], seed=self.seed
+            self.answers, design.name, assumed=assumed(design), seed=self.seed
         )
 
     def summary(self) -> dict[str, Any]:

@@ -23,7 +23,9 @@ from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.perception.free_hand import free_exploration
 from squeezefilm.perception.observer import FingerClass, Observer
+from squeezefilm.perception.path_percepts import RunPercept, path_percept
 from squeezefilm.perception.percepts import (
     Apparatus,
     Percept,
@@ -36,7 +38,9 @@ from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import config_hash
 from squeezefilm.second_process import later, values
+from squeezefilm.study.design.matching import Exploring
 from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.texture_file import TextureFile
 
 _AT_ONCE = 6
 """Fingers between two words of progress: of fewer, one of two processes waits for the other."""
@@ -89,6 +93,9 @@ class ChainTables:
         real_rhythm: likewise, shape (fingers, alternatives, periods).
         causes: of each display and stimulus, one per finger.
         plates: the displays themselves, by the design's displays.
+        across: of free exploration, candidates along y, in the shape of `virtual`, which are then
+            those along x; None where people explore by strokes.
+        across_rhythm: likewise, in the shape of `virtual_rhythm`.
     """
 
     design: StudyDesign
@@ -101,18 +108,37 @@ class ChainTables:
     real_rhythm: si.DimensionlessArray
     causes: tuple[tuple[tuple[Causes, ...], ...], ...]
     plates: tuple[Display, ...] = ()
+    across: Candidates | None = None
+    across_rhythm: si.DimensionlessArray | None = None
 
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
         """Candidates of a surface that is not among the design's stimuli, such as a comparison
-        that an adaptive method chose, shape (candidates,)."""
-        found = _virtual(
+        that an adaptive method chose, shape (candidates,); of free exploration (2, candidates),
+        along x and along y."""
+        (found,) = _of_finger(
             self.plates[display],
-            stimulus,
+            (stimulus,),
             self.observer,
             self.fingers[finger],
             self.apparatus[display],
+            self.design.exploring,
         )
-        return found.candidates
+        one, other = found.candidates, found.across
+        if other is None:
+            return one
+        return Candidates(
+            np.stack([one.period, other.period]), np.stack([one.d_prime, other.d_prime])
+        )
+
+    @property
+    def directions(self) -> Candidates:
+        """Candidates with an axis for the directions in which they were felt, shape (displays,
+        fingers, stimuli, directions, candidates): one of strokes, two of free exploration."""
+        every = [self.virtual] if self.across is None else [self.virtual, self.across]
+        return Candidates(
+            np.stack([one.period for one in every], axis=-2),
+            np.stack([one.d_prime for one in every], axis=-2),
+        )
 
     def explain(self, display: int = 0) -> dict[str, Causes]:
         """The reasons by stimulus on one of the displays: medians over fingers."""
@@ -152,7 +178,7 @@ def chain_tables(
     fingers = observer.fingers()
     real = [[_real(one, observer, finger) for one in design.alternatives] for finger in fingers]
     pieces = [
-        later(_of_finger, plate, design.stimuli, observer, one, run)
+        later(_of_finger, plate, design.stimuli, observer, one, run, design.exploring)
         for plate, run in zip(plates, runs, strict=True)
         for one in fingers
     ]
@@ -162,6 +188,7 @@ def chain_tables(
         tell(f"{plate.name}: finger {number + 1} of {len(fingers)}")
         found += values(*pieces[first : first + _AT_ONCE])
     virtual = [found[k : k + len(fingers)] for k in range(0, len(found), len(fingers))]
+    free = design.exploring == "free"
     return ChainTables(
         design=design,
         observer=observer,
@@ -176,16 +203,21 @@ def chain_tables(
             tuple(tuple(row[s].causes for row in by_finger) for s in range(len(design.stimuli)))
             for by_finger in virtual
         ),
+        across=_competing(virtual, _across) if free else None,
+        across_rhythm=_gathered(virtual, lambda one: one.across_rhythm) if free else None,
     )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Felt:
-    """What the tables hold of one surface under one finger; a real grating has no causes."""
+    """What the tables hold of one surface under one finger; a real grating has no causes, and one
+    that strokes explore nothing across."""
 
     candidates: Candidates
     rhythm: si.DimensionlessArray
     causes: Causes
+    across: Candidates | None = None
+    across_rhythm: si.DimensionlessArray | None = None
 
 
 def _of_finger(
@@ -194,8 +226,10 @@ def _of_finger(
     observer: Observer,
     finger: FingerClass,
     run: Apparatus,
+    exploring: Exploring,
 ) -> list[_Felt]:
-    return [_virtual(plate, one, observer, finger, run) for one in stimuli]
+    felt = _free if exploring == "free" else _virtual
+    return [felt(plate, one, observer, finger, run) for one in stimuli]
 
 
 _KEPT = KeptArrays("percepts", [Path(squeezefilm.__file__).parent])
@@ -223,6 +257,27 @@ def _virtual(
     return _Felt(one, rhythm, why)
 
 
+@functools.lru_cache(maxsize=4096)
+def _free(
+    display: Display, stimulus: Stimulus, observer: Observer, finger: FingerClass, run: Apparatus
+) -> _Felt:
+    """The same of a plain hand that explores the face freely; not kept on disk."""
+    path = free_exploration(observer, finger, display.actuator.extent)
+    surface = TextureFile(stimulus.surface(), stimulus.name)
+    found = path_percept(display, surface, observer, finger, [path], run)
+    # The hand sweeps both ways, on lines far longer than the shortest run.
+    assert found.along is not None and found.across is not None
+    one, other = found.along, found.across
+    clearer = max(one, other, key=lambda run: run.clearest_d_prime)
+    return _Felt(
+        one.percept.candidates,
+        one.percept.evidence.rhythm,
+        free_causes(stimulus, clearer, found.played[0], finger),
+        other.percept.candidates,
+        other.percept.evidence.rhythm,
+    )
+
+
 @functools.lru_cache(maxsize=256)
 def _hash(inputs: tuple[Display, Observer, FingerClass, Apparatus]) -> str:
     return config_hash(inputs)
@@ -234,14 +289,23 @@ def _real(grating: Grating, observer: Observer, finger: FingerClass) -> _Felt:
     return _Felt(found.candidates, found.evidence.rhythm, _NO_CAUSES)
 
 
-def _competing(tree: Any) -> Candidates:
+def _along(felt: _Felt) -> Candidates:
+    return felt.candidates
+
+
+def _across(felt: _Felt) -> Candidates:
+    assert felt.across is not None
+    return felt.across
+
+
+def _competing(tree: Any, which: Callable[[_Felt], Candidates] = _along) -> Candidates:
     return Candidates(
-        _gathered(tree, lambda one: one.candidates.period),
-        _gathered(tree, lambda one: one.candidates.d_prime),
+        _gathered(tree, lambda one: which(one).period),
+        _gathered(tree, lambda one: which(one).d_prime),
     )
 
 
-def _gathered(tree: Any, part: Callable[[_Felt], si.FloatArray]) -> si.FloatArray:
+def _gathered(tree: Any, part: Callable[[_Felt], si.FloatArray | None]) -> si.FloatArray:
     """One array of every percept in nested lists, which become its first axes."""
 
     def gather(one: Any) -> Any:
@@ -267,13 +331,33 @@ def causes(
     finger: FingerClass,
 ) -> Causes:
     """The numbers of one percept of a virtual grating; `played` is its rendering."""
-    period, loop = stimulus.period, played.stroke
-    latency = 0.0 if loop.sensor is None else loop.sensor.latency
-    lag = (latency + played.time_constant) * finger.speed
+    loop = played.stroke
     rendered, asked = (
-        _line(loop.position, values, observer, period)
+        _line(loop.position, values, observer, stimulus.period)
         for values in (loop.relative_friction_rendered, played.asked)
     )
+    return _causes(stimulus, found, played, finger, rendered, asked)
+
+
+def free_causes(
+    stimulus: Stimulus, found: RunPercept, played: RenderAnalysis, finger: FingerClass
+) -> Causes:
+    """The same of the runs of a free exploration in one direction; `contrast_kept` is of the whole
+    swing of friction, for a shape has no line of its own."""
+    return _causes(stimulus, found.percept, played, finger, found.felt_swing, found.asked_swing)
+
+
+def _causes(
+    stimulus: Stimulus,
+    found: Percept,
+    played: RenderAnalysis,
+    finger: FingerClass,
+    rendered: si.Dimensionless,
+    asked: si.Dimensionless,
+) -> Causes:
+    period, sensor = stimulus.period, played.stroke.sensor
+    latency = 0.0 if sensor is None else sensor.latency
+    lag = (latency + played.time_constant) * finger.speed
     return Causes(
         texture_frequency=finger.speed / period,
         envelope_bandwidth=1.0 / (2.0 * math.pi * played.time_constant),

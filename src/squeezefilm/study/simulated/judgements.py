@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.perception.free_hand import SAYS
 from squeezefilm.perception.observer import Observer
 from squeezefilm.perception.perceived import Perceived, perceived
 from squeezefilm.perception.senses import D_PRIME_OF_75, FINEST_PERIOD, Candidates
@@ -29,6 +30,8 @@ from squeezefilm.study.design.study_design import StudyDesign, Task
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.recalled import ASSUMED as RECALLED
+from squeezefilm.study.simulated.recalled import difference
 
 _CHUNK = 60
 """People whose noise is drawn together; orders of more people repeat those of the first so many."""
@@ -60,6 +63,26 @@ ASSUMED: dict[Task, tuple[str, ...]] = {
 }
 """What simulated answers assume beyond the observer's own file, by task."""
 
+_IN_PLANE: dict[Task, tuple[str, ...]] = {
+    "two-interval": ("Of the two directions the one in which a rhythm is clearer decides.",),
+    "magnitude-estimation": ("Of the two directions the one in which a rhythm is clearer decides.",),
+    "same-different": (
+        "Surfaces explored freely are called different where strengths in both directions, and "
+        "periods where both are felt, differ by more than one standard deviation in the root of "
+        "the mean square, whatever is judged.",
+    ),
+    "match-to-sample": (),
+}
+
+
+def assumed(design: StudyDesign) -> tuple[str, ...]:
+    """What the simulated answers to a design assume beyond the observer's own file."""
+    found = ASSUMED[design.task]
+    if design.exploring == "free":
+        found = (SAYS, *(found if design.task != "same-different" else ()), *_IN_PLANE[design.task])
+    return (*found, *(RECALLED if design.matched_with == "stimuli" else ()))
+
+
 _JUDGED = ("spatial_period", "friction_depth")
 
 
@@ -79,7 +102,15 @@ class _People:
     slowness: si.FloatArray
 
     @classmethod
-    def drawn(cls, observer: Observer, fingers: int, asked: int, seed: int, chunk: int) -> _People:
+    def drawn(
+        cls,
+        observer: Observer,
+        fingers: int,
+        asked: int,
+        seed: int,
+        chunk: int,
+        directions: tuple[int, ...],
+    ) -> _People:
         """Whoever is in a chunk; nobody depends on how many there are."""
         random = np.random.default_rng([seed, _STREAM, chunk])
         normal, among = random.standard_normal, random.random
@@ -90,8 +121,8 @@ class _People:
             lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(_CHUNK)),
             scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(_CHUNK)),
             memory=normal(_CHUNK),
-            noise=normal((asked, 2, _CHUNK, observer.candidates)),
-            blur=normal((asked, 2, _CHUNK)),
+            noise=normal((asked, 2, _CHUNK, *directions, observer.candidates)),
+            blur=normal((asked, 2, _CHUNK, *directions)),
             blind=among((asked, _CHUNK)),
             guess=among((asked, _CHUNK)),
             slowness=normal((asked, _CHUNK)),
@@ -149,7 +180,12 @@ def simulate_judgements(
     for first in range(0, participants, _CHUNK):
         count = min(_CHUNK, participants - first)
         people = _People.drawn(
-            observer, len(tables.fingers), len(schedules[0]), seed, first // _CHUNK
+            observer,
+            len(tables.fingers),
+            len(schedules[0]),
+            seed,
+            first // _CHUNK,
+            room.directions,
         )
         parts.append(_chunk(room, people, schedules[:count], first))
         # Twenty words are enough for however many.
@@ -171,6 +207,9 @@ class _Room:
         self.display = {name: number for number, name in enumerate(design.displays)}
         self._chosen: dict[tuple[str, float], int] = {}
         self._felt: dict[tuple[int, int, int], tuple[si.FloatArray, si.FloatArray]] = {}
+        free = tables.across is not None
+        self.directions: tuple[int, ...] = (2,) if free else ()
+        self._known = tables.directions if free else tables.virtual
 
     def chosen(self, series: str, intensity: float) -> int:
         """The number of what an adaptive series presents at an intensity."""
@@ -182,10 +221,11 @@ class _Room:
         return self._chosen[key]
 
     def felt(self, display: int, finger: int, surface: int) -> tuple[si.FloatArray, si.FloatArray]:
-        """Candidates of a surface under a finger: periods (m) and d′."""
+        """Candidates of a surface under a finger, by direction where it is explored in two:
+        periods (m) and d′."""
         key = display, finger, surface
         if key not in self._felt:
-            known, shown = self.tables.virtual, len(self.design.stimuli)
+            known, shown = self._known, len(self.design.stimuli)
             if surface < shown:
                 found = known.period[key], known.d_prime[key]
             else:
@@ -197,7 +237,7 @@ class _Room:
     def presented(
         self, display: si.IntArray, finger: si.IntArray, surface: si.IntArray
     ) -> Candidates:
-        """What everybody gets, shape (people, candidates)."""
+        """What everybody gets, shape (people, candidates), or (people, directions, candidates)."""
         found = [
             self.felt(d, f, s)
             for d, f, s in zip(display.tolist(), finger.tolist(), surface.tolist(), strict=True)
@@ -242,12 +282,13 @@ def _chunk(room: _Room, people: _People, schedules: list[list[Trial]], begin: in
             first[person, at] = shown[0]
             second[person, at] = shown[1] if pairs else -1
         skill = 1.0 + observer.learning_excess * math.exp(-at / observer.learning_trials)
+        alike = count, *(1 for _ in room.directions)
         felt = [
             perceived(
                 room.presented(display[:, at], people.finger[:count], column[:, at]),
                 observer,
-                np.full(count, skill),
-                people.spread[:count],
+                np.full(alike, skill),
+                people.spread[:count].reshape(alike),
                 people.noise[at, place, :count],
                 people.blur[at, place, :count],
             )
@@ -288,7 +329,22 @@ def _judge(room: _Room, people: _People) -> _Judge:
     task = room.design.task
     if task == "magnitude-estimation":
         return functools.partial(_number, room, people)
-    return functools.partial(_which if task == "two-interval" else _alike, room, people)
+    if task == "two-interval":
+        return functools.partial(_which, room, people)
+    return functools.partial(_alike_in_plane if room.directions else _alike, room, people)
+
+
+def _in_clearest_direction(felt: Perceived) -> Perceived:
+    """What is perceived in the direction in which it is the more evident; of strokes as it is."""
+    if felt.strength.ndim == 1:
+        return felt
+    best = np.argmax(felt.strength, axis=-1)[:, None]
+    return Perceived(
+        *(
+            np.take_along_axis(one, best, -1)[:, 0]
+            for one in (felt.log_period, felt.strength, felt.felt)
+        )
+    )
 
 
 def _judged(
@@ -315,6 +371,7 @@ def _compared(
 def _which(
     room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
+    felt = [_in_clearest_direction(one) for one in felt]
     apart, both, _ = _compared(room, people, felt, skill)
     blind = ~both | (people.blind[at, :count] < people.lapse[:count])
     guess = (people.guess[at, :count] < 0.5).astype(np.int64)
@@ -335,6 +392,21 @@ def _alike(
     return _Given(choice, np.full(count, np.nan), doubt)
 
 
+def _alike_in_plane(
+    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+) -> _Given:
+    one, other = felt
+    # Strengths in each direction, and periods in those in which both are felt.
+    terms = one.strength.shape[-1] + np.sum(one.felt & other.felt, axis=-1)
+    apart = difference(one, other, np.full((count, 1), skill), people.spread[:count, None])
+    apart = apart / np.sqrt(terms)
+    limit = room.observer.detection_criterion
+    blind = people.blind[at, :count] < people.lapse[:count]
+    choice = np.where(blind, people.guess[at, :count] < 0.5, apart > limit).astype(np.int64)
+    doubt = np.where(blind, 1.0, np.exp(-np.abs(apart - limit)))
+    return _Given(choice, np.full(count, np.nan), doubt)
+
+
 def _number(
     room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
@@ -342,11 +414,11 @@ def _number(
     values = np.array([design.judged_value(one) for one in design.stimuli])
     middle = math.exp(float(np.mean(np.log(np.maximum(values, 1e-12)))))
     here = design.judged_value(design.stimulus(design.reference)) if design.reference else middle
-    (one,) = felt
+    one = _in_clearest_direction(felt[0])
     if design.judged == "friction_depth":
         # Strength has no unit of its own: that of the reference is felt as often as it likes.
         place = room.place[design.reference] if design.reference else 0
-        known = room.tables.virtual.d_prime[0, people.finger[:count], place, 0]
+        known = room.tables.directions.d_prime[0, people.finger[:count], place, :, 0].max(axis=-1)
         level = np.log(np.maximum(one.strength, _FAINTEST))
         known = np.log(np.maximum(known, _FAINTEST))
         error = people.memory[:count] / np.exp(known)
