@@ -63,7 +63,9 @@ def _task_first(analysis: TaskAnalysis) -> list[str]:
     if analysis.pooled is None:
         return [f"No {analysis.measure} could be computed."]
     found = analysis.pooled
-    if analysis.measure == "exponent":
+    if analysis.measure == "sensitivity d′":
+        meaning = f"People tell the surfaces from the reference with d′ = {estimate_words(found)}."
+    elif analysis.measure == "exponent":
         meaning = (
             f"Numbers grow with {_JUDGED[analysis.judged]} to the power of {estimate_words(found)}."
         )
@@ -273,7 +275,7 @@ def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
         rows.append(
             (
                 one.name,
-                shown(one.value, unit, 3),
+                "–" if math.isnan(one.value) else shown(one.value, unit, 3),
                 f"{one.trials}",
                 f"{one.participants}",
                 "–" if answers is None else estimate_words(answers, scale, said),
@@ -288,7 +290,7 @@ PERSON_HEAD = ("Participant", "Estimate", "Interval", "Trials", "Remark")
 
 
 def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
-    """Each person's Weber fraction or exponent."""
+    """Each person's Weber fraction, exponent or d′."""
     scale, unit = (100.0, " %") if analysis.measure == "Weber fraction" else (1.0, "")
     return [
         (

@@ -61,6 +61,11 @@ _ANALYSES = {
         "scales of participants taken out (Lane, Catania and Stevens 1961, 10.1121/1.1908600)."
     ),
 }
+_UNLIKE = (
+    "Surfaces had no amount in common to be compared by: each participant has a d′ over all pairs "
+    "by the differencing model of Macmillan and Creelman (2005), and its mean has Student's "
+    "interval over participants."
+)
 _JUDGED = {
     "spatial_period": "spatial period (coarseness)",
     "friction_depth": "change of friction",
@@ -91,7 +96,7 @@ def methods_text(answers: Answers, display: int) -> str:
         + f" (“{design.spoken_question}”).",
         *_adaptive(design),
         _trials(design, answers, display),
-        _ANALYSES[design.task],
+        _ANALYSES[design.task] if _on_a_scale(design) else _UNLIKE,
         f"Orders and analysis were made with squeezefilm {__version__} "
         f"(design SHA-256 {design.sha256[:12]}).",
     ]
@@ -111,6 +116,12 @@ def _stimuli(design: StudyDesign) -> str:
         return f"Stimuli were surfaces of friction: {'; '.join(listed)}.{free}"
     shapes = " and ".join(sorted({one.waveform for one in design.stimuli}))
     return f"Stimuli were {shapes} gratings of friction with the periods {', '.join(listed)}.{free}"
+
+
+def _on_a_scale(design: StudyDesign) -> bool:
+    amounts = [design.judged_value(one) for one in design.stimuli]
+    scale = all(map(math.isfinite, amounts)) and len(set(amounts)) == len(amounts)
+    return scale or design.task != "same-different"
 
 
 def _depth(one: Stimulus) -> str:
