@@ -131,13 +131,14 @@ class _Surfaces:
     """What exports say of a surface beside its name, each worked out once."""
 
     def __init__(self) -> None:
-        self._known: dict[int, dict[str, Cell]] = {}
+        # By the surface itself, which is kept: what a series chose is made anew for each row.
+        self._known: dict[int, tuple[Any, dict[str, Cell]]] = {}
 
     def cells(self, one: Stimulus | Grating | None) -> dict[str, Cell]:
         """Periods, change of friction, kind and hash; a real grating has no hash."""
         if id(one) not in self._known:
-            self._known[id(one)] = surface_cells(one)
-        return self._known[id(one)]
+            self._known[id(one)] = one, surface_cells(one)
+        return self._known[id(one)][1]
 
 
 def surface_cells(one: Stimulus | Grating | None) -> dict[str, Cell]:

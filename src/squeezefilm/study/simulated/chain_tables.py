@@ -35,7 +35,9 @@ from squeezefilm.perception.percepts import (
 )
 from squeezefilm.perception.senses import Candidates, line_amplitudes, line_periods
 from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.plate.layout import AnnularStator
 from squeezefilm.progress import SayProgress
+from squeezefilm.render.motion.finger_path import FingerPath
 from squeezefilm.results import config_hash
 from squeezefilm.second_process import later, values
 from squeezefilm.study.design.matching import Exploring
@@ -262,7 +264,7 @@ def _free(
     display: Display, stimulus: Stimulus, observer: Observer, finger: FingerClass, run: Apparatus
 ) -> _Felt:
     """The same of a plain hand that explores the face freely; not kept on disk."""
-    path = free_exploration(observer, finger, display.actuator.extent)
+    path = free_path(display, observer, finger)
     surface = TextureFile(stimulus.surface(), stimulus.name)
     found = path_percept(display, surface, observer, finger, [path], run)
     # The hand sweeps both ways, on lines far longer than the shortest run.
@@ -276,6 +278,18 @@ def _free(
         other.percept.candidates,
         other.percept.evidence.rhythm,
     )
+
+
+def free_path(display: Display, observer: Observer, finger: FingerClass) -> FingerPath:
+    """How a finger explores a display freely. Raises `InputError` for a ring, which has no plane."""
+    plate = display.actuator
+    if isinstance(plate, AnnularStator):
+        raise InputError(
+            f"display '{display.name}' is a ring, and its finger goes along its circumference; for "
+            'exploring = "free" take a plate, or take exploring = "strokes"',
+            quantity="exploring",
+        )
+    return free_exploration(observer, finger, plate.extent)
 
 
 @functools.lru_cache(maxsize=256)

@@ -112,7 +112,7 @@ class _People:
         directions: tuple[int, ...],
     ) -> _People:
         """Whoever is in a chunk; nobody depends on how many there are."""
-        random = np.random.default_rng([seed, _STREAM, chunk])
+        random = _random(seed, chunk)
         normal, among = random.standard_normal, random.random
         weber = math.log1p(observer.period_weber_fraction) / D_PRIME_OF_75
         return cls(
@@ -127,6 +127,15 @@ class _People:
             guess=among((asked, _CHUNK)),
             slowness=normal((asked, _CHUNK)),
         )
+
+
+def _random(seed: int, chunk: int) -> np.random.Generator:
+    return np.random.default_rng([seed, _STREAM, chunk])
+
+
+def finger_of(person: int, fingers: int, seed: int) -> int:
+    """Which of so many finger classes a simulated person of these tasks has."""
+    return int(_random(seed, person // _CHUNK).integers(0, fingers, _CHUNK)[person % _CHUNK])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
