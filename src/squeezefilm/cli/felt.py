@@ -85,14 +85,12 @@ def felt(asked: FeltOptions) -> None:
                     "design with --path and --stimulus"
                 )
             with StudyStore.open(asked.target) as store:
-                found = felt_in_trial(
-                    store, asked.participant, asked.trial, people, progress=step
-                )
+                found = felt_in_trial(store, asked.participant, asked.trial, people, progress=step)
     written = []
     if asked.out is not None:
         for number, one in enumerate(found, 1):
-            name = asked.out if len(found) == 1 else asked.out.with_stem(
-                f"{asked.out.stem}-{number}"
+            name = (
+                asked.out if len(found) == 1 else asked.out.with_stem(f"{asked.out.stem}-{number}")
             )
             write_whole(name, png(plot(one)))
             written.append(name)

@@ -8,6 +8,7 @@ speed, and so are the steps between lines.
 
 from __future__ import annotations
 
+import itertools
 from typing import Annotated
 
 import numpy as np
@@ -34,7 +35,7 @@ def free_exploration(
         Annotated[si.Metre, si.AtLeast(0.01), si.AtMost(10.0)],
     ],
 ) -> FingerPath:
-    """The path of a finger that explores a face of that length and width (m) freely; see the module.
+    """The path of a finger that explores a face of that length and width (m); see the module.
 
     It keeps to x and y from 0 to the stroke's length, or to the face's own where that is shorter.
     Raises `InputError` for a face outside of 1 cm to 10 m.
@@ -57,7 +58,7 @@ def _led_through(corners: si.FloatArray, speed: si.MetrePerSecond) -> FingerPath
     """A path through corners (m), shape (n, 2), each part of least jerk at a mean speed."""
     times, places = [np.zeros(1)], [corners[:1]]
     now = 0.0
-    for begin, end in zip(corners[:-1], corners[1:], strict=True):
+    for begin, end in itertools.pairwise(corners):
         length = float(np.hypot(*(end - begin)))
         if length < _SAMPLE * speed:
             continue

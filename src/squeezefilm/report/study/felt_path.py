@@ -103,9 +103,9 @@ def show_felt(found: FeltPath) -> None:
     heading(console, "Evidence by direction")
     head = ("", "Runs", "Clearest rhythm", "d′", "Next", "Swing asked", "Swing felt")
     table(console, head, [_row(name, found) for name in found.directions], fixed=(0,))
-    heading(console, "How far from each surface, in standard deviations")
-    away = [(one.name, _apart(one.apart), one.kind) for one in found.nearest]
-    table(console, ("Surface", "Apart", "By"), away, fixed=(0,))
+    heading(console, f"How far from each surface by {found.compared_by}")
+    away = [(one.name, _apart(one.apart)) for one in found.nearest]
+    table(console, ("Surface", "Standard deviations"), away, fixed=(0,))
     for said in found.assumed:
         console.print(f"  {said}", style="dim", highlight=False)
 

@@ -39,11 +39,10 @@ REMARK = (
 )
 
 
-
 def remarks(design: StudyDesign) -> tuple[str, ...]:
     """What must be read beside the answers to a match-to-sample design: the paper's remark where
     real gratings are matched, else what the answers assume."""
-    from squeezefilm.study.simulated.judgements import assumed
+    from squeezefilm.study.simulated.assumptions import assumed
 
     return (REMARK,) if design.alternatives else assumed(design)
 

@@ -147,7 +147,7 @@ def show_precision(found: PlannedPrecision) -> None:
 def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
     """Print each display's answers and the model's reasons, or what their analysis says."""
     from squeezefilm.study.simulated.answers import SimulatedAnswers
-    from squeezefilm.study.simulated.judgements import assumed
+    from squeezefilm.study.simulated.assumptions import assumed
 
     console = plain_console()
     if isinstance(study, SimulatedAnswers):

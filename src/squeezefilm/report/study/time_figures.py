@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
+_ACROSS = 4
+"""Quantities of exploration side by side."""
+
+
 @style.drawn
 def response_times(analysis: StudyAnalysis) -> Figure:
     """Response times by stimulus, and the ex-Gaussian of all."""
@@ -65,14 +69,17 @@ def exploration(analysis: StudyAnalysis) -> Figure:
     figure = style.new_figure(
         "How people explored, by stimulus",
         f"{data_of(analysis)}; means over people with {100 * level:g} % t intervals",
-        3.9,
+        3.9 * -(-len(found) // _ACROSS),
     )
-    panels = np.atleast_1d(figure.subplots(1, len(found)))
-    for axes, (key, rows) in zip(panels, found.items(), strict=True):
+    down, across = -(-len(found) // _ACROSS), min(len(found), _ACROSS)
+    panels = figure.subplots(down, across, squeeze=False).ravel()
+    for axes in panels[len(found) :]:
+        axes.set_axis_off()
+    for axes, (key, rows) in zip(panels, found.items(), strict=False):
         style.estimates(axes, ((item.mean, item.low, item.high) for item in rows))
         names = [style.plain(item.name, 8) for item in rows]
         axes.set_xticks(range(len(rows)), names, rotation=30)
-        axes.set_ylim(0, None)
+        axes.set_ylim(0, 1.08 * axes.get_ylim()[1])
         axes.set_title(key_words(key))
     return figure
 

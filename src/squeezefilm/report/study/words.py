@@ -302,3 +302,30 @@ def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
         )
         for one in analysis.persons
     ]
+
+
+def exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:
+    """Of `exploration_rows`; empty where no path was kept."""
+    from squeezefilm.report.study.time_figures import key_words
+
+    known = [key for key, rows in analysis.exploration.items() if rows]
+    return ("Stimulus", *map(key_words, known)) if known else ()
+
+
+def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
+    """How people explored each stimulus: means over people with their intervals."""
+    known = [rows for rows in analysis.exploration.values() if rows]
+    names = list(dict.fromkeys(one.name for rows in known for one in rows))
+    found = []
+    for name in names:
+        cells = []
+        for rows in known:
+            mine = [one for one in rows if one.name == name]
+            if not mine:
+                cells.append("–")
+                continue
+            one = mine[0]
+            bounds = "" if math.isnan(one.low) else f" ({one.low:.3g} to {one.high:.3g})"
+            cells.append(f"{one.mean:.3g}{bounds}")
+        found.append((name, *cells))
+    return found

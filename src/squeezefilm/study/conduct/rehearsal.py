@@ -34,8 +34,8 @@ from squeezefilm.study.simulated.answers import (
     simulate_participants,
 )
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.judgements import finger_of
 from squeezefilm.study.simulated.participants import SimulatedStudy
+from squeezefilm.study.simulated.simulated_people import finger_of
 
 MOST_PEOPLE = 200
 _CONDITIONS = SessionConditions(
@@ -81,7 +81,9 @@ def rehearse(
         answered = simulate_participants(
             design, observer, number + 1, int(store.study["seed"]), tables
         )
-        _answer_everything(store, who, _responses(answered, number), _Hand(tables, answered, number))
+        _answer_everything(
+            store, who, _responses(answered, number), _Hand(tables, answered, number)
+        )
         found.append(who)
     return tuple(found)
 

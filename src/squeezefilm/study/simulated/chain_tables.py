@@ -19,21 +19,18 @@ import numpy as np
 
 import squeezefilm
 from squeezefilm import quantities as si
-from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.kept_arrays import KeptArrays
 from squeezefilm.perception.free_hand import free_exploration
 from squeezefilm.perception.observer import FingerClass, Observer
-from squeezefilm.perception.path_percepts import RunPercept, path_percept
+from squeezefilm.perception.path_percepts import path_percept
 from squeezefilm.perception.percepts import (
     Apparatus,
-    Percept,
-    along_way,
     grating_percept,
     percept,
 )
-from squeezefilm.perception.senses import Candidates, line_amplitudes, line_periods
+from squeezefilm.perception.senses import Candidates, line_periods
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.plate.layout import AnnularStator
 from squeezefilm.progress import SayProgress
@@ -42,42 +39,11 @@ from squeezefilm.results import config_hash
 from squeezefilm.second_process import later, values
 from squeezefilm.study.design.matching import Exploring
 from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.simulated.causes import Causes, causes, free_causes, median_causes
 from squeezefilm.texture_file import TextureFile
 
 _AT_ONCE = 6
 """Fingers between two words of progress: of fewer, one of two processes waits for the other."""
-
-
-@dataclass(frozen=True, slots=True)
-class Causes:
-    """What speaks against a stimulus being recognised (over several fingers: medians).
-
-    Attributes:
-        texture_frequency: at which it passes the finger at mean speed (Hz).
-        envelope_bandwidth: at which the display's envelope has lost 3 dB (Hz).
-        contrast_kept: line of the friction rendered over that asked for, at the period (1); the
-            standing wave's ripple may raise it above 1. NaN without a contrast asked for.
-        lag_over_period: way of the finger during the sensor's latency and the envelope's time
-            constant, over the period (1).
-        contact_over_period: length of the contact over the period (1).
-        ripple_share: friction's standard deviation that the standing wave adds over that and the
-            rest together (1); 0 where the wave is ignored, NaN where it is compensated.
-        mean_displacement: of the skin (m).
-        d_prime: evidence for the rhythm of the period (1).
-        clearest_period: most evident rhythm (m).
-        clearest_d_prime: its evidence (1).
-    """
-
-    texture_frequency: si.Hertz
-    envelope_bandwidth: si.Hertz
-    contrast_kept: si.Dimensionless
-    lag_over_period: si.Dimensionless
-    contact_over_period: si.Dimensionless
-    ripple_share: si.Dimensionless
-    mean_displacement: si.Metre
-    d_prime: si.Dimensionless
-    clearest_period: si.Metre
-    clearest_d_prime: si.Dimensionless
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,7 +111,7 @@ class ChainTables:
     def explain(self, display: int = 0) -> dict[str, Causes]:
         """The reasons by stimulus on one of the displays: medians over fingers."""
         return {
-            one.name: _median(found)
+            one.name: median_causes(found)
             for one, found in zip(self.design.stimuli, self.causes[display], strict=True)
         }
 
@@ -326,77 +292,3 @@ def _gathered(tree: Any, part: Callable[[_Felt], si.FloatArray | None]) -> si.Fl
         return [gather(i) for i in one] if isinstance(one, list) else part(one)
 
     return np.array(gather(tree), dtype=float)
-
-
-def _median(found: tuple[Causes, ...]) -> Causes:
-    return Causes(
-        **{
-            field.name: float(np.median([getattr(one, field.name) for one in found]))
-            for field in dataclasses.fields(Causes)
-        }
-    )
-
-
-def causes(
-    stimulus: Stimulus,
-    found: Percept,
-    played: RenderAnalysis,
-    observer: Observer,
-    finger: FingerClass,
-) -> Causes:
-    """The numbers of one percept of a virtual grating; `played` is its rendering."""
-    loop = played.stroke
-    rendered, asked = (
-        _line(loop.position, values, observer, stimulus.period)
-        for values in (loop.relative_friction_rendered, played.asked)
-    )
-    return _causes(stimulus, found, played, finger, rendered, asked)
-
-
-def free_causes(
-    stimulus: Stimulus, found: RunPercept, played: RenderAnalysis, finger: FingerClass
-) -> Causes:
-    """The same of the runs of a free exploration in one direction; `contrast_kept` is of the whole
-    swing of friction, for a shape has no line of its own."""
-    return _causes(stimulus, found.percept, played, finger, found.felt_swing, found.asked_swing)
-
-
-def _causes(
-    stimulus: Stimulus,
-    found: Percept,
-    played: RenderAnalysis,
-    finger: FingerClass,
-    rendered: si.Dimensionless,
-    asked: si.Dimensionless,
-) -> Causes:
-    period, sensor = stimulus.period, played.stroke.sensor
-    latency = 0.0 if sensor is None else sensor.latency
-    lag = (latency + played.time_constant) * finger.speed
-    return Causes(
-        texture_frequency=finger.speed / period,
-        envelope_bandwidth=1.0 / (2.0 * math.pi * played.time_constant),
-        contrast_kept=rendered / asked if asked > 1e-6 else float("nan"),
-        lag_over_period=lag / period,
-        contact_over_period=finger.contact_length / period,
-        ripple_share=_ripple_share(played),
-        mean_displacement=found.mean_displacement,
-        d_prime=found.evidence.at(period),
-        clearest_period=float(found.candidates.period[0]),
-        clearest_d_prime=max(float(found.candidates.d_prime[0]), 0.0),
-    )
-
-
-def _line(way: si.FloatArray, values: si.FloatArray, observer: Observer, period: si.Metre) -> float:
-    lines = line_amplitudes(along_way(way, values, observer, (1.0, 1.0)))
-    return float(np.interp(period, line_periods(), lines))
-
-
-def _ripple_share(played: RenderAnalysis) -> si.Dimensionless:
-    """What the wave adds to the friction that the same amplitudes make over an antinode."""
-    # A compensating renderer's inverse is of the driven amplitude, so there is no plain friction.
-    if played.wave != "felt":
-        return 0.0 if played.wave == "ignored" else float("nan")
-    plain = played.prediction.friction(played.stroke.amplitude, played.finger.speed)
-    added = float(np.std(played.stroke.relative_friction_rendered - plain))
-    rest = float(np.std(plain))
-    return added / (added + rest) if added + rest > 1e-9 else 0.0

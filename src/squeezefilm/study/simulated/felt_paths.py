@@ -19,7 +19,6 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
 from squeezefilm.display import NamedDisplay, load_display
-from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import table_from_csv
 from squeezefilm.formats.trajectories import motion_from
 from squeezefilm.from_text import reads_text
@@ -47,11 +46,10 @@ _KEPT = frozenset({"speed_m_per_s", "amplitude_m", "relative_friction"})
 @dataclass(frozen=True, slots=True)
 class Likeness:
     """How far a surface felt along the path is from the one explored: `apart` in standard
-    deviations of that difference (1), without noise; `kind` says what of."""
+    deviations of that difference (1), without noise; infinite where nothing was felt."""
 
     name: str
     apart: si.Dimensionless
-    kind: str
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,6 +67,7 @@ class FeltPath(Result):
         force_is: whether the force was known, or is assumed.
         felt: evidence on runs along x and along y.
         nearest: the surfaces that could be answered, or that the study has, the likest first.
+        compared_by: what they are compared by, in words.
         choice, answer: what the participant answered, and what was right; empty without.
         assumed: what this rests on, in sentences.
     """
@@ -84,6 +83,7 @@ class FeltPath(Result):
     force_is: str
     felt: PathPercept
     nearest: tuple[Likeness, ...]
+    compared_by: str
     choice: str
     answer: str
     assumed: tuple[str, ...]
@@ -127,6 +127,7 @@ class FeltPath(Result):
             "explored": self.explored,
             "directions": found,
             "nearest": self.nearest,
+            "compared_by": self.compared_by,
             "choice": self.choice,
             "answer": self.answer,
             "assumed": self.assumed,
@@ -203,11 +204,9 @@ def felt_on_path(asked: FeltRequest) -> FeltPath:
     else:
         others = {other.name: other for other in (*design.stimuli, one)}
         nearest = [
-            Likeness(name, _apart(here, here if other == one else felt(other), observer), "")
+            Likeness(name, _apart(here, here if other == one else felt(other), observer))
             for name, other in others.items()
         ]
-        kind = "strength and period of the clearest rhythms, in both directions"
-        nearest = [Likeness(x.name, x.apart, kind) for x in nearest]
     return FeltPath(
         design=design,
         observer=observer,
@@ -220,6 +219,11 @@ def felt_on_path(asked: FeltRequest) -> FeltPath:
         force_is=force_is,
         felt=here,
         nearest=tuple(sorted(nearest, key=lambda x: x.apart)),
+        compared_by=(
+            "the period of the clearest rhythm"
+            if design.alternatives
+            else "strength and period of the clearest rhythms in both directions"
+        ),
         choice=asked.choice,
         answer=asked.answer,
         assumed=(
@@ -256,9 +260,7 @@ def _paths(
     return (FingerPath(times, motion.position(times), np.zeros(times.size)),), None
 
 
-def _explored(
-    paths: tuple[FingerPath, ...], face: tuple[si.Metre, si.Metre] | None
-) -> Exploration:
+def _explored(paths: tuple[FingerPath, ...], face: tuple[si.Metre, si.Metre] | None) -> Exploration:
     """One exploration of all touches, set one after another."""
     pause, now = 1.0, 0.0
     times: list[si.FloatArray] = []
@@ -303,5 +305,5 @@ def _to_gratings(
         if best.clearest_d_prime > 0.0 and math.isfinite(touched.d_prime[0]):
             ratio = math.log(best.clearest_period / float(touched.period[0]))
             apart = abs(ratio) / (math.sqrt(2.0) * spread)
-        found.append(Likeness(one.name, apart, "period of the clearest rhythm"))
+        found.append(Likeness(one.name, apart))
     return found

@@ -2,7 +2,7 @@
 
 Senses and noise are those of match-to-sample (`perception.perceived`): every surface is perceived
 anew on every trial. What the tasks add is how an answer follows from what was perceived. None of
-that was measured, none was tuned, and `ASSUMED` says each in a sentence that results repeat.
+that was measured, none was tuned, and `assumptions` says each in a sentence that results repeat.
 
 Trials go in their order, all people at once, so that an adaptive series meets the answers that it
 asks for. **Every number that comes out is simulated.**
@@ -20,122 +20,21 @@ from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.perception.free_hand import SAYS
 from squeezefilm.perception.observer import Observer
 from squeezefilm.perception.perceived import Perceived, perceived
-from squeezefilm.perception.senses import D_PRIME_OF_75, FINEST_PERIOD, Candidates
+from squeezefilm.perception.senses import FINEST_PERIOD, Candidates
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method
-from squeezefilm.study.design.study_design import StudyDesign, Task
+from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.recalled import ASSUMED as RECALLED
 from squeezefilm.study.simulated.recalled import difference
+from squeezefilm.study.simulated.simulated_people import CHUNK, SimulatedPeople
 
-_CHUNK = 60
-"""People whose noise is drawn together; orders of more people repeat those of the first so many."""
-_STREAM = 31
 _FAINTEST = 0.05
 """Strength (d′) below which magnitudes fall no further."""
-_OWN_SCALE, _OWN_MIDDLE = 0.5, 10.0
-"""People without a modulus: spread of ln of their scales, and the middle of them."""
-
-ASSUMED: dict[Task, tuple[str, ...]] = {
-    "two-interval": (
-        "The coarser surface is the one whose clearest rhythm has the longer period, the deeper "
-        "one the one whose clearest rhythm is the more evident.",
-        "A person who does not feel both rhythms guesses which is coarser.",
-    ),
-    "same-different": (
-        "Two surfaces are called different where their perceived periods (or strengths) differ by "
-        "more than one standard deviation of that difference, the observer's criterion, or where "
-        "only one of two rhythms is felt.",
-    ),
-    "magnitude-estimation": (
-        "Numbers are in proportion to the perceived period (or strength): an exponent of 1 for "
-        "clear rhythms, rounded to two digits.",
-        "A surface on which no rhythm is felt gets the number of the finest period.",
-        "The reference is remembered with one error a person; people without a modulus have "
-        "scales that spread by a factor of 1.65.",
-    ),
-    "match-to-sample": (),
-}
-"""What simulated answers assume beyond the observer's own file, by task."""
-
-_IN_PLANE: dict[Task, tuple[str, ...]] = {
-    "two-interval": ("Of the two directions the one in which a rhythm is clearer decides.",),
-    "magnitude-estimation": ("Of the two directions the one in which a rhythm is clearer decides.",),
-    "same-different": (
-        "Surfaces explored freely are called different where strengths in both directions, and "
-        "periods where both are felt, differ by more than one standard deviation in the root of "
-        "the mean square, whatever is judged.",
-    ),
-    "match-to-sample": (),
-}
-
-
-def assumed(design: StudyDesign) -> tuple[str, ...]:
-    """What the simulated answers to a design assume beyond the observer's own file."""
-    found = ASSUMED[design.task]
-    if design.exploring == "free":
-        found = (SAYS, *(found if design.task != "same-different" else ()), *_IN_PLANE[design.task])
-    return (*found, *(RECALLED if design.matched_with == "stimuli" else ()))
-
-
 _JUDGED = ("spatial_period", "friction_depth")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _People:
-    """Up to sixty people and all their noise; arrays begin with the person."""
-
-    finger: si.IntArray
-    spread: si.DimensionlessArray
-    lapse: si.DimensionlessArray
-    scale: si.DimensionlessArray
-    memory: si.DimensionlessArray
-    noise: si.FloatArray
-    blur: si.FloatArray
-    blind: si.DimensionlessArray
-    guess: si.DimensionlessArray
-    slowness: si.FloatArray
-
-    @classmethod
-    def drawn(
-        cls,
-        observer: Observer,
-        fingers: int,
-        asked: int,
-        seed: int,
-        chunk: int,
-        directions: tuple[int, ...],
-    ) -> _People:
-        """Whoever is in a chunk; nobody depends on how many there are."""
-        random = _random(seed, chunk)
-        normal, among = random.standard_normal, random.random
-        weber = math.log1p(observer.period_weber_fraction) / D_PRIME_OF_75
-        return cls(
-            finger=random.integers(0, fingers, _CHUNK),
-            spread=weber * np.exp(observer.period_spread * normal(_CHUNK)),
-            lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(_CHUNK)),
-            scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(_CHUNK)),
-            memory=normal(_CHUNK),
-            noise=normal((asked, 2, _CHUNK, *directions, observer.candidates)),
-            blur=normal((asked, 2, _CHUNK, *directions)),
-            blind=among((asked, _CHUNK)),
-            guess=among((asked, _CHUNK)),
-            slowness=normal((asked, _CHUNK)),
-        )
-
-
-def _random(seed: int, chunk: int) -> np.random.Generator:
-    return np.random.default_rng([seed, _STREAM, chunk])
-
-
-def finger_of(person: int, fingers: int, seed: int) -> int:
-    """Which of so many finger classes a simulated person of these tasks has."""
-    return int(_random(seed, person // _CHUNK).integers(0, fingers, _CHUNK)[person % _CHUNK])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -183,17 +82,17 @@ def simulate_judgements(
     room = _Room(design, observer, tables)
     schedules = [
         [one for one in trials(design, person, seed) if one.asks]
-        for person in range(min(participants, _CHUNK))
+        for person in range(min(participants, CHUNK))
     ]
     parts = []
-    for first in range(0, participants, _CHUNK):
-        count = min(_CHUNK, participants - first)
-        people = _People.drawn(
+    for first in range(0, participants, CHUNK):
+        count = min(CHUNK, participants - first)
+        people = SimulatedPeople.drawn(
             observer,
             len(tables.fingers),
             len(schedules[0]),
             seed,
-            first // _CHUNK,
+            first // CHUNK,
             room.directions,
         )
         parts.append(_chunk(room, people, schedules[:count], first))
@@ -268,7 +167,7 @@ class _Part:
     time: si.SecondArray
 
 
-def _chunk(room: _Room, people: _People, schedules: list[list[Trial]], begin: int) -> _Part:
+def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], begin: int) -> _Part:
     design, observer = room.design, room.observer
     count, asked = len(schedules), len(schedules[0])
     pairs, answers = design.two_surfaces, design.answers
@@ -333,7 +232,7 @@ def _standing(
 _Judge = Callable[[list[Perceived], float, int, int], _Given]
 
 
-def _judge(room: _Room, people: _People) -> _Judge:
+def _judge(room: _Room, people: SimulatedPeople) -> _Judge:
     """How answers follow from what was perceived, by the design's task."""
     task = room.design.task
     if task == "magnitude-estimation":
@@ -357,7 +256,7 @@ def _in_clearest_direction(felt: Perceived) -> Perceived:
 
 
 def _judged(
-    room: _Room, people: _People, felt: Perceived, skill: float
+    room: _Room, people: SimulatedPeople, felt: Perceived, skill: float
 ) -> tuple[si.FloatArray, si.FloatArray]:
     """What is judged on a scale, and the standard deviation of one percept on it."""
     if room.design.judged == "friction_depth":
@@ -366,7 +265,7 @@ def _judged(
 
 
 def _compared(
-    room: _Room, people: _People, felt: list[Perceived], skill: float
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float
 ) -> tuple[si.FloatArray, NDArray[np.bool_], NDArray[np.bool_]]:
     """First minus second over the deviation of that difference, whether both and one are felt."""
     (a, deviation), (b, _) = (_judged(room, people, one, skill) for one in felt)
@@ -378,7 +277,7 @@ def _compared(
 
 
 def _which(
-    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
     felt = [_in_clearest_direction(one) for one in felt]
     apart, both, _ = _compared(room, people, felt, skill)
@@ -389,7 +288,7 @@ def _which(
 
 
 def _alike(
-    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
     apart, both, one_only = _compared(room, people, felt, skill)
     limit = room.observer.detection_criterion
@@ -402,7 +301,7 @@ def _alike(
 
 
 def _alike_in_plane(
-    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
     one, other = felt
     # Strengths in each direction, and periods in those in which both are felt.
@@ -417,7 +316,7 @@ def _alike_in_plane(
 
 
 def _number(
-    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
     design = room.design
     values = np.array([design.judged_value(one) for one in design.stimuli])

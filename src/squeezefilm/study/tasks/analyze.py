@@ -14,8 +14,8 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
-from squeezefilm.study.identification.course import course_of
 from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
+from squeezefilm.study.identification.course import course_of
 from squeezefilm.study.identification.response_times import (
     ExGaussian,
     ResponseTimeSummary,
@@ -174,6 +174,16 @@ def _matches(
         seed=seed,
         progress=tell,
     )
+    if not on_a_scale(main):
+        found = dataclasses.replace(
+            found,
+            sensitivity=None,
+            notes=(
+                *found.notes,
+                "d′ along the stimuli: they have no order; read the confusions and the choice "
+                "model, which need none",
+            ),
+        )
     course = course_of(answers, display)
     return dataclasses.replace(found, course=course, methods=methods_text(answers, display))
 

@@ -11,8 +11,8 @@ from squeezefilm import quantities as si
 from squeezefilm.perception.stimuli import Varied
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.design.study_design import Task
-from squeezefilm.study.identification.course import Course
 from squeezefilm.study.identification.condition_means import ConditionMean
+from squeezefilm.study.identification.course import Course
 from squeezefilm.study.identification.response_times import ExGaussian, ResponseTimeSummary
 from squeezefilm.study.tasks.population import PopulationEstimate
 

@@ -25,7 +25,8 @@ _MODEL = "differencing"
 
 def on_a_scale(main: Answers) -> bool:
     """Whether every surface presented has an amount of what is judged, all of them different."""
-    values = main.values[np.unique(np.concatenate([main.first, main.second]))]
+    presented = np.unique(np.concatenate([main.first, main.second]))
+    values = main.values[presented[presented >= 0]]
     return bool(np.isfinite(values).all()) and np.unique(values).size == values.size
 
 

@@ -10,7 +10,8 @@ from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.perception.senses import Candidates
 from squeezefilm.report.study.simulated_page import LEGEND, REMARK
 from squeezefilm.report.study.terminal_analysis import show_simulated
-from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
+from squeezefilm.study.simulated.causes import Causes
+from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.participants import SimulatedStudy
 
 from ...study.scripted import gratings
