@@ -50,6 +50,7 @@ class FeltOptions:
 @called_with(FeltOptions)
 def felt(asked: FeltOptions) -> None:
     """Say what a finger's real path would have felt like, by an observer's senses; simulated."""
+    from squeezefilm.display import load_display
     from squeezefilm.errors import InputError
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.report.kit.style import png
@@ -58,7 +59,7 @@ def felt(asked: FeltOptions) -> None:
     from squeezefilm.results import write_whole
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.record.store import StudyStore
-    from squeezefilm.study.simulated.felt_paths import felt_on_path
+    from squeezefilm.study.simulated.felt_paths import FeltPath, felt_on_path
     from squeezefilm.study.simulated.felt_trials import felt_in_trial
 
     people = load_observer(asked.observer)
@@ -68,16 +69,16 @@ def felt(asked: FeltOptions) -> None:
             if asked.stimulus is None:
                 names = ", ".join(f'"{one.name}"' for one in design.stimuli)
                 raise InputError(f"say by --stimulus which surface the path explores: {names}")
-            one = felt_on_path(
+            only = felt_on_path(
                 design,
                 asked.stimulus,
                 asked.path,
                 observer=people,
-                display=asked.display,
+                display=None if asked.display is None else load_display(asked.display),
                 normal_force=read_option(asked.force, "force", "N"),
                 progress=step,
             )
-            found = (one,)
+            found: tuple[FeltPath, ...] = (only,)
         else:
             if asked.participant is None or asked.trial is None:
                 raise InputError(

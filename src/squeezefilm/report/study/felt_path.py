@@ -56,8 +56,9 @@ def _over_surface(axes: Axes, found: FeltPath) -> None:
     ends = x.min() - room, x.max() + room, y.min() - room, y.max() + room
     u, w = np.linspace(*ends[:2], _PIXELS), np.linspace(*ends[2:], _PIXELS)
     values = found.stimulus.surface()(u[None, :], w[:, None], 0.08, 0.0)
+    left, right, bottom, top = (1e3 * float(one) for one in ends)
     axes.imshow(
-        values, extent=[1e3 * one for one in ends], origin="lower", cmap="Greys", alpha=0.35,
+        values, extent=(left, right, bottom, top), origin="lower", cmap="Greys", alpha=0.35,
         aspect="equal", interpolation="nearest",
     )  # fmt: skip
     for path in found.paths:

@@ -21,7 +21,8 @@ RESTING_SPEED: si.MetrePerSecond = 5e-3
 CELL: si.Metre = 5e-3
 """Side of the cells that a face is divided into for `coverage`: half a contact; assumed."""
 PATH_PERIOD: si.Second = 10e-3
-"""Between samples of a path that a study keeps: slow against a sensor's noise, fast against a hand."""
+"""Between samples of a path that a study keeps: slow against a sensor's noise, fast against a
+hand."""
 _PER_CELL = 50
 """Places looked at along the way of a cell: a corner that is cut more finely is not seen."""
 _FARTHEST: si.Metre = 10.0

@@ -1,4 +1,4 @@
-"""What simulated answers assume beyond the observer's own file, in sentences that results repeat."""
+"""What simulated answers assume beyond the observer's file, in sentences that results repeat."""
 
 from __future__ import annotations
 
@@ -28,8 +28,9 @@ ASSUMED: dict[Task, tuple[str, ...]] = {
 }
 """What simulated answers assume beyond the observer's own file, by task."""
 
+_CLEARER = "Of the two directions the one in which a rhythm is clearer decides."
 _IN_PLANE: dict[Task, tuple[str, ...]] = {
-    "two-interval": ("Of the two directions the one in which a rhythm is clearer decides.",),
+    "two-interval": (_CLEARER,),
     "magnitude-estimation": (
         "Of the two directions the one in which a rhythm is clearer decides.",
     ),

@@ -234,7 +234,8 @@ def _free(
     surface = TextureFile(stimulus.surface(), stimulus.name)
     found = path_percept(display, surface, observer, finger, [path], run)
     # The hand sweeps both ways, on lines far longer than the shortest run.
-    assert found.along is not None and found.across is not None
+    assert found.along is not None
+    assert found.across is not None
     one, other = found.along, found.across
     clearer = max(one, other, key=lambda run: run.clearest_d_prime)
     return _Felt(
@@ -247,7 +248,7 @@ def _free(
 
 
 def free_path(display: Display, observer: Observer, finger: FingerClass) -> FingerPath:
-    """How a finger explores a display freely. Raises `InputError` for a ring, which has no plane."""
+    """How a finger explores a display freely. Raises `InputError` for a ring: it has no plane."""
     plate = display.actuator
     if isinstance(plate, AnnularStator):
         raise InputError(

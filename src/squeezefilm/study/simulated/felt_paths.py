@@ -188,10 +188,7 @@ def felt_on_path(asked: FeltRequest) -> FeltPath:
         force_is = "assumed: the observer's median"
     finger = observer.median_finger(normal_force=force)
     run = Apparatus()
-    if isinstance(plate.actuator, AnnularStator):
-        face = None
-    else:
-        face = plate.actuator.extent
+    face = None if isinstance(plate.actuator, AnnularStator) else plate.actuator.extent
 
     def felt(stimulus: Stimulus) -> PathPercept:
         tell(stimulus.name)

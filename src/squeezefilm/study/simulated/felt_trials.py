@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 
 from squeezefilm import quantities as si
+from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import Observer
 from squeezefilm.study.record.exploration import touches
@@ -57,7 +58,7 @@ def felt_in_trial(
                 name,
                 touches(time, x, y, LONGEST_STEP),
                 observer=observer,
-                display=str(row["display"]),
+                display=load_display(str(row["display"])),
                 normal_force=force,
                 source=f"trial {trial} of {participant} ({origin_of(store)})",
                 choice=str(row["choice"] or ""),

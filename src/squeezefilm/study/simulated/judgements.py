@@ -246,13 +246,8 @@ def _in_clearest_direction(felt: Perceived) -> Perceived:
     """What is perceived in the direction in which it is the more evident; of strokes as it is."""
     if felt.strength.ndim == 1:
         return felt
-    best = np.argmax(felt.strength, axis=-1)[:, None]
-    return Perceived(
-        *(
-            np.take_along_axis(one, best, -1)[:, 0]
-            for one in (felt.log_period, felt.strength, felt.felt)
-        )
-    )
+    best = np.arange(felt.strength.shape[0]), np.argmax(felt.strength, axis=-1)
+    return Perceived(felt.log_period[best], felt.strength[best], felt.felt[best])
 
 
 def _judged(

@@ -89,4 +89,5 @@ def recalled_distances(
     )
     shown = Perceived(now.log_period[:, :, None], now.strength[:, :, None], now.felt[:, :, None])
     own = (slice(None), slice(None), None, None)
-    return difference(shown, then, skill[own], spread[own]), now.felt.any(axis=-1)
+    anything: NDArray[np.bool_] = np.any(now.felt, axis=-1, keepdims=True)[..., 0]
+    return difference(shown, then, skill[own], spread[own]), anything

@@ -19,9 +19,9 @@ from squeezefilm.study.simulated.answers import (
     answers_of,
     simulate_participants,
 )
+from squeezefilm.study.simulated.assumptions import ASSUMED
 from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.assumptions import ASSUMED
 from squeezefilm.study.simulated.judgements import simulate_judgements
 
 EXACT = dataclasses.replace(
