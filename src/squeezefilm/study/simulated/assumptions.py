@@ -31,9 +31,7 @@ ASSUMED: dict[Task, tuple[str, ...]] = {
 _CLEARER = "Of the two directions the one in which a rhythm is clearer decides."
 _IN_PLANE: dict[Task, tuple[str, ...]] = {
     "two-interval": (_CLEARER,),
-    "magnitude-estimation": (
-        "Of the two directions the one in which a rhythm is clearer decides.",
-    ),
+    "magnitude-estimation": (_CLEARER,),
     "same-different": (
         "Surfaces explored freely are called different where strengths in both directions, and "
         "periods where both are felt, differ by more than one standard deviation in the root of "

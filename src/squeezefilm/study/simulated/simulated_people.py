@@ -1,4 +1,4 @@
-"""Simulated people of the tasks of `judgements`: who they are and all their noise, drawn at once."""
+"""Simulated people of the tasks of `judgements`: who they are, and all their noise."""
 
 from __future__ import annotations
 
