@@ -1,4 +1,4 @@
-"""What a path would have felt like, against geometry: angles, ridges, turned axes, the old stroke."""
+"""What a path would have felt like, against geometry: angles, ridges, turned axes, the stroke."""
 
 from __future__ import annotations
 
@@ -34,7 +34,9 @@ def _stroke(angle: float = 0.0, rate: float = 1000.0) -> FingerPath:
 
 
 @functools.cache
-def _felt(angle: float, orientation: float = 0.0, wave: bool = False, rate: float = 1000.0) -> PathPercept:
+def _felt(
+    angle: float, orientation: float = 0.0, wave: bool = False, rate: float = 1000.0
+) -> PathPercept:
     stimulus = Stimulus("4 mm", 4e-3, "period", orientation=orientation)
     run = Apparatus() if wave else NO_WAVE
     surface = TextureFile(stimulus.surface(), stimulus.name)
@@ -50,7 +52,9 @@ def test_the_simulated_stroke_as_a_path_is_todays_percept(rate: float, within: f
     here = found.along.percept
     there = np.isfinite(today.candidates.d_prime)
     assert here.candidates.period[there] == pytest.approx(today.candidates.period[there])
-    assert here.candidates.d_prime[there] == pytest.approx(today.candidates.d_prime[there], rel=within)
+    assert here.candidates.d_prime[there] == pytest.approx(
+        today.candidates.d_prime[there], rel=within
+    )
     assert here.mean_displacement == pytest.approx(today.mean_displacement, rel=within)
     assert found.along.mean_speed == pytest.approx(FINGER.speed, rel=1e-3)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -15,7 +16,7 @@ from squeezefilm.render.motion.stroke import MinimumJerkStroke
 def _path(corners: list[tuple[float, float]], each: int = 50) -> FingerPath:
     places = np.array(corners)
     share = np.linspace(0, 1, each, endpoint=False)[:, None]
-    parts = [a + share * (b - a) for a, b in zip(places[:-1], places[1:], strict=True)]
+    parts = [a + share * (b - a) for a, b in itertools.pairwise(places)]
     points = np.concatenate([*parts, places[-1:]])
     return FingerPath(0.01 * np.arange(len(points)), points[:, 0], points[:, 1])
 
@@ -43,7 +44,10 @@ def test_turning_path_and_axes_together_changes_nothing(angle: float) -> None:
     turned = [(c * x - s * y + 0.01, s * x + c * y - 0.02) for x, y in SQUARE]
     here, there = straight_runs(_path(SQUARE)), straight_runs(_path(turned))
     assert [(a.begin, a.end) for a in here] == [(b.begin, b.end) for b in there]
-    apart = [math.remainder(b.heading - a.heading - angle, math.tau) for a, b in zip(here, there, strict=True)]
+    apart = [
+        math.remainder(b.heading - a.heading - angle, math.tau)
+        for a, b in zip(here, there, strict=True)
+    ]
     assert apart == pytest.approx([0] * 4, abs=1e-9)
 
 
