@@ -265,7 +265,8 @@ def _explored(paths: tuple[FingerPath, ...], face: tuple[si.Metre, si.Metre] | N
         times.append(path.time + now)
         now = float(times[-1][-1]) + pause
     x, y = (np.concatenate([getattr(path, name) for path in paths]) for name in ("x", "y"))
-    longest = max(float(np.diff(path.time).max()) for path in paths)
+    # Shifted times are rounded: a step must not become a lift by that.
+    longest = max(float(np.diff(path.time).max()) for path in paths) * (1 + 1e-6)
     step = longest if len(paths) > 1 and longest < pause else math.inf
     return exploration(np.concatenate(times), x, y, face=face, longest_step=step)
 

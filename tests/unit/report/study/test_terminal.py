@@ -107,7 +107,7 @@ def test_a_plan_of_two_surfaces_has_no_right_answer_and_nothing_to_compare_with(
         "jnd", "Two", ("plate",), "two-interval", (GRATING, STRANGE), reference="odd"
     )
     lines = printed(lambda: show_plan(plan(design)))
-    assert "odd 10 mm 5 mm groove width sine 0.7 to 1" in lines
+    assert "odd 10 mm 5 mm groove width sine grating 0.7 to 1" in lines
     assert "Compared with" not in lines
     assert "Assumed" not in lines
     assert lines[-1] == "3 plate: fine, …"
