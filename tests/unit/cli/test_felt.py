@@ -18,7 +18,12 @@ reference = "disc"
 
 [[stimuli]]
 name = "disc"
-pattern = { type = "band", start = "-8 mm", end = "8 mm", along = { type = "radius", x = "20 mm", y = "10 mm" } }
+
+[stimuli.pattern]
+type = "band"
+start = "-8 mm"
+end = "8 mm"
+along = { type = "radius", x = "20 mm", y = "10 mm" }
 
 [[stimuli]]
 name = "grooves"
@@ -47,7 +52,7 @@ def test_a_path_in_words_is_felt_drawn_and_told(design: Path, tmp_path: Path) ->
     told = program("study", "felt", design, "--path", STROKE, "--stimulus", "grooves", "--json")
     (found,) = json.loads(told.stdout)
     assert found["directions"]["along x"]["rhythms"][0]["period_m"] == pytest.approx(4e-3, rel=5e-3)
-    assert [one["name"] for one in found["nearest"]][0] == "grooves"
+    assert found["nearest"][0]["name"] == "grooves"
     assert found["normal_force_is"].startswith("assumed")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm.report.kit import style
-from squeezefilm.report.study.figures import data_of
+from squeezefilm.report.study.figures import data_of, named_ticks
 from squeezefilm.report.study.words import estimate_words
 from squeezefilm.study.tasks.two_interval import QUARTILE
 
@@ -101,7 +101,7 @@ def _unlike(axes: Axes, analysis: TaskAnalysis) -> None:
 
 
 def _named(axes: Axes, names: list[str]) -> None:
-    axes.set_xticks(range(len(names)), [style.plain(one, 16) for one in names])
+    named_ticks(axes, names, 16)
     axes.set_xlim(-0.5, len(names) - 0.5)
 
 

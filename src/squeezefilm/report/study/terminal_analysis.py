@@ -62,7 +62,7 @@ def _show_confusion(console: Console, one: IdentificationAnalysis) -> None:
     percent = matrix.percent
     table(
         console,
-        ("grating chosen", *matrix.stimuli),
+        ("answered", *matrix.stimuli),
         [
             (answer, *(f"{percent[i, j]:.0f} %" for j in range(len(matrix.stimuli))))
             for i, answer in enumerate(matrix.answers)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.report.kit import style
-from squeezefilm.report.study.figures import data_of
+from squeezefilm.report.study.figures import data_of, named_ticks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,7 +38,7 @@ def response_times(analysis: StudyAnalysis) -> Figure:
     )
     left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
     style.estimates(left, ((item.geometric_mean, item.low, item.high) for item in found))
-    left.set_xticks(range(len(found)), [style.plain(item.name, 14) for item in found])
+    named_ticks(left, [item.name for item in found])
     left.set(ylabel="response time (s)", xlabel="stimulus")
     left.set_ylim(0, None)
     left.set_title("each stimulus")
@@ -77,8 +77,8 @@ def exploration(analysis: StudyAnalysis) -> Figure:
         axes.set_axis_off()
     for axes, (key, rows) in zip(panels, found.items(), strict=False):
         style.estimates(axes, ((item.mean, item.low, item.high) for item in rows))
-        names = [style.plain(item.name, 8) for item in rows]
-        axes.set_xticks(range(len(rows)), names, rotation=30)
+        names = [style.plain(item.name, 13) for item in rows]
+        axes.set_xticks(range(len(rows)), names, rotation=30, ha="right")
         axes.set_ylim(0, 1.08 * axes.get_ylim()[1])
         axes.set_title(key_words(key))
     return figure
