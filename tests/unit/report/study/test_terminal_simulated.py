@@ -54,7 +54,7 @@ def study() -> SimulatedStudy:
 def test_each_display_has_its_answers_and_its_reasons() -> None:
     lines = printed(lambda: show_simulated(study()))
     reasons = "Simulated Hz Bandwidth Kept Lag Contact Ripple d′ Clearest"
-    columns = "Per cent of each column; rows are gratings answered, columns simulated."
+    columns = "Per cent of each column; rows are what was answered, columns simulated."
     assert lines[:10] == [
         "biet2008-plate, SIMULATED: 66.7 % right, 2 simulated participants, seed 5",
         "Answered \\ simulated 2 mm 4 mm 8 mm",
