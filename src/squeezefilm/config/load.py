@@ -166,7 +166,12 @@ def _built_value(hint: Any, value: Any, path: _Path, source: _Source) -> Any:
 def _options(hint: Any) -> list[Any]:
     """The dataclasses that a union or a family allows; none for any other hint."""
     if typing.get_origin(hint) in (Union, types.UnionType):
-        return [part for part in typing.get_args(hint) if dataclasses.is_dataclass(part)]
+        parts = typing.get_args(hint)
+        return [
+            one
+            for part in parts
+            for one in ((part,) if dataclasses.is_dataclass(part) else family(part))
+        ]
     return list(family(hint))
 
 

@@ -6,6 +6,7 @@ presets were written down before any table of answers was computed with them, an
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -149,6 +150,17 @@ class Observer:
         if not self.channels:
             raise InputError("channels is empty; give at least one", quantity="channels")
         si.require("moist_share", self.moist_share, at_least=0.0, at_most=1.0 - self.dry_share)
+
+    @si.checked_numbers
+    def median_finger(
+        self, normal_force: Annotated[si.Newton, si.Above(0.0), si.AtMost(50.0)] | None = None
+    ) -> FingerClass:
+        """The finger of a person in the middle of all, pressing with a force (N) of its own if
+        given. Raises `InputError` for a force out of range."""
+        found = dataclasses.replace(self, finger_classes=1).fingers()[0]
+        if normal_force is None:
+            return found
+        return dataclasses.replace(found, normal_force=normal_force)
 
     def fingers(self) -> tuple[FingerClass, ...]:
         """The finger classes: a Latin hypercube over what people differ in, always the same.

@@ -82,7 +82,7 @@ def percept(
     """
     run = apparatus or Apparatus()
     played = render_texture(
-        _with_finger(display, finger),
+        with_finger(display, finger),
         TextureFile(stimulus.surface(), stimulus.name),
         exploration(observer, finger),
         normal_force=finger.normal_force,
@@ -149,7 +149,8 @@ def exploration(observer: Observer, finger: FingerClass) -> MinimumJerkStroke:
     )
 
 
-def _with_finger(display: Display, finger: FingerClass) -> Display:
+def with_finger(display: Display, finger: FingerClass) -> Display:
+    """The display under that finger."""
     return dataclasses.replace(
         display,
         finger=dataclasses.replace(

@@ -38,6 +38,8 @@ _LOG_STEP = 0.004
 # A pass begins with the pad being stretched: this much of it is not looked at.
 SETTLING: si.Metre = 2e-3
 D_PRIME_OF_75 = 0.9538725524
+# Passes of many lengths share the waves of the next longer block.
+_BLOCK = 512
 # A rhythm below this is none: it would never reach a criterion but by noise alone.
 _FAINTEST = 0.05
 _SPATIAL_SLOPE = 4.25e3
@@ -99,7 +101,7 @@ def line_amplitudes(passes: si.MetreArray) -> si.MetreArray:
     level = passes @ window
     tilt = (passes @ (window * along)) / np.sum(window * along**2)
     changing = passes - level[:, None] - tilt[:, None] * along
-    lines = (changing * window) @ _waves(count)
+    lines = (changing * window) @ _waves(-(-count // _BLOCK) * _BLOCK)[:count]
     amplitude: si.MetreArray = 2.0 * np.sqrt(np.mean(np.abs(lines) ** 2, axis=0))
     return amplitude
 
@@ -150,7 +152,7 @@ def evidence(
     d_prime = gains * amplitude / noise[:, None]
     periods = line_periods()
     if pattern_period is not None:
-        away = (1.0 / periods - 1.0 / pattern_period) / _line_width(observer)
+        away = (1.0 / periods - 1.0 / pattern_period) / _line_width(observer.stroke_length)
         felt = spatial_sensitivity(groove_width) * np.exp(-0.5 * (2.0 * away) ** 2)
         d_prime[[one.spatial for one in observer.channels]] = felt
     rhythm = _rhythm(observer, np.sum(d_prime**2, axis=0))
@@ -165,9 +167,9 @@ def _rhythm(observer: Observer, power: si.DimensionlessArray) -> si.Dimensionles
     return np.asarray(np.sqrt(found))
 
 
-def _line_width(observer: Observer) -> si.PerMetre:
+def _line_width(stroke_length: si.Metre) -> si.PerMetre:
     """From the middle of a line to its first zero under a Hann window (1/m)."""
-    return 2.0 / (observer.stroke_length - SETTLING)
+    return 2.0 / (stroke_length - SETTLING)
 
 
 def spatial_sensitivity(groove_width: si.Metre) -> si.Dimensionless:
@@ -179,13 +181,16 @@ def spatial_sensitivity(groove_width: si.Metre) -> si.Dimensionless:
     return _SPATIAL_SLOPE * (min(groove_width, _SPATIAL_MOST) - _SPATIAL_ZERO)
 
 
-def candidates(observer: Observer, found: Evidence) -> Candidates:
+def candidates(
+    observer: Observer, found: Evidence, stroke_length: si.Metre | None = None
+) -> Candidates:
     """The clearest rhythms, each in what the clearer ones leave unexplained.
 
     The lines of a rhythm chosen, and whatever the stroke is too short to tell from them, are taken
     out before the next is looked for; else every rhythm would come with its own multiples.
+    `stroke_length` (m) is the observer's own where it is not given.
     """
-    per_metre, width = 1.0 / found.period, _line_width(observer)
+    per_metre, width = 1.0 / found.period, _line_width(stroke_length or observer.stroke_length)
     power = np.sum(found.by_channel**2, axis=0)
     inside = found.period >= FINEST_PERIOD
     periods: si.FloatArray = np.full(observer.candidates, FINEST_PERIOD)

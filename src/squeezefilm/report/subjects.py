@@ -40,6 +40,7 @@ from squeezefilm.report.plate import plate, ring, sensitivity_figures
 from squeezefilm.report.played import figures as played
 from squeezefilm.report.played.page import write_play
 from squeezefilm.report.study import time_figures
+from squeezefilm.report.study.felt_path import felt_path
 from squeezefilm.report.study.page import FIGURES as FIGURES_OF_STUDY
 from squeezefilm.report.study.page import TASK_FIGURES, write_study
 from squeezefilm.report.study.simulated_page import FIGURES as FIGURES_OF_SIMULATED
@@ -53,6 +54,7 @@ from squeezefilm.search.swept import Sweep
 from squeezefilm.study.identification.analysis import IdentificationAnalysis
 from squeezefilm.study.psychometric.fit import PsychometricFit
 from squeezefilm.study.simulated.answers import SimulatedAnswers
+from squeezefilm.study.simulated.felt_paths import FeltPath
 from squeezefilm.study.simulated.participants import SimulatedStudy
 from squeezefilm.study.simulated.planned_power import PlannedPower
 from squeezefilm.study.simulated.planned_precision import PlannedPrecision
@@ -107,6 +109,7 @@ SUBJECTS: Mapping[type, _Subject] = {
     TaskAnalysis: _Subject(_by_key(TASK_FIGURES), write_study),
     SimulatedStudy: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
     SimulatedAnswers: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
+    FeltPath: _Subject({"path": felt_path}),
     PlannedPower: _Subject({"power": lambda one: time_figures.power(one.curve)}),
     PlannedPrecision: _Subject({"precision": time_figures.precision}),
     PsychometricFit: _Subject({"function": time_figures.psychometric_function}),

@@ -11,6 +11,7 @@ import pytest
 
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.render.texture.shapes import Band
 
 ONE = Stimulus("a", 4e-3, "period", ridge_share=0.25, low=0.6, high=0.9)
 
@@ -93,3 +94,49 @@ def test_whatever_is_varied_what_it_matches_is_no_longer_right() -> None:
     assert (wider.ridge_share, wider.amount("ridge_share")) == (0.5, 0.5)
     assert ONE.amount("orientation") == 0.0
     assert ONE.amount("spatial_period") == 4e-3
+
+
+def test_crossed_gratings_have_ridges_where_both_have_one() -> None:
+    one = Stimulus("checks", 4e-3, "groove width", crossed_period=1e-3, ridge_share=0.5, low=0.6)
+    assert (one.period, one.second_period) == pytest.approx((8e-3, 2e-3))
+    x, y = np.meshgrid(np.linspace(0, 0.016, 33)[:-1] + 1e-5, np.linspace(0, 4e-3, 17)[:-1] + 1e-5)
+    found = one.surface()(x, y, 0.1, 0.0)
+    both = ((x / 8e-3) % 1 < 0.5) & ((y / 2e-3) % 1 < 0.5)
+    assert np.array_equal(found, np.where(both, 1.0, 0.6))
+    assert one.kind == "crossed square gratings"
+    turned = dataclasses.replace(one, orientation=np.pi / 2).surface()
+    assert np.allclose(turned(-y, x, 0.1, 0.0), found)
+
+
+def test_a_shape_has_no_period_and_low_and_high_are_its_friction() -> None:
+    one = Stimulus("band", pattern=Band(0.01, 0.02), low=0.5, high=0.8)
+    assert np.isnan([one.period, one.groove_width, one.amount("spatial_period")]).all()
+    assert one.amount("friction_depth") == pytest.approx(0.3)
+    assert one.surface()(np.array([0.005, 0.015]), 0.0, 0.1, 0.0).tolist() == [0.5, 0.8]
+    deeper = one.varied("deeper", "friction_depth", 0.4)
+    assert deeper.low == pytest.approx(0.4)
+    assert np.isnan(Stimulus("map", texture="island-map").amount("friction_depth"))
+
+
+def test_two_names_of_one_surface_have_one_identity() -> None:
+    a = Stimulus("a", pattern=Band(0.01, 0.02))
+    assert a.surface_sha256 == dataclasses.replace(a, name="b").surface_sha256
+    assert a.surface_sha256 != dataclasses.replace(a, low=0.71).surface_sha256
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"spatial_period": 4e-3}, 'add period_means = "period"'),
+        ({"crossed_period": 4e-3}, "nothing that it crosses"),
+        ({"pattern": Band(0.0, 0.01), "texture": "bump"}, "a pattern and a texture"),
+        (
+            {"pattern": Band(0.0, 0.01), "spatial_period": 4e-3, "period_means": "period"},
+            "a pattern and a spatial_period",
+        ),
+        ({}, "says no surface"),
+    ],
+)
+def test_a_surface_said_twice_or_not_at_all(given: dict[str, Any], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        Stimulus("one", **given)

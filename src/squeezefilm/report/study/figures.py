@@ -11,6 +11,8 @@ import numpy as np
 from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -20,6 +22,9 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.sensitivity import OrderedSensitivity
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
+_SIDE_BY_SIDE = 56
+"""Letters of all names together that fit below a panel."""
+
 
 def data_of(analysis: StudyAnalysis) -> str:
     """The small print of every figure: whose answers, how many."""
@@ -28,6 +33,14 @@ def data_of(analysis: StudyAnalysis) -> str:
         f"{style.plain(analysis.origin, 40)} answers, {style.plain(analysis.name, 40)}; "
         f"{people} participant{'s' if people != 1 else ''}, {analysis.trials} trials"
     )
+
+
+def named_ticks(axes: Axes, names: Sequence[str], longest: int = 14) -> None:
+    """Names below the ticks 0, 1, …, slanted where they are too long to stand side by side."""
+    shown = [style.plain(name, longest) for name in names]
+    axes.set_xticks(range(len(shown)), shown)
+    if sum(map(len, shown)) > _SIDE_BY_SIDE:
+        axes.tick_params(axis="x", labelrotation=20)
 
 
 @style.drawn
@@ -60,7 +73,7 @@ def _draw_confusion(axes: Axes, matrix: ConfusionMatrix) -> None:
             axes.add_patch(Rectangle(corner, 1, 1, fill=False, edgecolor=style.MUTED, lw=1.2))
     axes.set_xticks(range(len(matrix.stimuli)), [style.plain(name, 16) for name in matrix.stimuli])
     axes.set_yticks(range(len(matrix.answers)), [style.plain(name, 16) for name in matrix.answers])
-    axes.set(xlabel="simulated", ylabel="grating answered")
+    axes.set(xlabel="simulated", ylabel="answered")
     style.bare(axes)
 
 
@@ -93,7 +106,7 @@ def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
     chance = 100 * analysis.matrix.chance
     by = analysis.by_stimulus
     style.estimates(left, ((100 * s.proportion_correct, 100 * s.low, 100 * s.high) for s in by))
-    left.set_xticks(range(len(by)), [style.plain(s.stimulus, 14) for s in by])
+    named_ticks(left, [s.stimulus for s in by])
     left.set(ylabel="right answers (%)", ylim=(0, 104), xlabel="stimulus")
     scores = 100 * analysis.participant_correct
     right.hist(scores, bins=_bins(analysis), orientation="horizontal", **style.BARS)

@@ -29,6 +29,8 @@ from squeezefilm.report.study.words import (
     CONDITION_HEAD,
     PERSON_HEAD,
     condition_rows,
+    exploration_head,
+    exploration_rows,
     key_rows,
     person_rows,
     read_first,
@@ -208,8 +210,13 @@ def _identification(analysis: Any) -> str:
 
 
 def _worked(analysis: StudyAnalysis) -> str:
-    """Who attended, and the methods section."""
+    """How people explored, who attended, and the methods section."""
     found = ""
+    if head := exploration_head(analysis):
+        caption = "Means over people by stimulus; in brackets the t interval over people"
+        found += section(
+            "Exploration in numbers", text_table(caption, head, exploration_rows(analysis))
+        )
     if analysis.course is not None and analysis.course.attention:
         rows = [
             (one.person, f"{one.right} of {one.asked}", f"{one.p_value:.2g}", _judged(one.attended))

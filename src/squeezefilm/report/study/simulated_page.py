@@ -12,6 +12,7 @@ from squeezefilm.report.kit.folder import json_text, require_folder, write_folde
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import (
     FigureOf,
+    bullets,
     drawn_figures,
     links,
     page,
@@ -29,11 +30,22 @@ from squeezefilm.study.simulated.participants import SimulatedStudy
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from squeezefilm.study.design.study_design import StudyDesign
+
 REMARK = (
     "The one checkable remark of Biet, Giraud and Lemaire-Semail (their tables are empty in the "
     "copy read) is of device 1: “Difference of the displayed sensation was clear except for the "
     "last case (0.4 mm).”"
 )
+
+
+def remarks(design: StudyDesign) -> tuple[str, ...]:
+    """What must be read beside the answers to a match-to-sample design: the paper's remark where
+    real gratings are matched, else what the answers assume."""
+    from squeezefilm.study.simulated.assumptions import assumed
+
+    return (REMARK,) if design.alternatives else assumed(design)
+
 
 COLUMNS = (
     Column("origin", "Always simulated"),
@@ -42,7 +54,7 @@ COLUMNS = (
     Column("trial", "Number among the trials asked, from 0", kind="whole"),
     Column("display", "Display that presented the stimulus"),
     Column("stimulus", "Name of the stimulus"),
-    Column("choice", "Name of the grating answered"),
+    Column("choice", "Name of the grating or surface answered"),
     Column("felt", "Whether anything was felt", kind="truth"),
     Column("response_time_s", "Of a model with assumed numbers", "s", "number"),
 )
@@ -166,7 +178,7 @@ def _analyses(study: SimulatedStudy, folder: Path, tell: Callable[[str], None]) 
 
 def _rows(study: SimulatedStudy) -> list[dict[str, Any]]:
     design = study.tables.design
-    answers = [one.name for one in design.alternatives]
+    answers = design.answers
     stimuli = [one.name for one in design.stimuli]
     people, trials = study.choice.shape
     return [
@@ -201,14 +213,19 @@ def reason_rows(study: SimulatedStudy | SimulatedAnswers, index: int) -> list[li
     return [
         [
             name,
-            f"{why.texture_frequency:.3g}",
-            f"{why.envelope_bandwidth:.3g}",
-            f"{why.contrast_kept:.2f}" if why.contrast_kept == why.contrast_kept else "–",
-            f"{why.lag_over_period:.2f}",
-            f"{why.contact_over_period:.1f}",
-            f"{why.ripple_share:.2f}" if why.ripple_share == why.ripple_share else "–",
-            f"{why.d_prime:.2f}",
-            f"{1e3 * why.clearest_period:.3g}",
+            *(
+                f"{value:{form}}" if value == value else "–"
+                for value, form in (
+                    (why.texture_frequency, ".3g"),
+                    (why.envelope_bandwidth, ".3g"),
+                    (why.contrast_kept, ".2f"),
+                    (why.lag_over_period, ".2f"),
+                    (why.contact_over_period, ".1f"),
+                    (why.ripple_share, ".2f"),
+                    (why.d_prime, ".2f"),
+                    (1e3 * why.clearest_period, ".3g"),
+                )
+            ),
         ]
         for name, why in study.tables.explain(index).items()
     ]
@@ -242,7 +259,10 @@ def _page(
         title,
         f"{study.participants} <b>simulated</b> participants, observer\n"
         f"{escape(printable(study.tables.observer.name))}, seed {study.seed}; no person answered",
-        section("What can be compared", f"<p>{escape(REMARK)}</p>")
+        section(
+            "What can be compared" if design.alternatives else "What the simulated answers assume",
+            bullets(remarks(design)),
+        )
         + "".join(parts)
         + picture_sections(figures),
         f"{stamped(stamp, 'SHA-256 of design and observer')}.\n"

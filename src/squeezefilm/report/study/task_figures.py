@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm.report.kit import style
-from squeezefilm.report.study.figures import data_of
+from squeezefilm.report.study.figures import data_of, named_ticks
 from squeezefilm.report.study.words import estimate_words
 from squeezefilm.study.tasks.two_interval import QUARTILE
 
@@ -80,10 +80,29 @@ def _shares(axes: Axes, analysis: TaskAnalysis, scale: float) -> None:
 
 def _differences(axes: Axes, analysis: TaskAnalysis) -> None:
     scale, label = _scale(analysis)
+    if math.isnan(analysis.conditions[0].value):
+        _unlike(axes, analysis)
+        return
     _shares(axes, analysis, scale)
     axes.set(xlabel=f"{label} of the other", ylabel="called different (%)", ylim=(-2, 103))
     axes.axvline(scale * analysis.standard, **style.GUIDE)
     axes.set_title("dotted: the reference; there both surfaces are the same")
+
+
+def _unlike(axes: Axes, analysis: TaskAnalysis) -> None:
+    """Surfaces without an amount, side by side by name."""
+    for at, one in enumerate(analysis.conditions):
+        if one.share is not None:
+            axes.plot([at, at], [100 * one.share.low, 100 * one.share.high], **style.INTERVAL)
+            axes.plot([at], [100 * one.share.value], **style.ESTIMATE)
+    _named(axes, [one.name for one in analysis.conditions])
+    axes.set(xlabel="the other surface", ylabel="called different (%)", ylim=(-2, 103))
+    axes.set_title("all trials, Wilson's intervals")
+
+
+def _named(axes: Axes, names: list[str]) -> None:
+    named_ticks(axes, names, 16)
+    axes.set_xlim(-0.5, len(names) - 0.5)
 
 
 def _share(one: PersonFunction, difference: FloatArray) -> FloatArray:
@@ -175,10 +194,14 @@ def persons(analysis: TaskAnalysis) -> Figure:
 def sensitivity(analysis: TaskAnalysis) -> Figure:
     """d′ of each comparison from the reference."""
     scale, label = _scale(analysis)
-    found = [(one.value, one.d_prime) for one in analysis.conditions if one.d_prime is not None]
-    best = max(found, key=lambda one: one[1].value)
+    known = [one for one in analysis.conditions if one.d_prime is not None]
+    unlike = math.isnan(known[0].value)
+    scale = 1.0 if unlike else scale
+    found = [(at if unlike else c.value, c.d_prime) for at, c in enumerate(known) if c.d_prime]
+    best = max(range(len(found)), key=lambda at: found[at][1].value)
+    which = style.plain(known[best].name, 24) if unlike else f"{scale * found[best][0]:.3g}"
     figure = style.new_figure(
-        f"Most distinct from the reference: {scale * best[0]:.3g}, d′ = {estimate_words(best[1])}",
+        f"Most distinct from the reference: {which}, d′ = {estimate_words(found[best][1])}",
         f"{data_of(analysis)}; means over people, proportions corrected (Hautus 1995)",
         3.8,
     )
@@ -187,7 +210,10 @@ def sensitivity(analysis: TaskAnalysis) -> Figure:
         if not math.isnan(d.low):
             axes.plot([scale * value] * 2, [d.low, d.high], **style.INTERVAL)
         axes.plot([scale * value], [d.value], **style.ESTIMATE)
-    axes.axvline(scale * analysis.standard, **style.GUIDE)
     axes.axhline(0, **style.ZERO)
-    axes.set(xlabel=label, ylabel="d′")
+    if unlike:
+        _named(axes, [one.name for one in known])
+    else:
+        axes.axvline(scale * analysis.standard, **style.GUIDE)
+    axes.set(xlabel="the other surface" if unlike else label, ylabel="d′")
     return figure

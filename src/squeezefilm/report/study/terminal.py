@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
@@ -32,6 +33,7 @@ def show_plan(plan: StudyPlan) -> None:
         ("Trials", f"{len(plan.schedules[0])} per participant", phases),
         ("Time", f"{minutes:.0f} min per participant", f"{design.trial_duration:g} s a trial"),
         ("In all", f"{minutes * plan.participants / 60:.1f} h", everyone),
+        ("Exploring", design.exploring, _EXPLORING[design.exploring]),
         ("Order", design.order, f"balanced over every {plan.balanced_participants} participants"),
         ("Seed", str(plan.seed), f"design {design.sha256[:12]}"),
     ]
@@ -39,12 +41,12 @@ def show_plan(plan: StudyPlan) -> None:
     heading(console, "Presented")
     table(
         console,
-        (*_GRATING, "Waveform", "Friction", "Right answer"),
+        (*_GRATING, "Surface", "Friction", "Right answer"),
         [
             (
                 *_grating(one),
-                one.waveform,
-                f"{one.low:g} to {one.high:g}",
+                one.kind,
+                "its own" if one.texture else f"{one.low:g} to {one.high:g}",
                 "" if design.two_surfaces else design.answer_to(one) or "none",
             )
             for one in design.stimuli
@@ -71,12 +73,18 @@ def show_plan(plan: StudyPlan) -> None:
         console.print(f"\n{design.note}")
 
 
+_EXPLORING = {"strokes": "to and fro along x", "free": "over the whole face, in two dimensions"}
 _GRATING = ("Name", "Period", "Groove", "Length means")
 
 
 def _grating(one: Stimulus | Grating) -> tuple[str, str, str, str]:
-    """What a virtual and a real grating both have, as `_GRATING` heads it."""
-    return one.name, shown(one.period, M, 3), shown(one.groove_width, M, 3), one.period_means
+    """What a virtual and a real grating both have, as `_GRATING` heads it; a shape has none."""
+    if one.period != one.period:
+        return one.name, "–", "–", "–"
+    period, crossed = shown(one.period, M, 3), getattr(one, "second_period", math.nan)
+    if crossed == crossed:
+        period += f" by {shown(crossed, M, 3)}"
+    return one.name, period, shown(one.groove_width, M, 3), one.period_means or "–"
 
 
 def show_boards(head: tuple[str, ...], rows: list[tuple[str, ...]], says: Iterable[str]) -> None:
@@ -196,8 +204,6 @@ class TerminalExaminer:
             self._write(f"{word}.")
 
     def _number(self) -> float:
-        import math
-
         while True:
             try:
                 value = float(self._read("> ").strip().replace(",", "."))

@@ -9,9 +9,9 @@ from squeezefilm.report.kit.terminal import heading, plain_console, table
 from squeezefilm.report.study.simulated_page import (
     LEGEND,
     REASONS,
-    REMARK,
     confusion_rows,
     reason_rows,
+    remarks,
 )
 from squeezefilm.report.study.words import (
     CONDITION_HEAD,
@@ -62,7 +62,7 @@ def _show_confusion(console: Console, one: IdentificationAnalysis) -> None:
     percent = matrix.percent
     table(
         console,
-        ("grating chosen", *matrix.stimuli),
+        ("answered", *matrix.stimuli),
         [
             (answer, *(f"{percent[i, j]:.0f} %" for j in range(len(matrix.stimuli))))
             for i, answer in enumerate(matrix.answers)
@@ -147,13 +147,13 @@ def show_precision(found: PlannedPrecision) -> None:
 def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
     """Print each display's answers and the model's reasons, or what their analysis says."""
     from squeezefilm.study.simulated.answers import SimulatedAnswers
-    from squeezefilm.study.simulated.judgements import ASSUMED
+    from squeezefilm.study.simulated.assumptions import assumed
 
     console = plain_console()
     if isinstance(study, SimulatedAnswers):
         show_analyses(study.analyses)
         console.print("SIMULATED: nobody answered. Assumed beyond the observer's file:")
-        for said in ASSUMED[study.answers.design.task]:
+        for said in assumed(study.answers.design):
             console.print(f"  {said}", highlight=False)
         for display, rows in ((d, reason_rows(study, i)) for i, d in enumerate(study.analyses)):
             heading(console, f"{display}: what the model sees of each stimulus")
@@ -168,7 +168,8 @@ def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
         )
         head, rows = confusion_rows(study, index)
         table(console, head, rows)
-        console.print("Per cent of each column; rows are gratings answered, columns simulated.")
+        console.print("Per cent of each column; rows are what was answered, columns simulated.")
         table(console, REASONS, reason_rows(study, index))
     console.print(LEGEND)
-    console.print(REMARK)
+    for said in remarks(study.tables.design):
+        console.print(said, highlight=False)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.report.kit import style
-from squeezefilm.report.study.figures import data_of
+from squeezefilm.report.study.figures import data_of, named_ticks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from squeezefilm.study.psychometric.fit import PsychometricFit
     from squeezefilm.study.simulated.planned_precision import PlannedPrecision
     from squeezefilm.study.tasks.analyze import StudyAnalysis
+
+
+_ACROSS = 4
+"""Quantities of exploration side by side."""
 
 
 @style.drawn
@@ -34,7 +38,7 @@ def response_times(analysis: StudyAnalysis) -> Figure:
     )
     left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
     style.estimates(left, ((item.geometric_mean, item.low, item.high) for item in found))
-    left.set_xticks(range(len(found)), [style.plain(item.name, 14) for item in found])
+    named_ticks(left, [item.name for item in found])
     left.set(ylabel="response time (s)", xlabel="stimulus")
     left.set_ylim(0, None)
     left.set_title("each stimulus")
@@ -65,14 +69,17 @@ def exploration(analysis: StudyAnalysis) -> Figure:
     figure = style.new_figure(
         "How people explored, by stimulus",
         f"{data_of(analysis)}; means over people with {100 * level:g} % t intervals",
-        3.9,
+        3.9 * -(-len(found) // _ACROSS),
     )
-    panels = np.atleast_1d(figure.subplots(1, len(found)))
-    for axes, (key, rows) in zip(panels, found.items(), strict=True):
+    down, across = -(-len(found) // _ACROSS), min(len(found), _ACROSS)
+    panels = figure.subplots(down, across, squeeze=False).ravel()
+    for axes in panels[len(found) :]:
+        axes.set_axis_off()
+    for axes, (key, rows) in zip(panels, found.items(), strict=False):
         style.estimates(axes, ((item.mean, item.low, item.high) for item in rows))
-        names = [style.plain(item.name, 8) for item in rows]
-        axes.set_xticks(range(len(rows)), names, rotation=30)
-        axes.set_ylim(0, None)
+        names = [style.plain(item.name, 13) for item in rows]
+        axes.set_xticks(range(len(rows)), names, rotation=30, ha="right")
+        axes.set_ylim(0, 1.08 * axes.get_ylim()[1])
         axes.set_title(key_words(key))
     return figure
 

@@ -63,7 +63,9 @@ def _task_first(analysis: TaskAnalysis) -> list[str]:
     if analysis.pooled is None:
         return [f"No {analysis.measure} could be computed."]
     found = analysis.pooled
-    if analysis.measure == "exponent":
+    if analysis.measure == "sensitivity d′":
+        meaning = f"People tell the surfaces from the reference with d′ = {estimate_words(found)}."
+    elif analysis.measure == "exponent":
         meaning = (
             f"Numbers grow with {_JUDGED[analysis.judged]} to the power of {estimate_words(found)}."
         )
@@ -273,7 +275,7 @@ def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
         rows.append(
             (
                 one.name,
-                shown(one.value, unit, 3),
+                "–" if math.isnan(one.value) else shown(one.value, unit, 3),
                 f"{one.trials}",
                 f"{one.participants}",
                 "–" if answers is None else estimate_words(answers, scale, said),
@@ -288,7 +290,7 @@ PERSON_HEAD = ("Participant", "Estimate", "Interval", "Trials", "Remark")
 
 
 def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
-    """Each person's Weber fraction or exponent."""
+    """Each person's Weber fraction, exponent or d′."""
     scale, unit = (100.0, " %") if analysis.measure == "Weber fraction" else (1.0, "")
     return [
         (
@@ -300,3 +302,30 @@ def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
         )
         for one in analysis.persons
     ]
+
+
+def exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:
+    """Of `exploration_rows`; empty where no path was kept."""
+    from squeezefilm.report.study.time_figures import key_words
+
+    known = [key for key, rows in analysis.exploration.items() if rows]
+    return ("Stimulus", *map(key_words, known)) if known else ()
+
+
+def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
+    """How people explored each stimulus: means over people with their intervals."""
+    known = [rows for rows in analysis.exploration.values() if rows]
+    names = list(dict.fromkeys(one.name for rows in known for one in rows))
+    found = []
+    for name in names:
+        cells = []
+        for rows in known:
+            mine = [one for one in rows if one.name == name]
+            if not mine:
+                cells.append("–")
+                continue
+            one = mine[0]
+            bounds = "" if math.isnan(one.low) else f" ({one.low:.3g} to {one.high:.3g})"
+            cells.append(f"{one.mean:.3g}{bounds}")
+        found.append((name, *cells))
+    return found

@@ -46,6 +46,8 @@ from squeezefilm.session.play.plan import Ending, PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.session.record.trace import Trace, read_trace
 from squeezefilm.study.conduct.study_device import DeviceVerification, Exploration
+from squeezefilm.study.record.exploration import PATH_PERIOD
+from squeezefilm.study.record.explored_trials import explored_table
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.settings import TwinSettings
 from squeezefilm.twin.working_point import working_point
@@ -54,9 +56,6 @@ LONGEST_PRESENTATION: si.Second = 600.0
 """A surface that nobody answers plays no longer; the trial then comes again."""
 VERIFICATION_SHARE: si.Dimensionless = 0.25
 """Of the display's voltage, at which its resonance is swept."""
-PATH_PERIOD: si.Second = 10e-3
-"""Between samples of the finger's path (the raw trace has every tick): slow against the sensor's
-noise, fast against a hand."""
 _SPAN = 4.0
 """The carrier is swept over so many bandwidths to either side of the prediction."""
 _POINTS = 41
@@ -153,6 +152,7 @@ class Bench:
             "display": setup.display.name,
             "drive": orders.drive.partition(":")[0],
             "stimulus": stimulus.name,
+            "surface_sha256": stimulus.surface_sha256,
             "assumed_limits": list(setup.assumed_limits),
         }
         outcome = run_play(
@@ -256,15 +256,17 @@ def explored(trace: Trace, name: str) -> Exploration:
     Path and speed are those of the time in which it touched. No force is known.
     """
     table = _path(trace)
-    time, x, y = (table.column(one) for one in ("time_s", "x_m", "y_m"))
-    steps, way = np.diff(time), np.hypot(np.diff(x), np.diff(y))
-    # A longer step is one in which it was lifted.
-    down = steps < 1.5 * PATH_PERIOD
-    length, touched = float(way[down].sum()), float(steps[down].sum())
+    samples = len(table.column("time_s"))
+    length = speed = math.nan
+    touched = 0.0
+    if samples > 1:
+        found = explored_table(table)
+        speed, touched = found.mean_speed, found.touched
+        length = found.path_length if touched else math.nan
     return Exploration(
-        path_length=length if touched else math.nan,
-        mean_speed=length / touched if touched else math.nan,
-        trace=csv_text(table) if len(time) else "",
+        path_length=length,
+        mean_speed=speed,
+        trace=csv_text(table) if samples else "",
         raw_trace=name,
         touch=_share_touched(trace, touched),
     )

@@ -2,10 +2,12 @@
 
 Sessions, presentations and answers are written as for people, so that analysis and exports can be
 tried before anybody is asked. The sessions say that they are simulated, and analyses take it over.
+So do the paths of their fingers, which a plain hand makes (`rehearsed_hand`).
 """
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 
@@ -13,14 +15,16 @@ import numpy as np
 
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import Observer
-from squeezefilm.study.conduct.run import Response, StudyRun
+from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.study.conduct.rehearsed_hand import path_of, rehearsed
+from squeezefilm.study.conduct.run import Presentation, Response, StudyRun, spoiled_by
 from squeezefilm.study.conduct.sessions import (
     SessionConditions,
     begin_session,
     display_wanted,
     end_session,
 )
-from squeezefilm.study.conduct.study_device import NoDevice
+from squeezefilm.study.conduct.study_device import Exploration, NoDevice
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import SIMULATED, SIMULATED_NOTE, origin_of
@@ -29,8 +33,9 @@ from squeezefilm.study.simulated.answers import (
     answers_of,
     simulate_participants,
 )
-from squeezefilm.study.simulated.chain_tables import chain_tables
+from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import SimulatedStudy
+from squeezefilm.study.simulated.simulated_people import finger_of
 
 MOST_PEOPLE = 200
 _CONDITIONS = SessionConditions(
@@ -76,7 +81,9 @@ def rehearse(
         answered = simulate_participants(
             design, observer, number + 1, int(store.study["seed"]), tables
         )
-        _answer_everything(store, who, _responses(answered, number))
+        _answer_everything(
+            store, who, _responses(answered, number), _Hand(tables, answered, number)
+        )
         found.append(who)
     return tuple(found)
 
@@ -101,7 +108,38 @@ def _responses(study: SimulatedStudy | SimulatedAnswers, person: int) -> dict[in
     return found
 
 
-def _answer_everything(store: StudyStore, who: str, known: dict[int, Response]) -> None:
+class _Hand:
+    """Explores a person's surfaces as their answers assume."""
+
+    def __init__(
+        self, tables: ChainTables, answered: SimulatedStudy | SimulatedAnswers, person: int
+    ) -> None:
+        design, fingers = tables.design, tables.fingers
+        if isinstance(answered, SimulatedStudy):
+            finger = fingers[int(answered.finger[person])]
+        else:
+            finger = fingers[finger_of(person, len(fingers), answered.seed)]
+        self._design, self._force = design, finger.normal_force
+        self._paths = {
+            name: path_of(design.exploring, plate, tables.observer, finger)
+            for name, plate in zip(design.displays, tables.plates, strict=True)
+        }
+
+    def explored(self, presentation: Presentation) -> tuple[Exploration, ...]:
+        """Of each virtual surface; none where the design's rules would not let it count, for the
+        hand would break them again."""
+        path = self._paths[presentation.trial.display]
+        found = tuple(
+            rehearsed(path, self._design.exploring, one, self._force)
+            for one in presentation.surfaces
+            if isinstance(one, Stimulus)
+        )
+        return () if spoiled_by(self._design, Response(explorations=found)) else found
+
+
+def _answer_everything(
+    store: StudyStore, who: str, known: dict[int, Response], hand: _Hand
+) -> None:
     while display_wanted(store, who) is not None:
         session = begin_session(store, who, NoDevice(), _CONDITIONS, None, acknowledged=False)
         run = StudyRun(store, session)
@@ -110,5 +148,6 @@ def _answer_everything(store: StudyStore, who: str, known: dict[int, Response]) 
             response = Response()
             if trial.asks:
                 response = known.get(trial.number, Response(choice=trial.answer))
+            response = dataclasses.replace(response, explorations=hand.explored(presentation))
             run.respond(presentation.token, response)
         end_session(store, session, NoDevice())

@@ -90,7 +90,12 @@ class StudyTwin:
         )
         device = self._twin(self.hand)
         end = self.hand.begin + (self.hand.repeats or 1) * self.hand.motion.duration
-        about = {"device": "rehearsal", "settings_sha256": config_hash(self.settings)}
+        about = {
+            "device": "rehearsal",
+            "settings_sha256": config_hash(self.settings),
+            "stimulus": stimulus.name,
+            "surface_sha256": stimulus.surface_sha256,
+        }
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "trace.sqft"
             outcome = virtual_play(setup.plan, device, path, about, duration=end)

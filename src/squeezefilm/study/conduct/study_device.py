@@ -151,9 +151,11 @@ class ByHand(NoDevice):
 
     def present(self, stimulus: Stimulus, seed: int) -> None:
         """Say which surface is wanted."""
-        period = si.format_quantity(stimulus.period, si.Unit("m"), 4)
+        what = stimulus.kind
+        if not math.isnan(stimulus.period):
+            what = f"period {si.format_quantity(stimulus.period, si.Unit('m'), 4)}"
         depth = f"{100 * stimulus.friction_depth:.3g} % change of friction"
-        self._tell(f"put '{stimulus.name}' under the finger: period {period}, {depth}")
+        self._tell(f"put '{stimulus.name}' under the finger: {what}, {depth}")
 
     def stop(self) -> Exploration:
         """Say that it is to be taken away; nothing is known of the finger."""

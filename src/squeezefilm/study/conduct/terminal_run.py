@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import tempfile
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -11,8 +12,12 @@ from pathlib import Path
 
 from squeezefilm import config
 from squeezefilm import quantities as si
+from squeezefilm.display import Display
 from squeezefilm.errors import InputError
+from squeezefilm.formats.traces import Table, csv_text
+from squeezefilm.perception.observer import load_observer
 from squeezefilm.progress import SayProgress
+from squeezefilm.render.motion.finger_path import FingerPath
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import (
     Exposure,
@@ -158,6 +163,20 @@ def _sitting(conditions: Path | None, consent: bool) -> SessionConditions:
     return sitting
 
 
+def _free_path(display: Display) -> FingerPath:
+    """How the hand of a twin explores freely: as a median simulated person would."""
+    from squeezefilm.study.simulated.chain_tables import free_path
+
+    observer = load_observer()
+    return free_path(display, observer, observer.median_finger())
+
+
+def _written(path: FingerPath, file: Path) -> Path:
+    table = Table({"time_s": path.time, "x_m": path.x, "y_m": path.y})
+    file.write_text(csv_text(table), encoding="utf-8")
+    return file
+
+
 def _device(
     drive: str,
     store: StudyStore,
@@ -173,6 +192,7 @@ def _device(
     from squeezefilm.display import load_display
     from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
     from squeezefilm.study.conduct.rehearsal_device import StudyTwin
+    from squeezefilm.twin.hand import EXPLORING, Hand
 
     if drive != "rehearsal":
         require_study_drive(drive)
@@ -181,6 +201,14 @@ def _device(
     exposed = exposure(found, duration, progress=tell)
     if drive == "rehearsal":
         tell("the twin's working point")
+        if store.design.exploring == "free":
+            return StudyTwin(found, hand=Hand(_free_path(found), begin=0.05, repeats=1)), exposed
         return StudyTwin(found), exposed
-    device = SessionDevice(display, drive, store.traces, amplitude_per_pickup=amplitude_per_pickup)
+    stroke = EXPLORING
+    if drive == "twin" and store.design.exploring == "free":
+        folder = closing.enter_context(tempfile.TemporaryDirectory())
+        stroke = str(_written(_free_path(found), Path(folder) / "hand.csv"))
+    device = SessionDevice(
+        display, drive, store.traces, amplitude_per_pickup=amplitude_per_pickup, stroke=stroke
+    )
     return closing.enter_context(device), exposed

@@ -56,9 +56,14 @@ class StudyPlan(Result):
             "task": design.task,
             "question": design.spoken_question,
             "displays": list(design.displays),
+            "exploring": design.exploring,
+            "matched_with": design.matched_with,
             "stimuli": [
                 {
                     **_grooves(one),
+                    "second_period_m": _known(one.second_period),
+                    "surface": one.kind,
+                    "surface_sha256": one.surface_sha256,
                     "waveform": one.waveform,
                     "friction_depth": one.friction_depth,
                     "right_answer": design.answer_to(one) if not design.two_surfaces else "",
@@ -108,10 +113,14 @@ class StudyPlan(Result):
 def plan_study(design: NamedDesign, participants: int = 1, seed: int = 0) -> StudyPlan:
     """The plan of a design for a number of participants.
 
-    Raises `InputError` for less than 1 or more than 1000 participants, or a seed below 0.
+    Raises `InputError` for less than 1 or more than 1000 participants, or a seed below 0, and
+    `ConfigError` for a surface whose file cannot be read.
     """
     si.require("participants", participants, at_least=1, at_most=1000)
     si.require("seed", seed, at_least=0)
+    for one in design.stimuli:
+        # A texture's file or picture that is not there is told before anybody is planned.
+        one.surface()
     most = int(PLANNED_TRIALS.most // design.most_trials)
     enough = f"of {design.most_trials} trials each, at most {most} participants are planned at once"
     require_within(PLANNED_TRIALS, participants * design.most_trials, enough=enough)
@@ -124,10 +133,15 @@ def plan_study(design: NamedDesign, participants: int = 1, seed: int = 0) -> Stu
 def _grooves(one: Stimulus | Grating) -> dict[str, Any]:
     return {
         "name": one.name,
-        "spatial_period_m": one.period,
-        "groove_width_m": one.groove_width,
+        "spatial_period_m": _known(one.period),
+        "groove_width_m": _known(one.groove_width),
         "length_means": one.period_means,
     }
+
+
+def _known(length: si.Metre) -> si.Metre | None:
+    """A length (m) as JSON has it: a shape's is none."""
+    return None if math.isnan(length) else length
 
 
 def _balanced(design: StudyDesign) -> int:

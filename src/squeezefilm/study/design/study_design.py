@@ -3,6 +3,7 @@
 Four tasks:
 
 - "match-to-sample": one virtual surface; which of the real gratings (`alternatives`) is it like?
+  Or, with `matched_with` = "stimuli", which of the stimuli, shapes and maps too, was it?
 - "same-different": two surfaces one after the other; the same or different?
 - "two-interval": two surfaces; which is coarser (`judged` = "spatial_period") or has the deeper
   friction change (`judged` = "friction_depth")? One of them is always `reference`.
@@ -21,11 +22,18 @@ from typing import Annotated, Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.config.provenance import Provenance
-from squeezefilm.errors import InputError
+from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.formats.image_file import with_images
 from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
 from squeezefilm.perception.stimuli import Grating, Stimulus, Varied
 from squeezefilm.results import config_hash
+from squeezefilm.study.design.matching import (
+    Exploring,
+    MatchedWith,
+    require_amounts,
+    require_matching,
+)
 from squeezefilm.study.design.rules import TrialRules
 from squeezefilm.study.design.special_trials import (
     AdaptiveCondition,
@@ -52,6 +60,9 @@ class StudyDesign:
         task: one of the four of this module.
         stimuli: the conditions.
         alternatives: real gratings; for match-to-sample only, where they are the answers.
+        matched_with: what match-to-sample offers as answers: the "real gratings", or the "stimuli"
+            themselves by name, which people got to know before.
+        exploring: "strokes", to and fro along x, or "free" over the whole face.
         reference: name of the stimulus every other is compared with (tasks of two surfaces), or
             of the one that is worth `modulus` (magnitude estimation).
         judged: what two-interval answers are right about, same-different answers tell apart and
@@ -105,6 +116,8 @@ class StudyDesign:
     practice_rounds: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 3
     resume_within: Annotated[si.Second, si.AtLeast(0.0)] = 0.0
     note: str = ""
+    matched_with: MatchedWith = "real gratings"
+    exploring: Exploring = "strokes"
     provenance: Mapping[str, Provenance] = field(
         default_factory=dict, metadata={"loader": True}, compare=False, repr=False
     )
@@ -154,8 +167,9 @@ class StudyDesign:
     @property
     def answers(self) -> tuple[str, ...]:
         """The answers a participant may give; empty where any number may be given."""
+        matched = self.alternatives or self.stimuli
         return {
-            "match-to-sample": tuple(one.name for one in self.alternatives),
+            "match-to-sample": tuple(one.name for one in matched),
             "same-different": ("same", "different"),
             "two-interval": ("first", "second"),
             "magnitude-estimation": (),
@@ -172,8 +186,11 @@ class StudyDesign:
         if self.question:
             return self.question
         judged = "coarser" if self.judged == "spatial_period" else "more strongly felt"
+        gratings = self.matched_with == "real gratings"
         return {
-            "match-to-sample": "Which of the gratings does the surface feel like?",
+            "match-to-sample": "Which of the gratings does the surface feel like?"
+            if gratings
+            else "Which of the surfaces was it?",
             "same-different": "Were the two surfaces the same or different?",
             "two-interval": f"Which of the two surfaces was {judged}?",
             "magnitude-estimation": "Give a number for how coarse the surface feels.",
@@ -195,8 +212,11 @@ class StudyDesign:
         """What is right to answer; an empty text where nothing is.
 
         For match-to-sample the alternative that the stimulus `matches`, else that of the same
-        period (to 1e-9 m). For two intervals the one with more of what is `judged`.
+        period (to 1e-9 m), or itself. For two intervals the one with more of what is `judged`.
         """
+        if self.task == "match-to-sample" and self.matched_with == "stimuli":
+            itself = first.name if first.name in self.answers else ""
+            return first.matches or itself
         if self.task == "match-to-sample":
             if first.matches or first.waveform == "constant":
                 return first.matches
@@ -238,18 +258,10 @@ class StudyDesign:
         )
 
     def _require_task(self) -> None:
-        gratings, pair = self.task == "match-to-sample", self.two_surfaces
-        if gratings and len(self.alternatives) < 2:
-            raise InputError(
-                "match-to-sample needs two or more [[alternatives]], the real gratings; "
-                f"there are {len(self.alternatives)}",
-                quantity="alternatives",
-            )
-        if not gratings and self.alternatives:
-            raise InputError(
-                f"task = '{self.task}' has no alternatives; remove them or take match-to-sample",
-                quantity="alternatives",
-            )
+        require_matching(
+            self.task, self.matched_with, self.exploring, self.stimuli, self.alternatives
+        )
+        pair = self.two_surfaces
         if pair and not self.reference:
             raise InputError(
                 f"task = '{self.task}' compares with a reference; name one of the stimuli",
@@ -277,6 +289,8 @@ class StudyDesign:
                 "answers; give practice = 8 or so, or leave it out (numbers are never right)",
                 quantity="practice_criterion",
             )
+        amounts = [self.judged_value(one) for one in self.stimuli]
+        require_amounts(self.task, self.judged, self.stimuli, amounts)
         for series in self.adaptive:
             self._require_series(series)
         if self.modulus and (self.task != "magnitude-estimation" or not self.reference):
@@ -338,11 +352,18 @@ class StudyDesign:
 def load_design(name_or_path: str | Path) -> StudyDesign:
     """The design of a preset study's name or of a TOML file. Raises `ConfigError` if it can't be.
 
-    A texture file named in a stimulus is looked for from where the program runs.
+    Pictures in a stimulus's pattern are read from beside the file; a texture file named in a
+    stimulus is looked for from where the program runs.
     """
     from squeezefilm import config, presets
 
-    return config.load(StudyDesign, presets.resolve_study(name_or_path))
+    path = presets.resolve_study(name_or_path)
+    found = config.load(StudyDesign, path)
+    try:
+        stimuli = with_images(found.stimuli, path.parent)
+    except InputError as error:
+        raise ConfigError(str(error), file=path, key=error.quantity or "file") from error
+    return found if stimuli is found.stimuli else dataclasses.replace(found, stimuli=stimuli)
 
 
 NamedDesign = Annotated[StudyDesign, ReadBy(load_design)]

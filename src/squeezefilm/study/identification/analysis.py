@@ -19,9 +19,9 @@ from squeezefilm.study.identification.choice_model import (
     choice_model,
     perceptual_map,
 )
+from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
 from squeezefilm.study.identification.course import Course
-from squeezefilm.study.identification.exploration import ConditionMean, condition_means
 from squeezefilm.study.identification.information import InformationTransfer, information_transfer
 from squeezefilm.study.identification.mixed_models import MixedModel, mixed_model
 from squeezefilm.study.identification.proportions import (

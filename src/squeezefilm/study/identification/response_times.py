@@ -12,8 +12,8 @@ from scipy.special import erfcx, log_ndtr
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.study.identification.condition_means import condition_means
 from squeezefilm.study.identification.confusion import one_per_trial
-from squeezefilm.study.identification.exploration import condition_means
 
 _MOST_VALUES = 20_000
 

@@ -13,10 +13,11 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.record.explored_trials import MEASURES
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import origin_of, trial_table
 
-EXPLORED = ("mean_speed_m_per_s", "mean_normal_force_N", "path_length_m")
+EXPLORED = ("mean_speed_m_per_s", "mean_normal_force_N", "path_length_m", *MEASURES)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

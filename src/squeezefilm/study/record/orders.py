@@ -9,7 +9,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.results import write_whole
 from squeezefilm.study.design.plan import StudyPlan
 from squeezefilm.study.design.trials import Trial
-from squeezefilm.study.record.tables import Cell, Column, csv_text
+from squeezefilm.study.record.tables import Cell, Column, csv_text, surface_cells
 
 ORDER_COLUMNS = (
     Column("participant_number", "Which of the balanced orders, from 0", kind="whole"),
@@ -22,9 +22,15 @@ ORDER_COLUMNS = (
     ),
     Column("stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
     Column("stimulus_friction_depth", "Its change of relative friction", "", "number"),
+    Column("stimulus_second_period_m", "That of a grating across it, if any", "m", "number"),
+    Column("stimulus_surface", "What kind of surface it is, in words"),
+    Column("stimulus_surface_sha256", "Hash of the surface, its files and pictures read"),
     Column("second_stimulus", "Name of the second stimulus, if there are two"),
     Column("second_stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
     Column("second_stimulus_friction_depth", "Its change of relative friction", "", "number"),
+    Column("second_stimulus_second_period_m", "Of a grating across it, if any", "m", "number"),
+    Column("second_stimulus_surface", "What kind of surface it is, in words"),
+    Column("second_stimulus_surface_sha256", "Hash of the surface"),
     Column("adaptive_series", "Series that chooses the comparison, if any"),
     Column("reference_first", "Whether a series presents the reference first", kind="truth"),
     Column("alternatives", "Answers in the order in which they are offered, separated by |"),
@@ -78,6 +84,5 @@ def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
         felt = trial.phase == "familiarisation" and name in gratings
         one = gratings[name] if felt else (design.stimulus(name) if name else None)
         row[prefix] = name
-        row[f"{prefix}_period_m"] = None if one is None else one.period
-        row[f"{prefix}_friction_depth"] = getattr(one, "friction_depth", None)
+        row |= {f"{prefix}_{key}": value for key, value in surface_cells(one).items()}
     return {column.name: row[column.name] for column in ORDER_COLUMNS}

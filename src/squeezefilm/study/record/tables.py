@@ -16,6 +16,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from squeezefilm.errors import ConfigError
+from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.study.record.explored_trials import NO_MEASURES, ExploredTrials
 from squeezefilm.study.record.store import StudyStore
 
 
@@ -41,9 +44,15 @@ COLUMNS = (
     Column("stimulus", "Name of the stimulus, or of the first of two"),
     Column("stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
     Column("stimulus_friction_depth", "Its change of relative friction", "", "number"),
+    Column("stimulus_second_period_m", "That of a grating across it, if any", "m", "number"),
+    Column("stimulus_surface", "What kind of surface it is, in words"),
+    Column("stimulus_surface_sha256", "Hash of the surface, its files and pictures read"),
     Column("second_stimulus", "Name of the second stimulus, if there are two"),
     Column("second_stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
     Column("second_stimulus_friction_depth", "Its change of relative friction", "", "number"),
+    Column("second_stimulus_second_period_m", "Of a grating across it, if any", "m", "number"),
+    Column("second_stimulus_surface", "What kind of surface it is, in words"),
+    Column("second_stimulus_surface_sha256", "Hash of the surface"),
     Column("adaptive_series", "Adaptive series that chose the comparison, if any"),
     Column(
         "intensity", "Its difference from the reference, in parts of the reference", "", "number"
@@ -56,6 +65,11 @@ COLUMNS = (
     Column("path_length_m", "Way of the finger during the trial", "m", "number"),
     Column("mean_speed_m_per_s", "Its mean speed", "m/s", "number"),
     Column("mean_normal_force_N", "Its mean normal force", "N", "number"),
+    Column("peak_speed_m_per_s", "Greatest speed between two samples of its path", "m/s", "number"),
+    Column("time_in_touch_s", "How long the finger touched", "s", "number"),
+    Column("passes", "Straight stretches one way, of 4 mm or more", "", "number"),
+    Column("along_x_share", "Share of their way along x more than along y", "", "number"),
+    Column("coverage", "Share of the face's cells of 5 mm that it came over", "", "number"),
     Column("set_aside", "Why the answer does not count and the trial was asked again; else empty"),
     Column("presentations", "How often the trial was presented until answered", kind="whole"),
     Column("started_utc", "Wall clock when it began (UTC)"),
@@ -93,10 +107,13 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
     stimuli = {one.name: one for one in design.stimuli}
     stimuli |= {one.stimulus.name: one.stimulus for one in design.catch}
     found: list[dict[str, Cell]] = []
+    explored, surfaces = ExploredTrials(store), _Surfaces()
     for row in store.rows(_QUERY):
         names = json.loads(row.pop("stimuli"))
         row["task"] = design.task
-        row["traces"] = " ".join(json.loads(row["traces"]))
+        traces = json.loads(row["traces"])
+        row |= explored.measures(row["display"], traces) if traces else NO_MEASURES
+        row["traces"] = " ".join(traces)
         row["correct"] = None if row["correct"] is None else bool(row["correct"])
         for prefix, name in zip(("stimulus", "second_stimulus"), (*names, None), strict=False):
             row[prefix] = name or ""
@@ -105,10 +122,54 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
             if name is not None and one is None and row["adaptive_series"]:
                 series = next(s for s in design.adaptive if s.name == row["adaptive_series"])
                 one = design.comparison(series, row["intensity"])
-            row[f"{prefix}_period_m"] = None if one is None else one.period
-            row[f"{prefix}_friction_depth"] = getattr(one, "friction_depth", None)
+            row |= {f"{prefix}_{key}": value for key, value in surfaces.cells(one).items()}
         found.append({column.name: row[column.name] for column in COLUMNS})
     return found
+
+
+class _Surfaces:
+    """What exports say of a surface beside its name, each worked out once."""
+
+    def __init__(self) -> None:
+        # By the surface itself, which is kept: what a series chose is made anew for each row.
+        self._known: dict[int, tuple[Any, dict[str, Cell]]] = {}
+
+    def cells(self, one: Stimulus | Grating | None) -> dict[str, Cell]:
+        """Periods, change of friction, kind and hash; a real grating has no hash."""
+        if id(one) not in self._known:
+            self._known[id(one)] = one, surface_cells(one)
+        return self._known[id(one)][1]
+
+
+def surface_cells(one: Stimulus | Grating | None) -> dict[str, Cell]:
+    """Periods (m), change of friction (1), kind and hash of a surface, by the ends of columns.
+
+    Of a texture whose file cannot be read the hash is empty.
+    """
+    if not isinstance(one, Stimulus):
+        real = one is not None
+        return {
+            "period_m": one.period if one is not None else None,
+            "friction_depth": None,
+            "second_period_m": None,
+            "surface": "real grating" if real else "",
+            "surface_sha256": "",
+        }
+    try:
+        identity = one.surface_sha256
+    except ConfigError:
+        identity = ""
+    return {
+        "period_m": _known(one.period),
+        "friction_depth": _known(one.amount("friction_depth")),
+        "second_period_m": _known(one.second_period),
+        "surface": one.kind,
+        "surface_sha256": identity,
+    }
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None
 
 
 SESSION_COLUMNS = (

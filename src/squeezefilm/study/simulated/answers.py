@@ -16,8 +16,9 @@ from squeezefilm.perception.observer import NamedObserver
 from squeezefilm.results import Result, stamp
 from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.simulated.assumptions import assumed
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.judgements import ASSUMED, simulate_judgements
+from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import (
     SimulatedStudy,
     require_people,
@@ -51,9 +52,7 @@ class SimulatedAnswers(Result):
     def analyses(self) -> dict[str, StudyAnalysis]:
         """What they say, by display; a psychometric function a person takes some 20 ms."""
         design = self.tables.design
-        return analyze_answers(
-            self.answers, design.name, assumed=ASSUMED[design.task], seed=self.seed
-        )
+        return analyze_answers(self.answers, design.name, assumed=assumed(design), seed=self.seed)
 
     def summary(self) -> dict[str, Any]:
         """What ``squeezefilm study simulate --json`` prints; keys carry units."""

@@ -19,59 +19,31 @@ import numpy as np
 
 import squeezefilm
 from squeezefilm import quantities as si
-from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.perception.free_hand import free_exploration
 from squeezefilm.perception.observer import FingerClass, Observer
+from squeezefilm.perception.path_percepts import path_percept
 from squeezefilm.perception.percepts import (
     Apparatus,
-    Percept,
-    along_way,
     grating_percept,
     percept,
 )
-from squeezefilm.perception.senses import Candidates, line_amplitudes, line_periods
+from squeezefilm.perception.senses import Candidates, line_periods
 from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.plate.layout import AnnularStator
 from squeezefilm.progress import SayProgress
+from squeezefilm.render.motion.finger_path import FingerPath
 from squeezefilm.results import config_hash
 from squeezefilm.second_process import later, values
+from squeezefilm.study.design.matching import Exploring
 from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.simulated.causes import Causes, causes, free_causes, median_causes
+from squeezefilm.texture_file import TextureFile
 
 _AT_ONCE = 6
 """Fingers between two words of progress: of fewer, one of two processes waits for the other."""
-
-
-@dataclass(frozen=True, slots=True)
-class Causes:
-    """What speaks against a stimulus being recognised (over several fingers: medians).
-
-    Attributes:
-        texture_frequency: at which it passes the finger at mean speed (Hz).
-        envelope_bandwidth: at which the display's envelope has lost 3 dB (Hz).
-        contrast_kept: line of the friction rendered over that asked for, at the period (1); the
-            standing wave's ripple may raise it above 1. NaN without a contrast asked for.
-        lag_over_period: way of the finger during the sensor's latency and the envelope's time
-            constant, over the period (1).
-        contact_over_period: length of the contact over the period (1).
-        ripple_share: friction's standard deviation that the standing wave adds over that and the
-            rest together (1); 0 where the wave is ignored, NaN where it is compensated.
-        mean_displacement: of the skin (m).
-        d_prime: evidence for the rhythm of the period (1).
-        clearest_period: most evident rhythm (m).
-        clearest_d_prime: its evidence (1).
-    """
-
-    texture_frequency: si.Hertz
-    envelope_bandwidth: si.Hertz
-    contrast_kept: si.Dimensionless
-    lag_over_period: si.Dimensionless
-    contact_over_period: si.Dimensionless
-    ripple_share: si.Dimensionless
-    mean_displacement: si.Metre
-    d_prime: si.Dimensionless
-    clearest_period: si.Metre
-    clearest_d_prime: si.Dimensionless
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,6 +61,9 @@ class ChainTables:
         real_rhythm: likewise, shape (fingers, alternatives, periods).
         causes: of each display and stimulus, one per finger.
         plates: the displays themselves, by the design's displays.
+        across: of free exploration, candidates along y, in the shape of `virtual`, which are then
+            those along x; None where people explore by strokes.
+        across_rhythm: likewise, in the shape of `virtual_rhythm`.
     """
 
     design: StudyDesign
@@ -101,23 +76,42 @@ class ChainTables:
     real_rhythm: si.DimensionlessArray
     causes: tuple[tuple[tuple[Causes, ...], ...], ...]
     plates: tuple[Display, ...] = ()
+    across: Candidates | None = None
+    across_rhythm: si.DimensionlessArray | None = None
 
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
         """Candidates of a surface that is not among the design's stimuli, such as a comparison
-        that an adaptive method chose, shape (candidates,)."""
-        found = _virtual(
+        that an adaptive method chose, shape (candidates,); of free exploration (2, candidates),
+        along x and along y."""
+        (found,) = _of_finger(
             self.plates[display],
-            stimulus,
+            (stimulus,),
             self.observer,
             self.fingers[finger],
             self.apparatus[display],
+            self.design.exploring,
         )
-        return found.candidates
+        one, other = found.candidates, found.across
+        if other is None:
+            return one
+        return Candidates(
+            np.stack([one.period, other.period]), np.stack([one.d_prime, other.d_prime])
+        )
+
+    @property
+    def directions(self) -> Candidates:
+        """Candidates with an axis for the directions in which they were felt, shape (displays,
+        fingers, stimuli, directions, candidates): one of strokes, two of free exploration."""
+        every = [self.virtual] if self.across is None else [self.virtual, self.across]
+        return Candidates(
+            np.stack([one.period for one in every], axis=-2),
+            np.stack([one.d_prime for one in every], axis=-2),
+        )
 
     def explain(self, display: int = 0) -> dict[str, Causes]:
         """The reasons by stimulus on one of the displays: medians over fingers."""
         return {
-            one.name: _median(found)
+            one.name: median_causes(found)
             for one, found in zip(self.design.stimuli, self.causes[display], strict=True)
         }
 
@@ -152,7 +146,7 @@ def chain_tables(
     fingers = observer.fingers()
     real = [[_real(one, observer, finger) for one in design.alternatives] for finger in fingers]
     pieces = [
-        later(_of_finger, plate, design.stimuli, observer, one, run)
+        later(_of_finger, plate, design.stimuli, observer, one, run, design.exploring)
         for plate, run in zip(plates, runs, strict=True)
         for one in fingers
     ]
@@ -162,6 +156,7 @@ def chain_tables(
         tell(f"{plate.name}: finger {number + 1} of {len(fingers)}")
         found += values(*pieces[first : first + _AT_ONCE])
     virtual = [found[k : k + len(fingers)] for k in range(0, len(found), len(fingers))]
+    free = design.exploring == "free"
     return ChainTables(
         design=design,
         observer=observer,
@@ -176,16 +171,21 @@ def chain_tables(
             tuple(tuple(row[s].causes for row in by_finger) for s in range(len(design.stimuli)))
             for by_finger in virtual
         ),
+        across=_competing(virtual, _across) if free else None,
+        across_rhythm=_gathered(virtual, lambda one: one.across_rhythm) if free else None,
     )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Felt:
-    """What the tables hold of one surface under one finger; a real grating has no causes."""
+    """What the tables hold of one surface under one finger; a real grating has no causes, and one
+    that strokes explore nothing across."""
 
     candidates: Candidates
     rhythm: si.DimensionlessArray
     causes: Causes
+    across: Candidates | None = None
+    across_rhythm: si.DimensionlessArray | None = None
 
 
 def _of_finger(
@@ -194,8 +194,10 @@ def _of_finger(
     observer: Observer,
     finger: FingerClass,
     run: Apparatus,
+    exploring: Exploring,
 ) -> list[_Felt]:
-    return [_virtual(plate, one, observer, finger, run) for one in stimuli]
+    felt = _free if exploring == "free" else _virtual
+    return [felt(plate, one, observer, finger, run) for one in stimuli]
 
 
 _KEPT = KeptArrays("percepts", [Path(squeezefilm.__file__).parent])
@@ -223,6 +225,40 @@ def _virtual(
     return _Felt(one, rhythm, why)
 
 
+@functools.lru_cache(maxsize=4096)
+def _free(
+    display: Display, stimulus: Stimulus, observer: Observer, finger: FingerClass, run: Apparatus
+) -> _Felt:
+    """The same of a plain hand that explores the face freely; not kept on disk."""
+    path = free_path(display, observer, finger)
+    surface = TextureFile(stimulus.surface(), stimulus.name)
+    found = path_percept(display, surface, observer, finger, [path], run)
+    # The hand sweeps both ways, on lines far longer than the shortest run.
+    assert found.along is not None
+    assert found.across is not None
+    one, other = found.along, found.across
+    clearer = max(one, other, key=lambda run: run.clearest_d_prime)
+    return _Felt(
+        one.percept.candidates,
+        one.percept.evidence.rhythm,
+        free_causes(stimulus, clearer, found.played[0], finger),
+        other.percept.candidates,
+        other.percept.evidence.rhythm,
+    )
+
+
+def free_path(display: Display, observer: Observer, finger: FingerClass) -> FingerPath:
+    """How a finger explores a display freely. Raises `InputError` for a ring: it has no plane."""
+    plate = display.actuator
+    if isinstance(plate, AnnularStator):
+        raise InputError(
+            f"display '{display.name}' is a ring, and its finger goes along its circumference; for "
+            'exploring = "free" take a plate, or take exploring = "strokes"',
+            quantity="exploring",
+        )
+    return free_exploration(observer, finger, plate.extent)
+
+
 @functools.lru_cache(maxsize=256)
 def _hash(inputs: tuple[Display, Observer, FingerClass, Apparatus]) -> str:
     return config_hash(inputs)
@@ -234,71 +270,26 @@ def _real(grating: Grating, observer: Observer, finger: FingerClass) -> _Felt:
     return _Felt(found.candidates, found.evidence.rhythm, _NO_CAUSES)
 
 
-def _competing(tree: Any) -> Candidates:
+def _along(felt: _Felt) -> Candidates:
+    return felt.candidates
+
+
+def _across(felt: _Felt) -> Candidates:
+    assert felt.across is not None
+    return felt.across
+
+
+def _competing(tree: Any, which: Callable[[_Felt], Candidates] = _along) -> Candidates:
     return Candidates(
-        _gathered(tree, lambda one: one.candidates.period),
-        _gathered(tree, lambda one: one.candidates.d_prime),
+        _gathered(tree, lambda one: which(one).period),
+        _gathered(tree, lambda one: which(one).d_prime),
     )
 
 
-def _gathered(tree: Any, part: Callable[[_Felt], si.FloatArray]) -> si.FloatArray:
+def _gathered(tree: Any, part: Callable[[_Felt], si.FloatArray | None]) -> si.FloatArray:
     """One array of every percept in nested lists, which become its first axes."""
 
     def gather(one: Any) -> Any:
         return [gather(i) for i in one] if isinstance(one, list) else part(one)
 
     return np.array(gather(tree), dtype=float)
-
-
-def _median(found: tuple[Causes, ...]) -> Causes:
-    return Causes(
-        **{
-            field.name: float(np.median([getattr(one, field.name) for one in found]))
-            for field in dataclasses.fields(Causes)
-        }
-    )
-
-
-def causes(
-    stimulus: Stimulus,
-    found: Percept,
-    played: RenderAnalysis,
-    observer: Observer,
-    finger: FingerClass,
-) -> Causes:
-    """The numbers of one percept of a virtual grating; `played` is its rendering."""
-    period, loop = stimulus.period, played.stroke
-    latency = 0.0 if loop.sensor is None else loop.sensor.latency
-    lag = (latency + played.time_constant) * finger.speed
-    rendered, asked = (
-        _line(loop.position, values, observer, period)
-        for values in (loop.relative_friction_rendered, played.asked)
-    )
-    return Causes(
-        texture_frequency=finger.speed / period,
-        envelope_bandwidth=1.0 / (2.0 * math.pi * played.time_constant),
-        contrast_kept=rendered / asked if asked > 1e-6 else float("nan"),
-        lag_over_period=lag / period,
-        contact_over_period=finger.contact_length / period,
-        ripple_share=_ripple_share(played),
-        mean_displacement=found.mean_displacement,
-        d_prime=found.evidence.at(period),
-        clearest_period=float(found.candidates.period[0]),
-        clearest_d_prime=max(float(found.candidates.d_prime[0]), 0.0),
-    )
-
-
-def _line(way: si.FloatArray, values: si.FloatArray, observer: Observer, period: si.Metre) -> float:
-    lines = line_amplitudes(along_way(way, values, observer, (1.0, 1.0)))
-    return float(np.interp(period, line_periods(), lines))
-
-
-def _ripple_share(played: RenderAnalysis) -> si.Dimensionless:
-    """What the wave adds to the friction that the same amplitudes make over an antinode."""
-    # A compensating renderer's inverse is of the driven amplitude, so there is no plain friction.
-    if played.wave != "felt":
-        return 0.0 if played.wave == "ignored" else float("nan")
-    plain = played.prediction.friction(played.stroke.amplitude, played.finger.speed)
-    added = float(np.std(played.stroke.relative_friction_rendered - plain))
-    rest = float(np.std(plain))
-    return added / (added + rest) if added + rest > 1e-9 else 0.0

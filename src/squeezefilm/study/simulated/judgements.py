@@ -2,7 +2,7 @@
 
 Senses and noise are those of match-to-sample (`perception.perceived`): every surface is perceived
 anew on every trial. What the tasks add is how an answer follows from what was perceived. None of
-that was measured, none was tuned, and `ASSUMED` says each in a sentence that results repeat.
+that was measured, none was tuned, and `assumptions` says each in a sentence that results repeat.
 
 Trials go in their order, all people at once, so that an adaptive series meets the answers that it
 asks for. **Every number that comes out is simulated.**
@@ -22,80 +22,19 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import Observer
 from squeezefilm.perception.perceived import Perceived, perceived
-from squeezefilm.perception.senses import D_PRIME_OF_75, FINEST_PERIOD, Candidates
+from squeezefilm.perception.senses import FINEST_PERIOD, Candidates
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method
-from squeezefilm.study.design.study_design import StudyDesign, Task
+from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.recalled import difference
+from squeezefilm.study.simulated.simulated_people import CHUNK, SimulatedPeople
 
-_CHUNK = 60
-"""People whose noise is drawn together; orders of more people repeat those of the first so many."""
-_STREAM = 31
 _FAINTEST = 0.05
 """Strength (d′) below which magnitudes fall no further."""
-_OWN_SCALE, _OWN_MIDDLE = 0.5, 10.0
-"""People without a modulus: spread of ln of their scales, and the middle of them."""
-
-ASSUMED: dict[Task, tuple[str, ...]] = {
-    "two-interval": (
-        "The coarser surface is the one whose clearest rhythm has the longer period, the deeper "
-        "one the one whose clearest rhythm is the more evident.",
-        "A person who does not feel both rhythms guesses which is coarser.",
-    ),
-    "same-different": (
-        "Two surfaces are called different where their perceived periods (or strengths) differ by "
-        "more than one standard deviation of that difference, the observer's criterion, or where "
-        "only one of two rhythms is felt.",
-    ),
-    "magnitude-estimation": (
-        "Numbers are in proportion to the perceived period (or strength): an exponent of 1 for "
-        "clear rhythms, rounded to two digits.",
-        "A surface on which no rhythm is felt gets the number of the finest period.",
-        "The reference is remembered with one error a person; people without a modulus have "
-        "scales that spread by a factor of 1.65.",
-    ),
-    "match-to-sample": (),
-}
-"""What simulated answers assume beyond the observer's own file, by task."""
-
 _JUDGED = ("spatial_period", "friction_depth")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _People:
-    """Up to sixty people and all their noise; arrays begin with the person."""
-
-    finger: si.IntArray
-    spread: si.DimensionlessArray
-    lapse: si.DimensionlessArray
-    scale: si.DimensionlessArray
-    memory: si.DimensionlessArray
-    noise: si.FloatArray
-    blur: si.FloatArray
-    blind: si.DimensionlessArray
-    guess: si.DimensionlessArray
-    slowness: si.FloatArray
-
-    @classmethod
-    def drawn(cls, observer: Observer, fingers: int, asked: int, seed: int, chunk: int) -> _People:
-        """Whoever is in a chunk; nobody depends on how many there are."""
-        random = np.random.default_rng([seed, _STREAM, chunk])
-        normal, among = random.standard_normal, random.random
-        weber = math.log1p(observer.period_weber_fraction) / D_PRIME_OF_75
-        return cls(
-            finger=random.integers(0, fingers, _CHUNK),
-            spread=weber * np.exp(observer.period_spread * normal(_CHUNK)),
-            lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(_CHUNK)),
-            scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(_CHUNK)),
-            memory=normal(_CHUNK),
-            noise=normal((asked, 2, _CHUNK, observer.candidates)),
-            blur=normal((asked, 2, _CHUNK)),
-            blind=among((asked, _CHUNK)),
-            guess=among((asked, _CHUNK)),
-            slowness=normal((asked, _CHUNK)),
-        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -143,13 +82,18 @@ def simulate_judgements(
     room = _Room(design, observer, tables)
     schedules = [
         [one for one in trials(design, person, seed) if one.asks]
-        for person in range(min(participants, _CHUNK))
+        for person in range(min(participants, CHUNK))
     ]
     parts = []
-    for first in range(0, participants, _CHUNK):
-        count = min(_CHUNK, participants - first)
-        people = _People.drawn(
-            observer, len(tables.fingers), len(schedules[0]), seed, first // _CHUNK
+    for first in range(0, participants, CHUNK):
+        count = min(CHUNK, participants - first)
+        people = SimulatedPeople.drawn(
+            observer,
+            len(tables.fingers),
+            len(schedules[0]),
+            seed,
+            first // CHUNK,
+            room.directions,
         )
         parts.append(_chunk(room, people, schedules[:count], first))
         # Twenty words are enough for however many.
@@ -171,6 +115,9 @@ class _Room:
         self.display = {name: number for number, name in enumerate(design.displays)}
         self._chosen: dict[tuple[str, float], int] = {}
         self._felt: dict[tuple[int, int, int], tuple[si.FloatArray, si.FloatArray]] = {}
+        free = tables.across is not None
+        self.directions: tuple[int, ...] = (2,) if free else ()
+        self._known = tables.directions if free else tables.virtual
 
     def chosen(self, series: str, intensity: float) -> int:
         """The number of what an adaptive series presents at an intensity."""
@@ -182,10 +129,11 @@ class _Room:
         return self._chosen[key]
 
     def felt(self, display: int, finger: int, surface: int) -> tuple[si.FloatArray, si.FloatArray]:
-        """Candidates of a surface under a finger: periods (m) and d′."""
+        """Candidates of a surface under a finger, by direction where it is explored in two:
+        periods (m) and d′."""
         key = display, finger, surface
         if key not in self._felt:
-            known, shown = self.tables.virtual, len(self.design.stimuli)
+            known, shown = self._known, len(self.design.stimuli)
             if surface < shown:
                 found = known.period[key], known.d_prime[key]
             else:
@@ -197,7 +145,7 @@ class _Room:
     def presented(
         self, display: si.IntArray, finger: si.IntArray, surface: si.IntArray
     ) -> Candidates:
-        """What everybody gets, shape (people, candidates)."""
+        """What everybody gets, shape (people, candidates), or (people, directions, candidates)."""
         found = [
             self.felt(d, f, s)
             for d, f, s in zip(display.tolist(), finger.tolist(), surface.tolist(), strict=True)
@@ -219,7 +167,7 @@ class _Part:
     time: si.SecondArray
 
 
-def _chunk(room: _Room, people: _People, schedules: list[list[Trial]], begin: int) -> _Part:
+def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], begin: int) -> _Part:
     design, observer = room.design, room.observer
     count, asked = len(schedules), len(schedules[0])
     pairs, answers = design.two_surfaces, design.answers
@@ -242,12 +190,13 @@ def _chunk(room: _Room, people: _People, schedules: list[list[Trial]], begin: in
             first[person, at] = shown[0]
             second[person, at] = shown[1] if pairs else -1
         skill = 1.0 + observer.learning_excess * math.exp(-at / observer.learning_trials)
+        alike = count, *(1 for _ in room.directions)
         felt = [
             perceived(
                 room.presented(display[:, at], people.finger[:count], column[:, at]),
                 observer,
-                np.full(count, skill),
-                people.spread[:count],
+                np.full(alike, skill),
+                people.spread[:count].reshape(alike),
                 people.noise[at, place, :count],
                 people.blur[at, place, :count],
             )
@@ -283,16 +232,26 @@ def _standing(
 _Judge = Callable[[list[Perceived], float, int, int], _Given]
 
 
-def _judge(room: _Room, people: _People) -> _Judge:
+def _judge(room: _Room, people: SimulatedPeople) -> _Judge:
     """How answers follow from what was perceived, by the design's task."""
     task = room.design.task
     if task == "magnitude-estimation":
         return functools.partial(_number, room, people)
-    return functools.partial(_which if task == "two-interval" else _alike, room, people)
+    if task == "two-interval":
+        return functools.partial(_which, room, people)
+    return functools.partial(_alike_in_plane if room.directions else _alike, room, people)
+
+
+def _in_clearest_direction(felt: Perceived) -> Perceived:
+    """What is perceived in the direction in which it is the more evident; of strokes as it is."""
+    if felt.strength.ndim == 1:
+        return felt
+    best = np.arange(felt.strength.shape[0]), np.argmax(felt.strength, axis=-1)
+    return Perceived(felt.log_period[best], felt.strength[best], felt.felt[best])
 
 
 def _judged(
-    room: _Room, people: _People, felt: Perceived, skill: float
+    room: _Room, people: SimulatedPeople, felt: Perceived, skill: float
 ) -> tuple[si.FloatArray, si.FloatArray]:
     """What is judged on a scale, and the standard deviation of one percept on it."""
     if room.design.judged == "friction_depth":
@@ -301,7 +260,7 @@ def _judged(
 
 
 def _compared(
-    room: _Room, people: _People, felt: list[Perceived], skill: float
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float
 ) -> tuple[si.FloatArray, NDArray[np.bool_], NDArray[np.bool_]]:
     """First minus second over the deviation of that difference, whether both and one are felt."""
     (a, deviation), (b, _) = (_judged(room, people, one, skill) for one in felt)
@@ -313,8 +272,9 @@ def _compared(
 
 
 def _which(
-    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
+    felt = [_in_clearest_direction(one) for one in felt]
     apart, both, _ = _compared(room, people, felt, skill)
     blind = ~both | (people.blind[at, :count] < people.lapse[:count])
     guess = (people.guess[at, :count] < 0.5).astype(np.int64)
@@ -323,7 +283,7 @@ def _which(
 
 
 def _alike(
-    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
     apart, both, one_only = _compared(room, people, felt, skill)
     limit = room.observer.detection_criterion
@@ -335,18 +295,33 @@ def _alike(
     return _Given(choice, np.full(count, np.nan), doubt)
 
 
+def _alike_in_plane(
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
+) -> _Given:
+    one, other = felt
+    # Strengths in each direction, and periods in those in which both are felt.
+    terms = one.strength.shape[-1] + np.sum(one.felt & other.felt, axis=-1)
+    apart = difference(one, other, np.full((count, 1), skill), people.spread[:count, None])
+    apart = apart / np.sqrt(terms)
+    limit = room.observer.detection_criterion
+    blind = people.blind[at, :count] < people.lapse[:count]
+    choice = np.where(blind, people.guess[at, :count] < 0.5, apart > limit).astype(np.int64)
+    doubt = np.where(blind, 1.0, np.exp(-np.abs(apart - limit)))
+    return _Given(choice, np.full(count, np.nan), doubt)
+
+
 def _number(
-    room: _Room, people: _People, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
     design = room.design
     values = np.array([design.judged_value(one) for one in design.stimuli])
     middle = math.exp(float(np.mean(np.log(np.maximum(values, 1e-12)))))
     here = design.judged_value(design.stimulus(design.reference)) if design.reference else middle
-    (one,) = felt
+    one = _in_clearest_direction(felt[0])
     if design.judged == "friction_depth":
         # Strength has no unit of its own: that of the reference is felt as often as it likes.
         place = room.place[design.reference] if design.reference else 0
-        known = room.tables.virtual.d_prime[0, people.finger[:count], place, 0]
+        known = room.tables.directions.d_prime[0, people.finger[:count], place, :, 0].max(axis=-1)
         level = np.log(np.maximum(one.strength, _FAINTEST))
         known = np.log(np.maximum(known, _FAINTEST))
         error = people.memory[:count] / np.exp(known)

@@ -5,7 +5,8 @@ deviation 1; the strongest is perceived if it passes the criterion. Its period i
 σ √(1 + 1/d′²) in the logarithm, σ from the person's Weber fraction (75 % of two intervals). Each
 real grating is felt again on each trial, with noise of its own. The answer is the grating whose
 perceived period is nearest; a person who feels nothing, or lapses, guesses. All noise falls with
-practice. **Every number that comes out is simulated.**
+practice. Where a surface is matched with the stimuli themselves, `recalled` says how.
+**Every number that comes out is simulated.**
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
+from squeezefilm.study.simulated.recalled import recalled_distances
 
 _CHUNK = 60
 """Orders of more people repeat those of the first so many: a multiple of all rows for 5 stimuli."""
@@ -71,7 +73,7 @@ class SimulatedStudy(Result):
     def participant_counts(self, display: int = 0) -> si.IntArray:
         """Counts of each person on a display, shape (participants, answers, stimuli)."""
         design = self.tables.design
-        answers, stimuli = len(design.alternatives), len(design.stimuli)
+        answers, stimuli = len(design.answers), len(design.stimuli)
         here = self.display == display
         who = np.broadcast_to(np.arange(self.participants)[:, None], self.choice.shape)[here]
         return participant_counts(who, self.stimulus[here], self.choice[here], answers, stimuli)[1]
@@ -81,7 +83,7 @@ class SimulatedStudy(Result):
         design = self.tables.design
         return ConfusionMatrix(
             self.participant_counts(display).sum(axis=0),
-            tuple(one.name for one in design.alternatives),
+            design.answers,
             tuple(one.name for one in design.stimuli),
         )
 
@@ -128,7 +130,7 @@ class SimulatedStudy(Result):
         """One row a trial."""
         design = self.tables.design
         names = [one.name for one in design.stimuli]
-        answers = [one.name for one in design.alternatives]
+        answers = design.answers
         return [
             {
                 "participant": who,
@@ -200,7 +202,7 @@ def require_people(design: StudyDesign, participants: int, seed: int) -> None:
 
 def right_answers(design: StudyDesign) -> si.IntArray:
     """Number of the right alternative of each stimulus, −1 where none is right."""
-    names = [one.name for one in design.alternatives]
+    names = design.answers
     right = [design.answer_to(one) for one in design.stimuli]
     return np.array([names.index(one) if one else -1 for one in right], dtype=np.int64)
 
@@ -245,7 +247,43 @@ def _answers(
     )
     display, stimulus, number = display[:count], stimulus[:count], number[:count]
     skill = 1.0 + observer.learning_excess * np.exp(-number / observer.learning_trials)
-    shown, touched = tables.virtual, tables.real
+    if tables.design.matched_with == "stimuli":
+        away, felt = recalled_distances(
+            tables, display, finger, stimulus, skill, sigma[:, None], random, _CHUNK
+        )
+        # In standard deviations already; what is faint is like what is faint, so nobody guesses.
+        decides, unit = np.ones(felt.shape, dtype=bool), np.ones_like(skill)
+    else:
+        away, felt = _from_gratings(
+            tables, display, finger, stimulus, skill, sigma, random, (count, asked)
+        )
+        decides, unit = felt & np.isfinite(away).any(axis=2), sigma[:, None] * skill
+    guess = random.integers(0, away.shape[2], (_CHUNK, asked))[:count]
+    blind = random.random((_CHUNK, asked))[:count] < lapse[:, None]
+    decides = decides & ~blind
+    choice = np.where(decides, np.argmin(away, axis=2), guess)
+    doubt = np.where(decides, _doubt(away, unit), 1.0)
+    spread = random.standard_normal((_CHUNK, asked))[:count]
+    times = (observer.response_time + observer.doubt_time * doubt) * np.exp(
+        observer.response_time_spread * spread
+    )
+    return choice.astype(np.int64), felt, times, finger
+
+
+def _from_gratings(
+    tables: ChainTables,
+    display: si.IntArray,
+    finger: si.IntArray,
+    stimulus: si.IntArray,
+    skill: si.DimensionlessArray,
+    sigma: si.DimensionlessArray,
+    random: np.random.Generator,
+    people: tuple[int, int],
+) -> tuple[si.FloatArray, NDArray[np.bool_]]:
+    """How far the period perceived lies from that of each real grating, shape (people, trials,
+    gratings), infinite where that was not felt; and whether the surface was."""
+    observer, shown, touched = tables.observer, tables.virtual, tables.real
+    count, asked = people
     places = display, finger[:, None], stimulus
     felt_now = Candidates(shown.period[places], shown.d_prime[places])
     virtual, felt = _perceived(felt_now, skill, sigma[:, None], observer, random, (_CHUNK, asked))
@@ -263,17 +301,7 @@ def _answers(
         random,
         shape,
     )
-    away = np.where(real_felt, np.abs(virtual[:, :, None] - real), np.inf)
-    guess = random.integers(0, gratings, (_CHUNK, asked))[:count]
-    blind = random.random((_CHUNK, asked))[:count] < lapse[:, None]
-    decides = felt & ~blind & np.isfinite(away).any(axis=2)
-    choice = np.where(decides, np.argmin(away, axis=2), guess)
-    doubt = np.where(decides, _doubt(away, sigma[:, None] * skill), 1.0)
-    spread = random.standard_normal((_CHUNK, asked))[:count]
-    times = (observer.response_time + observer.doubt_time * doubt) * np.exp(
-        observer.response_time_spread * spread
-    )
-    return choice.astype(np.int64), felt, times, finger
+    return np.where(real_felt, np.abs(virtual[:, :, None] - real), np.inf), felt
 
 
 def _perceived(

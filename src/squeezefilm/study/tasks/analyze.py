@@ -14,8 +14,8 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
+from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
 from squeezefilm.study.identification.course import course_of
-from squeezefilm.study.identification.exploration import ConditionMean, condition_means
 from squeezefilm.study.identification.response_times import (
     ExGaussian,
     ResponseTimeSummary,
@@ -46,6 +46,13 @@ from squeezefilm.study.tasks.two_interval import (
     on_grid,
     two_interval_conditions,
     two_interval_numbers,
+)
+from squeezefilm.study.tasks.unlike_surfaces import (
+    MEASURE,
+    false_alarms,
+    on_a_scale,
+    unlike_conditions,
+    unlike_persons,
 )
 
 StudyAnalysis = IdentificationAnalysis | TaskAnalysis
@@ -167,6 +174,16 @@ def _matches(
         seed=seed,
         progress=tell,
     )
+    if not on_a_scale(main):
+        found = dataclasses.replace(
+            found,
+            sensitivity=None,
+            notes=(
+                *found.notes,
+                "d′ along the stimuli: they have no order; read the confusions and the choice "
+                "model, which need none",
+            ),
+        )
     course = course_of(answers, display)
     return dataclasses.replace(found, course=course, methods=methods_text(answers, display))
 
@@ -276,11 +293,25 @@ def _two_interval(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
 
 
 def _same_different(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
+    if not on_a_scale(main):
+        return _unlike(main, level, seed, tell)
     tell("differencing model of each person")
     people = same_different_on_grid(main)
     conditions = same_different_conditions(main, level, seed)
     more = same_different_numbers(main, people.bias, level)
     return _of_fractions(people, level, conditions, more)
+
+
+def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
+    tell("sensitivity of each person")
+    persons, pooled = unlike_persons(main, level, seed)
+    conditions = unlike_conditions(main, level, seed)
+    notes = [
+        f"the surfaces have no {main.design.judged} to be told apart by, so that there is no Weber "
+        "fraction: d′ is of whole surfaces"
+    ]
+    more = false_alarms(main, level)
+    return _Found(MEASURE, persons, pooled, None, conditions, more, {}, notes)
 
 
 def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> _Found:
@@ -299,8 +330,8 @@ def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
         return main.series, tuple(one.name for one in main.design.adaptive)
     names = tuple(one.name for one in main.surfaces)
     if main.design.two_surfaces:
-        here = main.design.judged_value(main.design.stimulus(main.design.reference))
-        return np.where(main.values[main.first] != here, main.first, main.second), names
+        here = names.index(main.design.reference) if main.design.reference in names else -1
+        return np.where(main.first != here, main.first, main.second), names
     return main.first, names
 
 

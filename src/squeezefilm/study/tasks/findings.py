@@ -11,8 +11,8 @@ from squeezefilm import quantities as si
 from squeezefilm.perception.stimuli import Varied
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.design.study_design import Task
+from squeezefilm.study.identification.condition_means import ConditionMean
 from squeezefilm.study.identification.course import Course
-from squeezefilm.study.identification.exploration import ConditionMean
 from squeezefilm.study.identification.response_times import ExGaussian, ResponseTimeSummary
 from squeezefilm.study.tasks.population import PopulationEstimate
 
@@ -57,7 +57,7 @@ class ConditionFinding:
 
     Attributes:
         name: of the stimulus, or of the pair.
-        value: of what is judged (SI).
+        value: of what is judged (SI); NaN of a surface without any.
         trials, participants: that have answers.
         share: of answers "the comparison has more", or "different", with Wilson's interval over
             trials; None for magnitudes.
@@ -84,7 +84,8 @@ class TaskAnalysis(Result):
         name: of the study and the display.
         origin: whose answers these are; every figure repeats it.
         task, judged: of the design.
-        measure: what `persons` and `pooled` are: "Weber fraction" or "exponent".
+        measure: what `persons` and `pooled` are: "Weber fraction", "exponent", or "sensitivity d′"
+            of surfaces without an amount to compare.
         people: pseudonyms.
         trials: main trials.
         standard: the reference's value of what is judged (SI); NaN without a reference.

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 from squeezefilm import __version__
 from squeezefilm import quantities as si
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import Answers
 
 _TASKS = {
     "match-to-sample": (
         "On each trial one virtual surface was presented, and the participant named the one of "
-        "{alternatives} real gratings that it felt like"
+        "{alternatives} {matched} that it felt like"
     ),
     "two-interval": (
         "On each trial two surfaces were presented one after the other, one of them the reference "
@@ -25,6 +28,7 @@ _TASKS = {
         "{judged}"
     ),
 }
+_MATCHED = {"real gratings": "real gratings", "stimuli": "surfaces known from before"}
 _ORDERS = {
     "williams": "in the order of a Williams square (Williams 1949, 10.1071/CH9490149)",
     "latin-square": "in the order of a Latin square",
@@ -57,6 +61,11 @@ _ANALYSES = {
         "scales of participants taken out (Lane, Catania and Stevens 1961, 10.1121/1.1908600)."
     ),
 }
+_UNLIKE = (
+    "Surfaces had no amount in common to be compared by: each participant has a d′ over all pairs "
+    "by the differencing model of Macmillan and Creelman (2005), and its mean has Student's "
+    "interval over participants."
+)
 _JUDGED = {
     "spatial_period": "spatial period (coarseness)",
     "friction_depth": "change of friction",
@@ -79,14 +88,15 @@ def methods_text(answers: Answers, display: int) -> str:
         f"{people} {who} took part on the display '{named}'.",
         _stimuli(design),
         _TASKS[design.task].format(
-            alternatives=len(design.alternatives),
+            alternatives=len(design.answers),
+            matched=_MATCHED[design.matched_with],
             reference=design.reference or "none",
             judged=_JUDGED[design.judged],
         )
         + f" (“{design.spoken_question}”).",
         *_adaptive(design),
         _trials(design, answers, display),
-        _ANALYSES[design.task],
+        _ANALYSES[design.task] if _on_a_scale(design) else _UNLIKE,
         f"Orders and analysis were made with squeezefilm {__version__} "
         f"(design SHA-256 {design.sha256[:12]}).",
     ]
@@ -94,12 +104,36 @@ def methods_text(answers: Answers, display: int) -> str:
 
 
 def _stimuli(design: StudyDesign) -> str:
+    free = " They were explored freely over the face." if design.exploring == "free" else ""
+    simple = all(
+        one.kind in ("square grating", "sine grating", "constant") for one in design.stimuli
+    )
     listed = []
     for one in design.stimuli:
-        period = si.format_quantity(one.period, si.Unit("m"))
-        listed.append(f"{period} ({100 * one.friction_depth:.3g} % change of relative friction)")
+        period, depth = si.format_quantity(one.period, si.Unit("m")), _depth(one)
+        listed.append(f"{period} ({depth})" if simple else _surface(one))
+    if not simple:
+        return f"Stimuli were surfaces of friction: {'; '.join(listed)}.{free}"
     shapes = " and ".join(sorted({one.waveform for one in design.stimuli}))
-    return f"Stimuli were {shapes} gratings of friction with the periods {', '.join(listed)}."
+    return f"Stimuli were {shapes} gratings of friction with the periods {', '.join(listed)}.{free}"
+
+
+def _on_a_scale(design: StudyDesign) -> bool:
+    amounts = [design.judged_value(one) for one in design.stimuli]
+    scale = all(map(math.isfinite, amounts)) and len(set(amounts)) == len(amounts)
+    return scale or design.task != "same-different"
+
+
+def _depth(one: Stimulus) -> str:
+    return f"{100 * one.friction_depth:.3g} % change of relative friction"
+
+
+def _surface(one: Stimulus) -> str:
+    """A shape, map or crossed grating by name, kind and periods."""
+    lengths = [x for x in (one.period, one.second_period) if not math.isnan(x)]
+    periods = " by ".join(si.format_quantity(x, si.Unit("m")) for x in lengths)
+    said = [one.kind, *([periods] if lengths else []), *([] if one.texture else [_depth(one)])]
+    return f"“{one.name}” ({', '.join(said)}; SHA-256 {one.surface_sha256[:12]})"
 
 
 def _adaptive(design: StudyDesign) -> list[str]:

@@ -122,7 +122,7 @@ def test_a_confusion_stands_in_its_cell() -> None:
     ]
     for labels in (axes.get_xticklabels(), axes.get_yticklabels()):
         assert [one.get_text() for one in labels] == list(NAMES)
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("simulated", "grating answered")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("simulated", "answered")
 
 
 def test_a_stimulus_that_was_not_shown_has_no_shares() -> None:

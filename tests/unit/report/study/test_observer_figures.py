@@ -16,7 +16,8 @@ from squeezefilm.perception.senses import Candidates, line_periods
 from squeezefilm.report.kit.style import BLUE, INK, LINES, METAL, MUTED, ORANGE
 from squeezefilm.report.study.observer_figures import channels, percepts
 from squeezefilm.study.design.study_design import load_design
-from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
+from squeezefilm.study.simulated.causes import Causes
+from squeezefilm.study.simulated.chain_tables import ChainTables
 
 PAPER = load_design("biet2008-gratings")
 DESIGN = dataclasses.replace(

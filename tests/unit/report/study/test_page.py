@@ -71,7 +71,7 @@ def test_every_cell_of_the_heat_map_is_a_percentage(analysis: IdentificationAnal
         assert text == (f"{percent:.0f} %\n({count})" if count else "·")
     assert next(label.get_text() for label in axes.get_xticklabels()) == "0.4 mm"
     assert axes.get_xlabel() == "simulated"
-    assert axes.get_ylabel() == "grating answered"
+    assert axes.get_ylabel() == "answered"
 
 
 def test_every_figure_says_whose_answers_these_are(analysis: IdentificationAnalysis) -> None:

@@ -31,7 +31,8 @@ from squeezefilm.report.study.simulated_page import (
     write_simulated,
 )
 from squeezefilm.study.design.study_design import load_design
-from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
+from squeezefilm.study.simulated.causes import Causes
+from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.participants import SimulatedStudy
 from squeezefilm.study.tasks import analyze
 

@@ -80,12 +80,13 @@ def test_a_plan_says_what_is_presented_how_often_and_for_how_long() -> None:
         "Trials 10 per participant 1 familiarisation, 9 main",
         "Time 90 min per participant 12.5 s a trial",
         "In all 7.5 h for 5 participants",
+        "Exploring strokes to and fro along x",
         "Order williams balanced over every 4 participants",
         f"Seed 3 design {DESIGN.sha256[:12]}",
         "Presented",
-        "Name Period Groove Length means Waveform Friction Right answer",
-        "fine 1.23 mm 0.617 mm period square 0.65 to 1 board",
-        "odd 10 mm 5 mm groove width sine 0.7 to 1 none",
+        "Name Period Groove Length means Surface Friction Right answer",
+        "fine 1.23 mm 0.617 mm period square grating 0.65 to 1 board",
+        "odd 10 mm 5 mm groove width sine grating 0.7 to 1 none",
         "Compared with",
         "Name Period Groove Length means Ridge Material",
         "board 1.23 mm 0.617 mm period 12.3 µm brass",
@@ -106,7 +107,7 @@ def test_a_plan_of_two_surfaces_has_no_right_answer_and_nothing_to_compare_with(
         "jnd", "Two", ("plate",), "two-interval", (GRATING, STRANGE), reference="odd"
     )
     lines = printed(lambda: show_plan(plan(design)))
-    assert "odd 10 mm 5 mm groove width sine 0.7 to 1" in lines
+    assert "odd 10 mm 5 mm groove width sine grating 0.7 to 1" in lines
     assert "Compared with" not in lines
     assert "Assumed" not in lines
     assert lines[-1] == "3 plate: fine, …"

@@ -35,7 +35,7 @@ def test_each_display_has_its_confusions_and_main_numbers(
     first = [printable(" ".join(one.split())) for one in read_first(analysis)]
     assert half[: 1 + len(first)] == ["plate: answers of simulated", *first]
     rest = half[1 + len(first) :]
-    assert rest[:3] == ["grating chosen 4 mm 8 mm", "4 mm 100 % 25 %", "8 mm 0 % 75 %"]
+    assert rest[:3] == ["answered 4 mm 8 mm", "4 mm 100 % 25 %", "8 mm 0 % 75 %"]
     rows = [printable(" ".join(map(printable, row))) for row in key_rows(analysis)]
     notes = [printable(note) for note in analysis.notes]
     assert rest[3:] == [*rows, *notes]

@@ -10,7 +10,8 @@ from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.perception.senses import Candidates
 from squeezefilm.report.study.simulated_page import LEGEND, REMARK
 from squeezefilm.report.study.terminal_analysis import show_simulated
-from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
+from squeezefilm.study.simulated.causes import Causes
+from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.participants import SimulatedStudy
 
 from ...study.scripted import gratings
@@ -53,7 +54,7 @@ def study() -> SimulatedStudy:
 def test_each_display_has_its_answers_and_its_reasons() -> None:
     lines = printed(lambda: show_simulated(study()))
     reasons = "Simulated Hz Bandwidth Kept Lag Contact Ripple d′ Clearest"
-    columns = "Per cent of each column; rows are gratings answered, columns simulated."
+    columns = "Per cent of each column; rows are what was answered, columns simulated."
     assert lines[:10] == [
         "biet2008-plate, SIMULATED: 66.7 % right, 2 simulated participants, seed 5",
         "Answered \\ simulated 2 mm 4 mm 8 mm",

@@ -104,7 +104,7 @@ def test_what_is_right_in_each_task() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ('period_means = "period"\n\n[[stim', "\n[[stim", "the key 'period_means' is missing"),
+        ('period_means = "period"\n\n[[stim', "\n[[stim", "does not say which length that is"),
         ('reference = "4 mm"', 'reference = "4mm"', "Did you mean '4 mm'"),
         ('reference = "4 mm"', "", "compares with a reference"),
         ('spatial_period = "5 mm"', 'spatial_period = "4 mm"', "no answer would be right"),

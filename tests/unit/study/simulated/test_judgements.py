@@ -19,8 +19,10 @@ from squeezefilm.study.simulated.answers import (
     answers_of,
     simulate_participants,
 )
-from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
-from squeezefilm.study.simulated.judgements import ASSUMED, simulate_judgements
+from squeezefilm.study.simulated.assumptions import ASSUMED
+from squeezefilm.study.simulated.causes import Causes
+from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.judgements import simulate_judgements
 
 EXACT = dataclasses.replace(
     load_observer(),

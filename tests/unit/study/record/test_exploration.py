@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.identification.exploration import condition_means, exploration
+from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.study.record.exploration import coverage, exploration, touches
 
 
 def test_steady_motion() -> None:
@@ -58,47 +59,6 @@ def test_traces_that_cannot_be_are_refused(time: list, x: list, force: list | No
         exploration(time, x, None, force)
 
 
-def test_means_are_over_people_not_trials() -> None:
-    # One person with three trials of 1, one with a single trial of 3: the mean is 2.
-    found = condition_means([0, 0, 0, 1, 0], [0, 0, 0, 0, 1], [1, 1, 1, 3, math.nan], ("a", "b"))
-    assert [item.name for item in found] == ["a"]
-    assert found[0].mean == 2
-    assert (found[0].trials, found[0].participants) == (4, 2)
-    assert found[0].high - 2 == pytest.approx(12.706, abs=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("rows", "says"),
-    [
-        (([0], [0, 0], [1.0, 1.0]), "one value a trial"),
-        (([0, 0], [0, 0], [1.0]), "one value a trial"),
-        (([[0]], [[0]], [[1.0]]), "one value a trial"),
-    ],
-)
-def test_rows_that_are_none_are_refused(rows: tuple[list, list, list], says: str) -> None:
-    with pytest.raises(InputError, match=says):
-        condition_means(*rows, ("a",))
-
-
-@pytest.mark.parametrize("level", [0.0, 1.0, 1.5])
-def test_a_level_is_between_none_and_all(level: float) -> None:
-    with pytest.raises(InputError, match="level"):
-        condition_means([0, 1], [0, 0], [1.0, 2.0], ("a",), level)
-
-
-def test_a_wider_level_reaches_further_and_one_person_nowhere() -> None:
-    rows = ([0, 1, 2, 0], [0, 0, 0, 1], [1.0, 2.0, 6.0, 5.0])
-    a, b = condition_means(*rows, ("a", "b"), 0.9)
-    # Student's t of two degrees of freedom, 2.920, times √(7/3).
-    assert (a.mean, a.level) == (3.0, 0.9)
-    assert a.high - 3.0 == pytest.approx(2.919986 * math.sqrt(7 / 3), rel=1e-6)
-    assert a.low == pytest.approx(6.0 - a.high)
-    assert (b.mean, b.trials, b.participants) == (5.0, 1, 1)
-    assert math.isnan(b.low)
-    assert math.isnan(b.high)
-    assert condition_means([], [], [], ("a",)) == ()
-
-
 def test_traces_of_two_samples_are_enough_and_say_where_they_lie() -> None:
     found = exploration([1.0, 3.0], [0.0, 0.3], [0.0, 0.4], [1.0, 2.0])
     assert (found.duration, found.path_length) == (2.0, pytest.approx(0.5))
@@ -114,3 +74,56 @@ def test_traces_of_two_samples_are_enough_and_say_where_they_lie() -> None:
         exploration([[0.0, 1.0]], [[0.0, 1.0]])
     with pytest.raises(InputError, match="time must rise"):
         exploration([0.0, 1.0, 1.0], [0.0, 1.0, 2.0])
+
+
+def _raster(lines: int, length: float, apart: float, offset: float) -> FingerPath:
+    """Lines to and fro along x, joined at their ends."""
+    corners = []
+    for number in range(lines):
+        ends = (0.0, length) if number % 2 == 0 else (length, 0.0)
+        corners += [(end, offset + number * apart) for end in ends]
+    places = np.array(corners)
+    return FingerPath(np.arange(float(len(places))), places[:, 0], places[:, 1])
+
+
+@pytest.mark.parametrize(("lines", "apart"), [(4, 0.01), (8, 0.005), (3, 0.015), (16, 0.0025)])
+def test_the_coverage_of_a_raster_is_that_of_its_rows_of_cells(lines: int, apart: float) -> None:
+    # Lines in the middle of rows of 5 mm cells, 8 cells long; the joints go through the cells
+    # between two rows, at the ends, one column of them at each side.
+    found = coverage([_raster(lines, 0.0399, apart, 0.00251)], (0.08, 0.05))
+    rows = {math.floor((0.00251 + number * apart) / 0.005) for number in range(lines)}
+    between = max(rows) + 1 - len(rows)
+    assert found == pytest.approx((8 * len(rows) + between) / 160)
+
+
+def test_coverage_is_the_same_wherever_whole_cells_away_and_at_most_all() -> None:
+    path = _raster(4, 0.0399, 0.01, 0.0025)
+    moved = FingerPath(path.time, path.x + 0.015, path.y - 0.035)
+    assert coverage([path], (0.08, 0.05)) == coverage([moved], (0.08, 0.05))
+    assert coverage([path, path], (0.08, 0.05)) == coverage([path], (0.08, 0.05))
+    assert coverage([path], (0.01, 0.01)) == 1.0
+    assert coverage([], (0.08, 0.05)) == 0.0
+
+
+def test_passes_peak_speed_and_directions_of_a_raster() -> None:
+    path = _raster(4, 0.04, 0.01, 0.0)
+    found = exploration(path.time, path.x, path.y, face=(0.08, 0.05))
+    # Four lines and three joints, a second each.
+    assert found.passes == 7
+    assert found.along_x_share == pytest.approx(0.16 / 0.19)
+    assert (found.peak_speed, found.mean_speed) == pytest.approx((0.04, 0.19 / 7))
+    assert found.touched == found.duration == 7.0
+    assert math.isnan(exploration(path.time, path.x, path.y).coverage)
+
+
+def test_what_the_finger_does_in_the_air_is_left_out() -> None:
+    # A second down, a second up and 5 cm away, a second down; samples every 10 ms.
+    t = np.concatenate([np.linspace(0, 1, 101), np.linspace(2, 3, 101)])
+    x = np.concatenate([0.02 * np.linspace(0, 1, 101), 0.07 + 0.02 * np.linspace(0, 1, 101)])
+    found = exploration(t, x, longest_step=0.015)
+    assert (found.duration, found.touched) == pytest.approx((3.0, 2.0))
+    assert (found.path_length, found.mean_speed) == pytest.approx((0.04, 0.02))
+    assert found.peak_speed == pytest.approx(0.02)
+    assert found.passes == 2
+    assert len(touches(t, x, np.zeros(202), 0.015)) == 2
+    assert len(touches(t, x, np.zeros(202))) == 1

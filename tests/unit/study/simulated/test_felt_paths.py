@@ -1,0 +1,125 @@
+"""A study's recorded and drawn paths, and what they would have felt like; on every surface."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.unit.study.design.test_matching import shapes
+
+from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.formats.traces import Table, csv_text
+from squeezefilm.perception.observer import load_observer
+from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.report.study.felt_path import felt_path, show_all
+from squeezefilm.report.subjects import plot
+from squeezefilm.study.conduct.rehearsal import rehearse
+from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.simulated.felt_paths import felt_on_path
+from squeezefilm.study.simulated.felt_trials import felt_in_trial
+
+SLANTED = "80 mm/s over 4 cm, 3 passes, at 30 deg"
+
+
+def test_the_period_of_a_slanted_path_is_nearest_to_the_grating_of_its_length() -> None:
+    found = felt_on_path("biet2008-gratings", "4 mm", SLANTED, display="biet2008-plate")
+    one = found.directions["along x"]
+    assert one.clearest_period == pytest.approx(4e-3 / math.cos(math.radians(30)), rel=5e-3)
+    assert found.nearest[0].name == "4 mm"
+    assert found.compared_by == "the period of the clearest rhythm"
+    assert found.explored.passes == 3
+    assert "assumed" in found.force_is
+    assert any("assumed" in said for said in found.assumed)
+
+
+def test_a_path_along_the_ridges_is_like_no_grating() -> None:
+    found = felt_on_path(
+        "biet2008-gratings", "4 mm", "80 mm/s over 3 cm, 3 passes, at 90 deg",
+        display="biet2008-plate",
+    )  # fmt: skip
+    assert "along x" not in found.directions
+    assert found.directions["along y"].clearest_d_prime == 0.0
+    assert all(math.isinf(one.apart) for one in found.nearest)
+
+
+def test_a_surface_is_nearest_to_itself_and_a_known_force_is_used(tmp_path: Path) -> None:
+    t = np.linspace(0, 2, 201)
+    x = 0.02 - 0.02 * np.cos(2 * math.pi * t)
+    table = Table({"time_s": t, "x_m": x, "y_m": 0.01 + 0 * t, "force_N": 0.8 + 0 * t})
+    (tmp_path / "mine.csv").write_text(csv_text(table))
+    found = felt_on_path(shapes(), "bars", str(tmp_path / "mine.csv"))
+    assert found.nearest[0].name == "bars"
+    assert found.nearest[0].apart == 0.0
+    assert all(a.apart <= b.apart for a, b in zip(found.nearest, found.nearest[1:], strict=False))
+    assert found.finger.normal_force == pytest.approx(0.8)
+    assert found.force_is.startswith("known")
+    again = json.loads(json.dumps(found.summary()))
+    assert again["origin"] == "simulated"
+    assert again["explored"]["passes"] == 4
+    assert again["directions"]["along x"]["runs"] == 4
+
+
+@pytest.mark.parametrize(
+    ("stimulus", "path", "says"),
+    [
+        ("nothing", SLANTED, "has no stimulus 'nothing'"),
+        ("disc", "fast", "is no stroke"),
+        ("disc", "missing.csv", "missing.csv"),
+        ("disc", "80 mm/s over 40 cm", "the surface has"),
+        ("disc", "80 mm/s over 3 mm", "no straight run of 4 mm"),
+    ],
+)
+def test_what_cannot_be_felt_says_why(stimulus: str, path: str, says: str) -> None:
+    with pytest.raises(SqueezefilmError, match=says):
+        felt_on_path(shapes(), stimulus, path)
+
+
+def test_a_rehearsed_answer_is_felt_along_its_own_path(tmp_path: Path) -> None:
+    from dataclasses import replace
+
+    observer = replace(load_observer(), finger_classes=1)
+    with StudyStore.create(tmp_path / "study.sqlite", shapes(), 3) as store:
+        (who,) = rehearse(store, observer, 1)
+        first = 1 + len(shapes().stimuli)
+        (found,) = felt_in_trial(store, who, first, observer)
+        assert found.source == f"trial {first} of {who} (simulated participants)"
+        assert found.answer == found.stimulus.name == found.nearest[0].name
+        assert found.explored.passes == 16
+        assert found.force_is == "known"
+        # The path as the study keeps it, every 10 ms, and the model's own give the same percept.
+        from squeezefilm.display import load_display
+        from squeezefilm.study.conduct.rehearsed_hand import path_of
+
+        exact = path_of("free", load_display("biet2008-plate"), observer, observer.median_finger())
+        again = felt_on_path(
+            store.design, found.stimulus.name, exact, observer=observer,
+            normal_force=found.finger.normal_force,
+        )  # fmt: skip
+        for name, one in again.directions.items():
+            here = found.directions[name]
+            assert here.clearest_d_prime == pytest.approx(one.clearest_d_prime, rel=0.02, abs=0.02)
+        show_all((found,))
+        assert plot(found).axes
+        assert felt_path(found).axes
+        for trial, says in ((1, "has no answer"), (99, "has no answer")):
+            with pytest.raises(InputError, match=says):
+                felt_in_trial(store, who, trial, observer)
+        with pytest.raises(InputError, match="enrolled are"):
+            felt_in_trial(store, "somebody", first, observer)
+        for path in store.traces.iterdir():
+            path.unlink()
+        with pytest.raises(InputError, match="has 0 paths"):
+            felt_in_trial(store, who, first, observer)
+
+
+def test_two_touches_are_two_paths() -> None:
+    t = np.linspace(0, 0.5, 51)
+    there = FingerPath(t, 0.08 * t, 0 * t + 0.02)
+    back = FingerPath(t, 0.04 - 0.08 * t, 0 * t + 0.02)
+    found = felt_on_path(shapes(), "checks", (there, back))
+    assert found.explored.passes == 2
+    assert found.explored.touched == pytest.approx(1.0)
+    assert found.directions["along x"].runs == 2
