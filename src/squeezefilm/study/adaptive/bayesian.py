@@ -3,7 +3,7 @@
 The method of Kontsevich & Tyler 1999 (10.1016/S0042-6989(98)00285-5), with the lapse rate as a
 nuisance that may be integrated out before the entropy is taken (Prins 2013, 10.1167/13.7.3) and
 with the mutual information computed as the entropy of the expected answer less the expected
-entropy of the answer, which is the same and needs two products of a matrix and a vector.
+entropy of the answer, which is the same and needs one pass over the grid.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.results import to_json
+from squeezefilm.study.adaptive.kernel import EXACT, information
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
 from squeezefilm.study.psychometric.prior import PsychometricPrior
@@ -106,7 +107,6 @@ class BayesianAdaptive:
         self._nodes = nodes
         self._places = on_axis(np.array(design.stimuli), axis)
         self._table = self._probabilities(self._places)
-        self._entropy = _binary_entropy(self._table)
         self._weights = np.full(self._table.shape[0], 1.0 / self._table.shape[0])
         self._trials: list[AdaptiveTrial] = []
 
@@ -141,6 +141,17 @@ class BayesianAdaptive:
         return self._weights.reshape(self.design.cells).copy()
 
     @property
+    def chances(self) -> si.DimensionlessArray:
+        """ψ of every cell of the grid at every stimulus, as the kernel takes it: shape
+        (1, cells, stimuli), the lapse rate running fastest over the cells."""
+        return self._table[None]
+
+    @property
+    def nuisance(self) -> int:
+        """How many cells in a row differ by what is integrated out."""
+        return 1 if self.design.interest == "all" else self.design.cells[2]
+
+    @property
     def entropy(self) -> float:
         """Entropy of the posterior of what is of interest (nat)."""
         weights = self.probability
@@ -159,20 +170,9 @@ class BayesianAdaptive:
 
     def expected_information(self) -> si.FloatArray:
         """Mutual information of the next answer and what is of interest (nat), shape (stimuli,)."""
-        weights = self._weights
-        positive = weights @ self._table
-        answer = _binary_entropy(positive)
-        if self.design.interest == "all":
-            return np.asarray(answer - weights @ self._entropy)
-        lapses = self.design.cells[2]
-        by_cell = weights.reshape(-1, lapses)
-        share = by_cell.sum(axis=1)
-        joint = np.einsum(
-            "cl,cls->cs", by_cell, self._table.reshape(share.size, lapses, -1), optimize=False
-        )
-        with np.errstate(divide="ignore", invalid="ignore"):
-            given = np.where(share[:, None] > 0, joint / share[:, None], 0.5)
-        return np.asarray(answer - share @ _binary_entropy(given))
+        told = np.empty(self._places.size)
+        information(self._weights, self.chances, self.nuisance, 0.0, EXACT, told)
+        return told
 
     def next_stimulus(self) -> float:
         """The intensity whose answer tells the most; of equals the first in `design.stimuli`.
@@ -238,9 +238,3 @@ class BayesianAdaptive:
                 f"this is no Bayesian method's state: {error!r} is at fault"
             ) from error
         return method
-
-
-def _binary_entropy(p: si.FloatArray) -> si.FloatArray:
-    q = 1.0 - p
-    # The logarithm is nought where the probability is.
-    return np.asarray(-(p * np.log(np.maximum(p, 1e-300)) + q * np.log(np.maximum(q, 1e-300))))

@@ -272,24 +272,44 @@ def profile_drops(
     held: si.FloatArray,
     parameter: int,
     x: si.FloatArray,
+    k: si.FloatArray,
     n: si.FloatArray,
-    answers: si.FloatArray,
+    used: si.IntArray,
     drops: si.FloatArray,
 ) -> None:
-    """Twice the fall of ln density when one parameter is held at its true value, θ = `held`.
+    """Twice the fall of ln density when one parameter is held at its value in θ, `held`.
 
-    For every row of `answers` (replicates, places), simulated at `held`; fills `drops`.
+    For every simulated experiment: places, answers and trials in the first `used` columns of a row
+    of `x`, `k` and `n` (replicates, places). Fills `drops` (replicates,).
     """
     some = model.free.copy()
     some[parameter] = False
     less = Model(model.shape, some, model.low, model.high, model.beta)
-    for row in range(answers.shape[0]):
-        k = answers[row]
+    for row in range(x.shape[0]):
+        size = used[row]
+        where, right, trials = x[row, :size], k[row, :size], n[row, :size]
         under = held.copy()
-        bottom = maximise(less, under, x, k, n)
+        bottom = maximise(less, under, where, right, trials)
         # From the constrained maximum the free one can only climb.
-        top = maximise(model, under, x, k, n)
+        top = maximise(model, under, where, right, trials)
         drops[row] = 2.0 * (top - bottom)
+
+
+@compiled(error_model="numpy")
+def log_likelihoods(
+    shape: int,
+    theta: si.FloatArray,
+    x: si.FloatArray,
+    k: si.FloatArray,
+    n: si.FloatArray,
+    used: si.IntArray,
+) -> si.FloatArray:
+    """ln likelihood of every simulated experiment, rows as in `profile_drops`, under θ."""
+    flat, found = np.ones(4), np.empty(x.shape[0])
+    for row in range(x.shape[0]):
+        size = used[row]
+        found[row] = log_density(shape, theta, flat, x[row, :size], k[row, :size], n[row, :size])
+    return found
 
 
 @compiled(error_model="numpy")
