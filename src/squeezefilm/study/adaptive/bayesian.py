@@ -8,6 +8,7 @@ entropy of the answer, which is the same and needs one pass over the grid.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -99,31 +100,10 @@ class BayesianAdaptive:
 
     def __init__(self, design: AdaptiveDesign) -> None:
         self.design = design
-        axis, prior = design.axis, design.prior
-        nodes = [
-            prior.quantile(at, (np.arange(size) + 0.5) / size, axis)
-            for at, size in enumerate(design.cells)
-        ]
-        self._nodes = nodes
-        self._places = on_axis(np.array(design.stimuli), axis)
-        self._table = self._probabilities(self._places)
+        self._nodes = _nodes(design)
+        self._table = _table(design)
         self._weights = np.full(self._table.shape[0], 1.0 / self._table.shape[0])
         self._trials: list[AdaptiveTrial] = []
-
-    def _probabilities(self, places: si.FloatArray) -> si.FloatArray:
-        """ψ of every cell at places on the axis: (cells, places)."""
-        code = shape_code(self.design.shape, self.design.axis)
-        m, w, lapse = self._nodes
-        rise = np.stack(
-            [
-                kernel.probabilities(code, np.array([one, width, 0.0, 0.0]), places)
-                for one in m
-                for width in w
-            ]
-        )
-        guess = self.design.guess_rate
-        psi = guess + np.maximum(1.0 - guess - lapse[None, :, None], 0.0) * rise[:, None, :]
-        return np.ascontiguousarray(psi.reshape(-1, places.size))
 
     @property
     def trials(self) -> tuple[AdaptiveTrial, ...]:
@@ -170,7 +150,7 @@ class BayesianAdaptive:
 
     def expected_information(self) -> si.FloatArray:
         """Mutual information of the next answer and what is of interest (nat), shape (stimuli,)."""
-        told = np.empty(self._places.size)
+        told = np.empty(len(self.design.stimuli))
         information(self._weights, self.chances, self.nuisance, 0.0, EXACT, told)
         return told
 
@@ -196,7 +176,9 @@ class BayesianAdaptive:
         if intensity in self.design.stimuli:
             psi = self._table[:, self.design.stimuli.index(intensity)]
         else:
-            psi = self._probabilities(np.atleast_1d(on_axis(intensity, self.design.axis)))[:, 0]
+            psi = _probabilities(self.design, np.atleast_1d(on_axis(intensity, self.design.axis)))[
+                :, 0
+            ]
         weights = self._weights * (psi if positive else 1.0 - psi)
         total = float(weights.sum())
         if not total > 0.0:
@@ -238,3 +220,35 @@ class BayesianAdaptive:
                 f"this is no Bayesian method's state: {error!r} is at fault"
             ) from error
         return method
+
+
+def _nodes(design: AdaptiveDesign) -> list[si.FloatArray]:
+    """Threshold, ln width and lapse rate of the grid."""
+    return [
+        design.prior.quantile(at, (np.arange(size) + 0.5) / size, design.axis)
+        for at, size in enumerate(design.cells)
+    ]
+
+
+@functools.lru_cache(maxsize=8)
+def _table(design: AdaptiveDesign) -> si.FloatArray:
+    """ψ of every cell at the stimuli: (cells, stimuli), for everybody whose design it is."""
+    found = _probabilities(design, on_axis(np.array(design.stimuli), design.axis))
+    found.flags.writeable = False
+    return found
+
+
+def _probabilities(design: AdaptiveDesign, places: si.FloatArray) -> si.FloatArray:
+    """ψ of every cell at places on the axis: (cells, places)."""
+    code = shape_code(design.shape, design.axis)
+    m, w, lapse = _nodes(design)
+    rise = np.stack(
+        [
+            kernel.probabilities(code, np.array([one, width, 0.0, 0.0]), places)
+            for one in m
+            for width in w
+        ]
+    )
+    guess = design.guess_rate
+    psi = guess + np.maximum(1.0 - guess - lapse[None, :, None], 0.0) * rise[:, None, :]
+    return np.ascontiguousarray(psi.reshape(-1, places.size))

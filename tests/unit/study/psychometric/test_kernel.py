@@ -204,3 +204,12 @@ def test_every_row_of_answers_is_fitted_by_itself() -> None:
         one = kernel.log_density(kernel.LOGISTIC, THETA, np.ones(4), X, answers[row], N)
         assert likely[row] == pytest.approx(one, rel=1e-12)
     assert np.array_equal(free, [True, True, True, False])
+
+
+def test_who_lapses_says_either_answer() -> None:
+    thresholds, widths, lapses = np.array([1.0, 2.5]), np.array([-0.5, 0.7]), np.array([0.0, 0.1])
+    found = kernel.guessing_log_likelihood(kernel.GAUSSIAN, thresholds, widths, lapses, X, K, N)
+    for a, i, j in np.ndindex(2, 2, 2):
+        theta = np.array([thresholds[i], widths[j], lapses[a] / 2, lapses[a] / 2])
+        expected = kernel.log_density(kernel.GAUSSIAN, theta, np.ones(4), X, K, N)
+        assert found[a, i, j] == pytest.approx(expected, rel=1e-12)
