@@ -50,9 +50,13 @@ class Experiment(Protocol):
     """
 
     @property
-    def dear(self) -> bool: ...
+    def dear(self) -> bool:
+        """Whether simulating takes longer than fitting."""
+        ...
 
-    def __call__(self, theta: si.FloatArray) -> Simulated: ...
+    def __call__(self, theta: si.FloatArray) -> Simulated:
+        """Experiments with people of θ."""
+        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)
