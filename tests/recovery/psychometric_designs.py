@@ -12,6 +12,7 @@ import numpy as np
 
 from squeezefilm.quantities import FloatArray
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.adaptive.rerun import Procedure, rerun_intervals
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 from squeezefilm.study.psychometric.fit import PsychometricFit, fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction
@@ -34,56 +35,47 @@ def constant(levels: FloatArray, repetitions: int) -> Experiment:
     return answers
 
 
-def bayesian(trials: int) -> Experiment:
-    design = AdaptiveDesign(tuple(np.linspace(0.0, 10.0, 41)), WIDE_PRIOR, most_trials=trials)
-
-    def answers(truth: PsychometricFunction, random: np.random.Generator) -> Answers:
-        method = BayesianAdaptive(design)
-        while not method.finished:
-            x = method.next_stimulus()
-            method.update(x, bool(random.random() < truth(x)))
-        done = method.trials
-        return (
-            np.array([one.intensity for one in done]),
-            np.array([one.positive for one in done], dtype=float),
-        )
-
-    return answers
+def entropy(trials: int, cells: tuple[int, int, int] = (40, 20, 5)) -> tuple[Procedure, ...]:
+    stimuli = tuple(np.linspace(0.0, 10.0, 41))
+    return (AdaptiveDesign(stimuli, WIDE_PRIOR, cells=cells, most_trials=trials),)
 
 
-def staircases(trials: int) -> Experiment:
+def staircases(trials: int) -> tuple[Procedure, ...]:
     """Half of the trials two down, one up (71 %), half one down and nine times that up (90 %)."""
-    rules = [
+    return tuple(
         StaircaseRule(
             8.0, 0.6, 0.2, down_after=n, up_ratio=ratio, lowest=0.0, highest=10.0,
             reversals=10_000, most_trials=trials // 2,
         )
         for n, ratio in ((2, 1.0), (1, 9.0))
-    ]  # fmt: skip
+    )  # fmt: skip
+
+
+def adaptive(procedures: tuple[Procedure, ...]) -> Experiment:
+    """Trial by trial, as a study does it: not by the kernel that simulates runs for intervals."""
 
     def answers(truth: PsychometricFunction, random: np.random.Generator) -> Answers:
-        done = []
-        for rule in rules:
-            method = Staircase(rule)
+        shown: list[tuple[float, bool]] = []
+        for one in procedures:
+            method = Staircase(one) if isinstance(one, StaircaseRule) else BayesianAdaptive(one)
             while not method.finished:
                 x = method.next_stimulus()
-                method.update(x, bool(random.random() < truth(x)))
-            done += method.trials
-        return (
-            np.array([one.intensity for one in done]),
-            np.array([one.correct for one in done], dtype=float),
-        )
+                shown.append((x, bool(random.random() < truth(x))))
+                method.update(*shown[-1])
+        return np.array([x for x, _ in shown]), np.array([float(y) for _, y in shown])
 
     return answers
 
 
 @dataclass(frozen=True)
 class Recovery:
-    """A truth, an experiment on it, and the prior of the fit (None: from the stimuli)."""
+    """A truth, an experiment on it, the prior of the fit (None: from the stimuli), and what chose
+    the stimuli."""
 
     truth: PsychometricFunction
     experiment: Experiment
     prior: PsychometricPrior | None = None
+    procedures: tuple[Procedure, ...] = ()
 
     def fit(self, seed: int, replicates: int) -> PsychometricFit:
         intensity, positive = self.experiment(self.truth, np.random.default_rng(seed))
@@ -93,6 +85,8 @@ class Recovery:
         )  # fmt: skip
 
 
+COARSE = (20, 12, 3)
+PERSON = PsychometricFunction("logistic", 5.0, 3.0, 0.5, 0.03)
 RECOVERIES: dict[str, Recovery] = {
     "two-interval, 320 constant stimuli": Recovery(
         PsychometricFunction("logistic", 4.5, 3.0, 0.5, 0.03), constant(LINEAR, 40)
@@ -104,10 +98,14 @@ RECOVERIES: dict[str, Recovery] = {
         PsychometricFunction("weibull", 3.0, 1.0, 0.25, 0.02, "log"), constant(LOGARITHMIC, 30)
     ),
     "two-interval, 200 stimuli chosen by entropy": Recovery(
-        PsychometricFunction("logistic", 5.0, 3.0, 0.5, 0.03), bayesian(200), WIDE_PRIOR
+        PERSON, adaptive(entropy(200)), WIDE_PRIOR, entropy(200)
+    ),
+    # A coarser grid chooses five times as quickly, so that 500 intervals can be simulated.
+    "two-interval, 200 stimuli chosen by entropy on a coarse grid": Recovery(
+        PERSON, adaptive(entropy(200, COARSE)), WIDE_PRIOR, entropy(200, COARSE)
     ),
     "two-interval, 200 stimuli on staircases": Recovery(
-        PsychometricFunction("logistic", 5.0, 3.0, 0.5, 0.03), staircases(200), WIDE_PRIOR
+        PERSON, adaptive(staircases(200)), WIDE_PRIOR, staircases(200)
     ),
 }
 
@@ -121,16 +119,18 @@ class Coverage:
 
 
 def coverage(
-    recovery: Recovery, runs: int, replicates: int, first: int = 0
+    recovery: Recovery, runs: int, replicates: int, first: int = 0, reruns: int = 0
 ) -> dict[tuple[str, str], Coverage]:
-    """Coverage by kind of interval and parameter."""
+    """Coverage by kind of interval and parameter; "asked again" is of so many re-run replicates."""
     rows: dict[tuple[str, str], list[tuple[bool, float]]] = {}
     for seed in range(first, first + runs):
         fit = recovery.fit(seed, replicates)
-        for kind, intervals in (
-            ("posterior", fit.posterior_interval),
-            ("bootstrap", fit.bootstrap_interval),
-        ):
+        kinds = {"posterior": fit.posterior_interval, "bootstrap": fit.bootstrap_interval}
+        if reruns:
+            kinds["asked again"] = rerun_intervals(
+                fit, recovery.procedures, replicates=reruns, seed=seed
+            )
+        for kind, intervals in kinds.items():
             for name, (low, high) in intervals.items():
                 inside = low <= getattr(recovery.truth, name) <= high
                 rows.setdefault((kind, name), []).append((inside, high - low))

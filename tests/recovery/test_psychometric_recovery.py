@@ -14,7 +14,14 @@ import pytest
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction
 
-from .psychometric_designs import RECOVERIES, WIDE_PRIOR, bayesian, coverage
+from .psychometric_designs import (
+    RECOVERIES,
+    WIDE_PRIOR,
+    Coverage,
+    adaptive,
+    coverage,
+    entropy,
+)
 
 
 @pytest.mark.slow
@@ -43,7 +50,7 @@ def _drawn_from_the_prior(runs: int, trials: int) -> dict[str, float]:
     were chosen (Talts et al. 2018, 10.48550/arXiv.1804.06788).
     """
     held = {"threshold": 0, "width": 0, "lapse_rate": 0}
-    experiment = bayesian(trials)
+    experiment = adaptive(entropy(trials))
     for seed in range(runs):
         random = np.random.default_rng(seed)
         share = random.random(3)
@@ -73,30 +80,58 @@ def test_posteriors_of_2000_adaptive_runs_are_calibrated() -> None:
         assert 0.935 <= share <= 0.965, name
 
 
-# Where 2 000 runs covered otherwise than they say, with what was found, 3 standard errors wide.
-# Bootstrap: the places of the stimuli are kept as they were, though they depended on the answers;
-# it covers too seldom. Posterior: the prior does part of the work where 200 answers leave the
-# width open by a factor of 5; it covers a person of this width too often, and people drawn from
-# the prior exactly (above).
-ENTROPY = "two-interval, 200 stimuli chosen by entropy"
-MISSES = {
-    ("two-interval, 200 stimuli on staircases", "posterior", "width"): 0.9835,
-    (ENTROPY, "posterior", "width"): 0.974,
-    (ENTROPY, "bootstrap", "threshold"): 0.920,
-    (ENTROPY, "bootstrap", "width"): 0.9285,
-}
+def _print(name: str, found: dict[tuple[str, str], Coverage]) -> None:
+    for (kind, parameter), one in found.items():
+        print(f"{name}: {kind}, {parameter}: {one.share:.4f}, median length {one.length:.4g}")
+
+
+CONSTANT = sorted(name for name in RECOVERIES if "constant" in name)
+ADAPTIVE = sorted(set(RECOVERIES) - set(CONSTANT))
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("name", sorted(RECOVERIES))
+@pytest.mark.parametrize("name", CONSTANT)
 def test_intervals_of_2000_runs_cover_as_often_as_they_say(name: str) -> None:
-    found = coverage(RECOVERIES[name], 2000, replicates=0 if "staircases" in name else 199)
+    found = coverage(RECOVERIES[name], 2000, replicates=199)
+    _print(name, found)
     for (kind, parameter), one in found.items():
-        print(f"{name}: {kind}, {parameter}: {one.share:.4f}, median length {one.length:.4g}")
-        if parameter == "lapse_rate":
-            # 2 or 3 % lie at the edge of what a lapse rate can be: an interval may be longer
-            # than it need be, but not too short.
-            assert one.share >= 0.935, kind
-        else:
-            middle = MISSES.get((name, kind, parameter), 0.95)
-            assert middle - 0.015 <= one.share <= middle + 0.015, (kind, parameter)
+        # The prior does part of the work for a lapse rate of 2 or 3 %, so that its posterior
+        # covers this person too often, and people drawn from the prior just right (above).
+        most = 1.0 if (kind, parameter) == ("posterior", "lapse_rate") else 0.965
+        assert 0.935 <= one.share <= most, (kind, parameter)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", ADAPTIVE)
+def test_posteriors_of_2000_adaptive_runs_do_not_cover_too_seldom(name: str) -> None:
+    found = coverage(RECOVERIES[name], 2000, replicates=0)
+    _print(name, found)
+    # 200 answers leave the width open by a factor of 5: the prior does part of the work.
+    for key, one in found.items():
+        assert one.share >= 0.935, key
+
+
+PARTS, RUNS = 4, 125
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("name", [name for name in ADAPTIVE if not name.endswith("entropy")])
+def test_intervals_that_ask_again_hold_the_truth(name: str, part: int) -> None:
+    """500 runs in four parts, which `test_what_the_campaign_found_is_as_promised` puts together."""
+    reruns = 39 if "entropy" in name else 199
+    found = coverage(RECOVERIES[name], RUNS, 0, first=part * RUNS, reruns=reruns)
+    _print(name, found)
+    for (kind, parameter), one in found.items():
+        assert kind == "posterior" or one.share >= 0.95 - 4 * math.sqrt(0.95 * 0.05 / RUNS), (
+            parameter
+        )
+
+
+@pytest.mark.slow
+def test_a_few_intervals_that_ask_again_hold_the_truth() -> None:
+    runs = 40
+    found = coverage(RECOVERIES["two-interval, 200 stimuli on staircases"], runs, 0, reruns=99)
+    for parameter in ("threshold", "width", "lapse_rate"):
+        share = found["asked again", parameter].share
+        assert share >= 0.95 - 4 * math.sqrt(0.95 * 0.05 / runs), parameter

@@ -6,6 +6,7 @@ difference that it found.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -14,6 +15,13 @@ from tests.recovery import task_people
 from tests.recovery.task_people import DESIGNS, Person, answered, somebody
 
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.adaptive.placement import Placement
+from squeezefilm.study.adaptive.task_models import (
+    magnitude_model,
+    match_to_sample_model,
+    same_different_model,
+    two_interval_model,
+)
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction
 from squeezefilm.study.psychometric.prior import PsychometricPrior
@@ -122,6 +130,74 @@ def test_twenty_runs_choose_as_questplus_does() -> None:
     assert worst < 1e-6
 
 
+WEBER = np.geomspace(0.05, 0.6, 12)
+STEPS = np.linspace(0.0, 0.8, 9)
+MODELS = {
+    "two-interval": two_interval_model(
+        np.concatenate([-STEPS[:0:-1], STEPS]), WEBER, np.array([-0.1, 0.0, 0.1])
+    ),
+    "same-different": same_different_model(STEPS, WEBER, np.array([0.7, 1.4, 2.1])),
+    "match-to-sample": match_to_sample_model(np.geomspace(1.0, 3.0, 6), WEBER),
+    "magnitude-estimation": magnitude_model(
+        np.geomspace(1.0, 10.0, 6), np.linspace(0.3, 1.5, 9), np.array([5.0, 10.0, 20.0]),
+        np.array([0.15, 0.3]), np.geomspace(1.0, 100.0, 9),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("task", MODELS)
+def test_twenty_runs_of_each_task_choose_as_questplus_does(task: str) -> None:
+    questplus = pytest.importorskip("questplus", reason="questplus is not installed (GPL oracle)")
+    xarray = pytest.importorskip("xarray")
+    # questplus integrates nothing out before it takes the entropy: all parameters are of interest.
+    model = dataclasses.replace(MODELS[task], interest=3 if task != "match-to-sample" else 2)
+    domain = {name.replace(" ", "_"): values for name, values in model.parameters.items()}
+    outcomes, stimuli = list(model.answers), list(range(len(model.stimuli)))
+
+    class Theirs(questplus.QuestPlus):  # type: ignore[misc, name-defined]
+        """Its choice and its posterior, with answers of another model."""
+
+        def _gen_likelihoods(self):  # type: ignore[no-untyped-def]
+            table = model.chances.reshape(len(outcomes), *model.sizes, len(stimuli))
+            return xarray.DataArray(
+                table,
+                dims=("response", *domain, "stimulus"),
+                coords={"response": outcomes, **domain, "stimulus": stimuli},
+            )
+
+    first = model.first_weights()
+    choices, same, worst = 0, 0, 0.0
+    for seed in SETS:
+        random = np.random.default_rng([8, seed])
+        truth = random.choice(first.size, p=first)
+        ours = Placement(model, 25)
+        theirs = Theirs(
+            stim_domain={"stimulus": stimuli},
+            param_domain=domain,
+            outcome_domain={"response": outcomes},
+            prior={name.replace(" ", "_"): np.array(one) for name, one in model.prior.items()}
+            or None,
+            func="norm_cdf",
+            stim_scale="linear",
+        )
+        while not ours.finished:
+            mine, other = ours.next_stimulus(), int(theirs.next_stim["stimulus"])
+            choices += 1
+            same += mine == other
+            if mine != other:
+                told = ours.expected_information()
+                assert abs(told[mine] - told[other]) < 1e-9
+            answer = random.choice(len(outcomes), p=model.chances[:, truth, mine])
+            ours.update(mine, int(answer))
+            theirs.update(stim={"stimulus": mine}, outcome={"response": outcomes[answer]})
+        posterior = theirs.posterior.transpose(*domain).values
+        worst = max(worst, float(np.abs(posterior - ours.probability).max()))
+    print(f"questplus, {task}: {same} of {choices} choices alike, posteriors within {worst:.1e}")
+    assert same >= 0.5 * choices
+    assert worst < 1e-12
+
+
 def test_twenty_people_without_lapses_agree_with_a_probit_model(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -155,8 +231,6 @@ def test_twenty_people_without_lapses_agree_with_a_probit_model(
 
 def answered_as_one(main):  # type: ignore[no-untyped-def]
     """Everybody's trials as one person's."""
-    import dataclasses
-
     return dataclasses.replace(main, people=("all",), participant=np.zeros_like(main.participant))
 
 

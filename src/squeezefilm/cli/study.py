@@ -148,6 +148,13 @@ class PowerOptions:
             "Weber fraction) or 0.05 (of an exponent or a proportion correct)."
         ),
     ] = None
+    against: Annotated[
+        str | None,
+        typer.Option(
+            help="In place of two stimuli: a display that is to be shown to differ from --display "
+            "(or from the design's first); adaptive series too."
+        ),
+    ] = None
     display: Display = None
     target: Annotated[float, typer.Option(help="Power asked for.")] = 0.8
     studies: Annotated[int, typer.Option(help="Simulated per number of people.")] = 400
@@ -160,8 +167,8 @@ class PowerOptions:
 @study.command()
 @called_with(PowerOptions)
 def power(asked: PowerOptions) -> None:
-    """How many people are needed to tell two stimuli apart, or to know a threshold, exponent or
-    share of right answers as precisely as asked; by simulated participants."""
+    """How many people are needed to tell two stimuli or two displays apart, or to know a threshold,
+    exponent or share of right answers as precisely as asked; by simulated participants."""
     from squeezefilm import quantities as si
     from squeezefilm.errors import InputError
     from squeezefilm.perception.observer import load_observer
@@ -171,22 +178,30 @@ def power(asked: PowerOptions) -> None:
     from squeezefilm.results import write_whole
     from squeezefilm.second_process import second_process
     from squeezefilm.study.design.study_design import load_design
+    from squeezefilm.study.simulated.planned_contrast import planned_contrast
     from squeezefilm.study.simulated.planned_power import planned_power
     from squeezefilm.study.simulated.planned_precision import planned_precision
 
     design, people = load_design(asked.design), load_observer(asked.observer)
-    options = given(asked, leave="design observer first second precision out as_json")
+    options = given(asked, leave="design observer first second precision against out as_json")
     with second_process(_load_chain), working(asked.as_json) as step:
         if asked.precision is not None:
+            if asked.against is not None:
+                raise InputError("--precision and --against ask two things; give one of them")
             if asked.first is not None:
                 raise InputError("--precision asks of the whole design; leave the stimuli out")
             wanted = si.parse_quantity(asked.precision, si.Unit("1"))
             precise = planned_precision(design, people, wanted, **options, progress=step)
+        elif asked.against is not None:
+            if asked.first is not None:
+                raise InputError("--against asks of the whole design; leave the stimuli out")
+            here = options.pop("display") or design.displays[0]
+            found = planned_contrast(design, people, here, asked.against, **options, progress=step)
         elif asked.first is None or asked.second is None:
             names = ", ".join(f'"{one.name}"' for one in design.stimuli)
             raise InputError(
                 f"name two stimuli of '{design.name}' to be told apart ({names}), or give "
-                "--precision 20%"
+                "--precision 20%, or --against with another display"
             )
         else:
             found = planned_power(

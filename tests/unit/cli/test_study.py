@@ -128,6 +128,18 @@ def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path
     assert len(shown.calls) == 1
 
 
+def test_power_compares_two_displays(stands_in: StandsIn) -> None:
+    asked = stands_in("study.simulated.planned_contrast:planned_contrast", ANSWER)
+    stands_in("report.study.terminal_analysis:show_power")
+    run("power", PRESET, "--against", "biet2008-plate", "--studies", "50")
+    design = load_design(PRESET)
+    people = load_observer("fingertip")
+    assert asked.given == (design, people, design.displays[0], "biet2008-plate")
+    assert asked.named == {"target": 0.8, "studies": 50, "seed": 0}
+    run("power", PRESET, "--against", "biet2008-plate", "--display", "winfield2007-tpad")
+    assert asked.calls[-1][0][2:] == ("winfield2007-tpad", "biet2008-plate")
+
+
 def test_a_rehearsal_makes_the_file_and_says_what_comes_next(
     stands_in: StandsIn, tmp_path: Path
 ) -> None:

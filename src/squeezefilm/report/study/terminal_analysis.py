@@ -72,9 +72,12 @@ def _show_confusion(console: Console, one: IdentificationAnalysis) -> None:
 
 
 def show_power(found: PlannedPower) -> None:
-    """Print how many people tell two stimuli apart, by simulation."""
+    """Print how many people tell two stimuli, or displays, apart, by simulation."""
     console, curve = plain_console(), found.curve
-    heading(console, f"{found.first} against {found.second} on {found.display}, SIMULATED")
+    where, sides, own = f" on {found.display}", "One-sided", "score"
+    if not found.display:
+        where, sides, own = f" by {found.design}", "Two-sided", f"difference of {found.measure}"
+    heading(console, f"{found.first} against {found.second}{where}, SIMULATED")
     table(
         console,
         ("people", "studies that find it", "95 % bounds of the simulation"),
@@ -91,7 +94,7 @@ def show_power(found: PlannedPower) -> None:
     else:
         console.print(f"{curve.needed} people reach {100 * curve.target:.0f} % power.")
     console.print(
-        f"One-sided test over people at {curve.alpha:g}; the pool's own score is "
+        f"{sides} test over people at {curve.alpha:g}; the pool's own {own} is "
         f"{found.difference:.3g} (0 for nothing); {curve.studies} studies a size, of "
         f"simulated participants '{found.observer}': what they assume, this assumes.",
         highlight=False,

@@ -3,11 +3,12 @@
 The method of Kontsevich & Tyler 1999 (10.1016/S0042-6989(98)00285-5), with the lapse rate as a
 nuisance that may be integrated out before the entropy is taken (Prins 2013, 10.1167/13.7.3) and
 with the mutual information computed as the entropy of the expected answer less the expected
-entropy of the answer, which is the same and needs two products of a matrix and a vector.
+entropy of the answer, which is the same and needs one pass over the grid.
 """
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -17,6 +18,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.results import to_json
+from squeezefilm.study.adaptive.kernel import EXACT, information
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
 from squeezefilm.study.psychometric.prior import PsychometricPrior
@@ -98,32 +100,10 @@ class BayesianAdaptive:
 
     def __init__(self, design: AdaptiveDesign) -> None:
         self.design = design
-        axis, prior = design.axis, design.prior
-        nodes = [
-            prior.quantile(at, (np.arange(size) + 0.5) / size, axis)
-            for at, size in enumerate(design.cells)
-        ]
-        self._nodes = nodes
-        self._places = on_axis(np.array(design.stimuli), axis)
-        self._table = self._probabilities(self._places)
-        self._entropy = _binary_entropy(self._table)
+        self._nodes = _nodes(design)
+        self._table = _table(design)
         self._weights = np.full(self._table.shape[0], 1.0 / self._table.shape[0])
         self._trials: list[AdaptiveTrial] = []
-
-    def _probabilities(self, places: si.FloatArray) -> si.FloatArray:
-        """ψ of every cell at places on the axis: (cells, places)."""
-        code = shape_code(self.design.shape, self.design.axis)
-        m, w, lapse = self._nodes
-        rise = np.stack(
-            [
-                kernel.probabilities(code, np.array([one, width, 0.0, 0.0]), places)
-                for one in m
-                for width in w
-            ]
-        )
-        guess = self.design.guess_rate
-        psi = guess + np.maximum(1.0 - guess - lapse[None, :, None], 0.0) * rise[:, None, :]
-        return np.ascontiguousarray(psi.reshape(-1, places.size))
 
     @property
     def trials(self) -> tuple[AdaptiveTrial, ...]:
@@ -139,6 +119,17 @@ class BayesianAdaptive:
     def probability(self) -> si.DimensionlessArray:
         """The posterior on the grid, shape `design.cells`; sums to 1."""
         return self._weights.reshape(self.design.cells).copy()
+
+    @property
+    def chances(self) -> si.DimensionlessArray:
+        """ψ of every cell of the grid at every stimulus, as the kernel takes it: shape
+        (1, cells, stimuli), the lapse rate running fastest over the cells."""
+        return self._table[None]
+
+    @property
+    def nuisance(self) -> int:
+        """How many cells in a row differ by what is integrated out."""
+        return 1 if self.design.interest == "all" else self.design.cells[2]
 
     @property
     def entropy(self) -> float:
@@ -159,20 +150,9 @@ class BayesianAdaptive:
 
     def expected_information(self) -> si.FloatArray:
         """Mutual information of the next answer and what is of interest (nat), shape (stimuli,)."""
-        weights = self._weights
-        positive = weights @ self._table
-        answer = _binary_entropy(positive)
-        if self.design.interest == "all":
-            return np.asarray(answer - weights @ self._entropy)
-        lapses = self.design.cells[2]
-        by_cell = weights.reshape(-1, lapses)
-        share = by_cell.sum(axis=1)
-        joint = np.einsum(
-            "cl,cls->cs", by_cell, self._table.reshape(share.size, lapses, -1), optimize=False
-        )
-        with np.errstate(divide="ignore", invalid="ignore"):
-            given = np.where(share[:, None] > 0, joint / share[:, None], 0.5)
-        return np.asarray(answer - share @ _binary_entropy(given))
+        told = np.empty(len(self.design.stimuli))
+        information(self._weights, self.chances, self.nuisance, 0.0, EXACT, told)
+        return told
 
     def next_stimulus(self) -> float:
         """The intensity whose answer tells the most; of equals the first in `design.stimuli`.
@@ -196,7 +176,9 @@ class BayesianAdaptive:
         if intensity in self.design.stimuli:
             psi = self._table[:, self.design.stimuli.index(intensity)]
         else:
-            psi = self._probabilities(np.atleast_1d(on_axis(intensity, self.design.axis)))[:, 0]
+            psi = _probabilities(self.design, np.atleast_1d(on_axis(intensity, self.design.axis)))[
+                :, 0
+            ]
         weights = self._weights * (psi if positive else 1.0 - psi)
         total = float(weights.sum())
         if not total > 0.0:
@@ -240,7 +222,33 @@ class BayesianAdaptive:
         return method
 
 
-def _binary_entropy(p: si.FloatArray) -> si.FloatArray:
-    q = 1.0 - p
-    # The logarithm is nought where the probability is.
-    return np.asarray(-(p * np.log(np.maximum(p, 1e-300)) + q * np.log(np.maximum(q, 1e-300))))
+def _nodes(design: AdaptiveDesign) -> list[si.FloatArray]:
+    """Threshold, ln width and lapse rate of the grid."""
+    return [
+        design.prior.quantile(at, (np.arange(size) + 0.5) / size, design.axis)
+        for at, size in enumerate(design.cells)
+    ]
+
+
+@functools.lru_cache(maxsize=8)
+def _table(design: AdaptiveDesign) -> si.FloatArray:
+    """ψ of every cell at the stimuli: (cells, stimuli), for everybody whose design it is."""
+    found = _probabilities(design, on_axis(np.array(design.stimuli), design.axis))
+    found.flags.writeable = False
+    return found
+
+
+def _probabilities(design: AdaptiveDesign, places: si.FloatArray) -> si.FloatArray:
+    """ψ of every cell at places on the axis: (cells, places)."""
+    code = shape_code(design.shape, design.axis)
+    m, w, lapse = _nodes(design)
+    rise = np.stack(
+        [
+            kernel.probabilities(code, np.array([one, width, 0.0, 0.0]), places)
+            for one in m
+            for width in w
+        ]
+    )
+    guess = design.guess_rate
+    psi = guess + np.maximum(1.0 - guess - lapse[None, :, None], 0.0) * rise[:, None, :]
+    return np.ascontiguousarray(psi.reshape(-1, places.size))

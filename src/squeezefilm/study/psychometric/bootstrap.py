@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy.special import bdtr, chdtri
@@ -27,6 +28,35 @@ from squeezefilm.study.psychometric.kernel import BoolArray
 _NEAR = 1e-4
 _CLOSE = 0.01
 _MOST_ROUNDS = 4
+# How many new experiments those weighed for another truth must be worth, as a share of a set.
+_WORTH = 0.5
+
+
+class Simulated(NamedTuple):
+    """Simulated experiments: places, answers and trials in the first `used` columns of a row;
+    shapes (replicates, places), `used` (replicates,)."""
+
+    x: si.FloatArray
+    k: si.FloatArray
+    n: si.FloatArray
+    used: si.IntArray
+
+
+class Experiment(Protocol):
+    """Does the experiment again, with simulated people of known θ.
+
+    `dear` says that simulating takes longer than fitting: what was simulated at some truths is then
+    weighed for others near by.
+    """
+
+    @property
+    def dear(self) -> bool:
+        """Whether simulating takes longer than fitting."""
+        ...
+
+    def __call__(self, theta: si.FloatArray) -> Simulated:
+        """Experiments with people of θ."""
+        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,19 +135,75 @@ def simulate_bootstrap(
     return Bootstrap(best, estimates, deviances, shares)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SamePlaces:
+    """The experiment at the places and trials of the data, whatever the answers; the same random
+    numbers `shares` (replicates, places) for every truth."""
+
+    likelihood: PenalisedLikelihood
+    shares: si.DimensionlessArray
+    dear: bool = False
+
+    def __call__(self, theta: si.FloatArray) -> Simulated:
+        """Answers of people of θ."""
+        answers, (rows, places) = _answers(self.likelihood, theta, self.shares), self.shares.shape
+        x, n = (np.tile(one, (rows, 1)) for one in (self.likelihood.x, self.likelihood.n))
+        return Simulated(x, answers, n, np.full(rows, places))
+
+
 def inverted_interval(
-    likelihood: PenalisedLikelihood, bootstrap: Bootstrap, parameter: int, level: si.Dimensionless
+    likelihood: PenalisedLikelihood,
+    best: si.FloatArray,
+    experiments: Experiments,
+    parameter: int,
+    level: si.Dimensionless,
 ) -> tuple[float, float]:
     """The values of one θ that the test with simulated deviances does not refuse.
 
-    An end that the data do not bound lies at the bound of the prior.
+    `best` is the fit. An end that the data do not bound lies at the bound of the prior.
     """
-    _, top = likelihood.maximum(bootstrap.best)
+    _, top = likelihood.maximum(best)
     ends = [
-        _inverted_end(likelihood, bootstrap, top, parameter, level, float(bound))
+        _inverted_end(likelihood, best, experiments, top, parameter, level, float(bound))
         for bound in (likelihood.low[parameter], likelihood.high[parameter])
     ]
     return ends[0], ends[1]
+
+
+class Experiments:
+    """Simulated experiments, and what those of one truth say of another.
+
+    Where they are dear all are kept and weighed: by their probability under the truth asked for
+    over that under the mixture of truths they were simulated at (the balance heuristic of Veach
+    and Guibas 1995). How stimuli were chosen after the answers cancels in that ratio.
+    """
+
+    def __init__(self, shape: int, again: Experiment) -> None:
+        self._shape, self._again = shape, again
+        self._truths: list[si.FloatArray] = []
+        self._sets: list[Simulated] = []
+
+    def at(self, theta: si.FloatArray) -> tuple[Simulated, si.FloatArray]:
+        """Experiments with people of θ, and their weights."""
+        if not self._again.dear:
+            runs = self._again(theta)
+            return runs, np.ones(runs.used.size)
+        found = self._weighed(theta) if self._sets else None
+        wanted = _WORTH * self._sets[0].used.size if self._sets else math.inf
+        if found is None or found[1].sum() ** 2 < wanted * (found[1] @ found[1]):
+            self._truths.append(theta.copy())
+            self._sets.append(self._again(theta))
+            found = self._weighed(theta)
+        return found
+
+    def _weighed(self, theta: si.FloatArray) -> tuple[Simulated, si.FloatArray]:
+        joined = [np.concatenate(one) for one in zip(*self._sets, strict=True)]
+        runs = Simulated(joined[0], joined[1], joined[2], joined[3].astype(np.int64))
+        asked = kernel.log_likelihoods(self._shape, theta, *runs)
+        mixed = np.array([kernel.log_likelihoods(self._shape, one, *runs) for one in self._truths])
+        weights = 1.0 / np.mean(np.exp(mixed - asked), axis=0)
+        some = weights > 1e-3 * weights.max()
+        return Simulated(runs.x[some], runs.k[some], runs.n[some], runs.used[some]), weights[some]
 
 
 def _answers(
@@ -136,7 +222,8 @@ def _answers(
 
 def _inverted_end(
     likelihood: PenalisedLikelihood,
-    bootstrap: Bootstrap,
+    best: si.FloatArray,
+    experiments: Experiments,
     top: float,
     parameter: int,
     level: float,
@@ -144,20 +231,29 @@ def _inverted_end(
 ) -> float:
     """Alternate the end that a quantile allows and the quantile simulated at that end."""
     allowed = float(chdtri(1, 1 - level))
-    end = float("nan")
+    end, model = float("nan"), likelihood.model()
     for _ in range(_MOST_ROUNDS):
         before = end
-        held = _end(likelihood, bootstrap.best, top, parameter, allowed, bound)
+        held = _end(likelihood, best, top, parameter, allowed, bound)
         end = float(held[parameter])
-        if abs(end - before) <= _CLOSE * abs(end - float(bootstrap.best[parameter])):
+        if abs(end - before) <= _CLOSE * abs(end - float(best[parameter])):
             break
-        drops = np.empty(bootstrap.shares.shape[0])
-        answers = _answers(likelihood, held, bootstrap.shares)
-        places = (likelihood.x, likelihood.n)
-        kernel.profile_drops(likelihood.model(), held, parameter, *places, answers, drops)
-        rank = math.ceil(level * (drops.size + 1)) - 1
-        allowed = float(np.sort(drops)[min(rank, drops.size - 1)])
+        runs, weights = experiments.at(held)
+        drops = np.empty(runs.used.size)
+        kernel.profile_drops(model, held, parameter, *runs, drops)
+        allowed = _quantile(drops, weights, level)
     return end
+
+
+def _quantile(drops: si.FloatArray, weights: si.FloatArray, level: float) -> float:
+    """The least deviance that is no smaller than a share of the simulated ones; the data's own is
+    counted as one more, so that chance in the simulated ones keeps the level."""
+    order = np.argsort(drops)
+    heights = np.cumsum(weights[order])
+    # Its weight is that of the experiments that they are worth.
+    one = float(weights @ weights) / heights[-1]
+    rank = np.searchsorted(heights, level * (heights[-1] + one) - 1e-9)
+    return float(drops[order[min(int(rank), drops.size - 1)]])
 
 
 def _end(

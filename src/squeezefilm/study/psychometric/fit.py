@@ -16,7 +16,10 @@ from squeezefilm.results import Result, to_json
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import (
     Bootstrap,
+    Experiment,
+    Experiments,
     PenalisedLikelihood,
+    SamePlaces,
     inverted_interval,
     simulate_bootstrap,
 )
@@ -148,7 +151,7 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     places, k, n = _by_place(asked.intensity, asked.positive, asked.trials)
     prior = PsychometricPrior.for_stimuli(places, axis) if asked.prior is None else asked.prior
     answered = Answered(code, axis, prior, guess_rate, on_axis(places, axis), k, n)
-    likelihood = _penalised(answered)
+    likelihood = penalised(answered)
     starts = coarse_maxima(answered)
     best, _ = max((likelihood.maximum(start) for start in starts), key=lambda found: found[1])
     posterior = grid_posterior(answered, best)
@@ -159,10 +162,8 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     if asked.replicates:
         bootstrap = simulate_bootstrap(likelihood, best, asked.replicates, asked.seed)
         p = bootstrap.goodness_of_fit(deviance)
-        confidence = {
-            name: _in_own_unit(at, inverted_interval(likelihood, bootstrap, at, level), axis)
-            for at, name in enumerate(fitted)
-        }
+        again = SamePlaces(likelihood, bootstrap.shares)
+        confidence = confidence_intervals(likelihood, best, again, fitted, level, axis)
     return PsychometricFit(
         function=_function(asked.shape, axis, best),
         intensity=places,
@@ -181,7 +182,7 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     )
 
 
-def _penalised(answered: Answered) -> PenalisedLikelihood:
+def penalised(answered: Answered) -> PenalisedLikelihood:
     """The likelihood of the answers with the priors of the rates, within the whole prior."""
     a, rate = answered, answered.guess_rate
     low, high = a.prior.bounds(a.axis)
@@ -202,10 +203,34 @@ def _function(shape: Shape, axis: Axis, theta: si.FloatArray) -> PsychometricFun
     return PsychometricFunction(shape, threshold, width, guess, lapse, axis)
 
 
-def _in_own_unit(parameter: int, interval: Interval, axis: Axis) -> Interval:
-    if parameter == kernel.LOG_WIDTH or (parameter == kernel.THRESHOLD and axis == "log"):
-        return float(np.exp(interval[0])), float(np.exp(interval[1]))
-    return interval
+def likelihood_of(fit: PsychometricFit) -> tuple[PenalisedLikelihood, si.FloatArray]:
+    """The likelihood that was fitted, with its priors, and the kernel's θ of the fit."""
+    function, axis = fit.function, fit.function.axis
+    guess_rate = None if "guess_rate" in fit.fitted else function.guess_rate
+    code = shape_code(function.shape, axis)
+    x = on_axis(fit.intensity, axis)
+    answered = Answered(code, axis, fit.prior, guess_rate, x, fit.positive, fit.trials)
+    place = float(on_axis(function.threshold, axis))
+    rates = function.lapse_rate, function.guess_rate
+    return penalised(answered), np.array([place, np.log(function.width), *rates])
+
+
+def confidence_intervals(
+    likelihood: PenalisedLikelihood,
+    best: si.FloatArray,
+    experiment: Experiment,
+    fitted: tuple[str, ...],
+    level: si.Dimensionless,
+    axis: Axis,
+) -> dict[str, Interval]:
+    """Of each fitted parameter the values that simulated experiments do not refuse, in its unit."""
+    found, experiments = {}, Experiments(likelihood.code, experiment)
+    for at, name in enumerate(fitted):
+        low, high = inverted_interval(likelihood, best, experiments, at, level)
+        if name == "width" or (name == "threshold" and axis == "log"):
+            low, high = float(np.exp(low)), float(np.exp(high))
+        found[name] = low, high
+    return found
 
 
 def _bounded(

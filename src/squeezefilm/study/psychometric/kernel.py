@@ -272,24 +272,44 @@ def profile_drops(
     held: si.FloatArray,
     parameter: int,
     x: si.FloatArray,
+    k: si.FloatArray,
     n: si.FloatArray,
-    answers: si.FloatArray,
+    used: si.IntArray,
     drops: si.FloatArray,
 ) -> None:
-    """Twice the fall of ln density when one parameter is held at its true value, θ = `held`.
+    """Twice the fall of ln density when one parameter is held at its value in θ, `held`.
 
-    For every row of `answers` (replicates, places), simulated at `held`; fills `drops`.
+    For every simulated experiment: places, answers and trials in the first `used` columns of a row
+    of `x`, `k` and `n` (replicates, places). Fills `drops` (replicates,).
     """
     some = model.free.copy()
     some[parameter] = False
     less = Model(model.shape, some, model.low, model.high, model.beta)
-    for row in range(answers.shape[0]):
-        k = answers[row]
+    for row in range(x.shape[0]):
+        size = used[row]
+        where, right, trials = x[row, :size], k[row, :size], n[row, :size]
         under = held.copy()
-        bottom = maximise(less, under, x, k, n)
+        bottom = maximise(less, under, where, right, trials)
         # From the constrained maximum the free one can only climb.
-        top = maximise(model, under, x, k, n)
+        top = maximise(model, under, where, right, trials)
         drops[row] = 2.0 * (top - bottom)
+
+
+@compiled(error_model="numpy")
+def log_likelihoods(
+    shape: int,
+    theta: si.FloatArray,
+    x: si.FloatArray,
+    k: si.FloatArray,
+    n: si.FloatArray,
+    used: si.IntArray,
+) -> si.FloatArray:
+    """ln likelihood of every simulated experiment, rows as in `profile_drops`, under θ."""
+    flat, found = np.ones(4), np.empty(x.shape[0])
+    for row in range(x.shape[0]):
+        size = used[row]
+        found[row] = log_density(shape, theta, flat, x[row, :size], k[row, :size], n[row, :size])
+    return found
 
 
 @compiled(error_model="numpy")
@@ -322,4 +342,32 @@ def grid_log_likelihood(
                             out[i, j, a, b] += right * math.log(max(guesses[b] + rise * s, _LEAST))
                         if wrong > 0:
                             out[i, j, a, b] += wrong * math.log(max(lapses[a] + rise * r, _LEAST))
+    return out
+
+
+@compiled(error_model="numpy")
+def guessing_log_likelihood(
+    shape: int,
+    thresholds: si.FloatArray,
+    log_widths: si.FloatArray,
+    lapses: si.FloatArray,
+    x: si.FloatArray,
+    k: si.FloatArray,
+    n: si.FloatArray,
+) -> si.FloatArray:
+    """ln likelihood where who lapses says either answer, at every cell of a grid: (lapses,
+    thresholds, widths). Lapse and guess rate are both half of `lapses`, which are below 1."""
+    out = np.zeros((lapses.size, thresholds.size, log_widths.size))
+    for i in range(thresholds.size):
+        for j in range(log_widths.size):
+            narrow = math.exp(-log_widths[j])
+            for at in range(x.size):
+                s, r, _ = sigmoid(shape, (x[at] - thresholds[i]) * narrow)
+                right, wrong = k[at], n[at] - k[at]
+                for a in range(lapses.size):
+                    half, rise = 0.5 * lapses[a], 1.0 - lapses[a]
+                    if right > 0:
+                        out[a, i, j] += right * math.log(max(half + rise * s, _LEAST))
+                    if wrong > 0:
+                        out[a, i, j] += wrong * math.log(max(half + rise * r, _LEAST))
     return out

@@ -35,9 +35,11 @@ POOL = 4000
 
 @dataclass(frozen=True, eq=False)
 class PlannedPower:
-    """Power to tell two stimuli of a design apart on one display, by simulated participants.
+    """Power to tell two stimuli of a design apart on one display, or two displays by a design, by
+    simulated participants.
 
     `curve` is over the number of people; `difference` the mean score of the whole pool (1).
+    `measure` is what a person's value is where displays are compared (`display` is empty then).
     """
 
     design: str
@@ -49,6 +51,7 @@ class PlannedPower:
     difference: si.Dimensionless
     seed: int
     origin: str = "simulated"
+    measure: str = "score"
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints."""
@@ -125,7 +128,8 @@ def require_pair(design: StudyDesign, first: str, second: str) -> None:
     if design.adaptive:
         raise InputError(
             f"the series of '{design.name}' choose their comparisons, so that no pair is presented "
-            "often; ask how many people make the threshold precise instead, with --precision 20%"
+            "often; ask how many people make the threshold precise instead, with --precision 20%, "
+            "or show that it is another one on another display, with --against DISPLAY"
         )
     if first == second:
         raise InputError(f"'{first}' is asked to be told from itself; name two stimuli")

@@ -28,6 +28,7 @@ from squeezefilm.study.simulated.chain_tables import chain_tables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import SIZES, on_one_display
+from squeezefilm.study.tasks.findings import PersonEstimate
 from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.population import Population
 from squeezefilm.study.tasks.same_different import same_different_on_grid
@@ -213,20 +214,32 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
             return math.exp(found.mean), math.exp(found.low), math.exp(found.high)
 
         return "Weber fraction", fraction
-    if task == "magnitude-estimation":
-        values = np.array([one.estimate.value for one in exponents(main, 0.95)[0]])
-        measure = "exponent"
-    else:
-        size = len(main.people)
-        right = np.bincount(main.participant, main.correct, size)
-        values = right / np.bincount(main.participant, minlength=size)
-        measure = "proportion correct"
+    measure, values = person_values(main)
 
     def mean(who: si.IntArray) -> Ends:
         found = t_interval(values[who], 0.95)
         return found.value, found.low, found.high
 
     return measure, mean
+
+
+def person_values(main: Answers) -> tuple[str, si.FloatArray]:
+    """What the answers to one display measure of a person, and each one's value, as the analysis
+    fits it; shape (people,)."""
+    task = main.design.task
+    if task in ("two-interval", "same-different"):
+        two = task == "two-interval"
+        people = on_grid(main, lambda _: None) if two else same_different_on_grid(main)
+        return "Weber fraction", _values(people.estimates(0.95))
+    if task == "magnitude-estimation":
+        return "exponent", _values(exponents(main, 0.95)[0])
+    size = len(main.people)
+    right = np.bincount(main.participant, main.correct, size)
+    return "proportion correct", right / np.bincount(main.participant, minlength=size)
+
+
+def _values(persons: list[PersonEstimate]) -> si.FloatArray:
+    return np.array([one.estimate.value for one in persons])
 
 
 def _sequential(

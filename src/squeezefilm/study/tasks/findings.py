@@ -190,5 +190,6 @@ def through(found: Estimate, rising: Callable[[float], float]) -> Estimate:
 def of_population(found: PopulationEstimate, method: str) -> tuple[Estimate, Estimate]:
     """A population of logarithms as a typical person's value, and the spread of the logarithm."""
     mean = Estimate(found.mean, found.low, found.high, found.level, method)
-    spread = Estimate(found.spread, found.spread_low, found.spread_high, found.level, method)
+    how = "Q profile, over people"
+    spread = Estimate(found.spread, found.spread_low, found.spread_high, found.level, how)
     return through(mean, math.exp), spread

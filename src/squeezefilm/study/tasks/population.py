@@ -10,6 +10,12 @@ population. That is
 a generalised linear mixed model of the answers (Moscatelli, Mezzetti and Lacquaniti 2012,
 10.1167/12.11.26) with lapses, integrated exactly instead of by Laplace's method.
 
+The interval of τ is no posterior: with few people the prior does most of the work, and such an
+interval holds a τ in the middle of the prior nearly always and one in its tail too seldom. It is
+made of the values that the scatter of the people does not refuse (the Q profile of Viechtbauer
+2007, 10.1002/sim.2514): Σ (xᵢ − x̄)²/(vᵢ + τ²), x̄ the mean with the same weights, is χ² with one
+degree of freedom less than there are people, xᵢ and vᵢ being mean and variance of a likelihood.
+
 Lapse rates are of the population too. A prior that is a little wrong for everybody would push
 everybody's Weber fraction the same way, and the mean over people with it: so the mean lapse rate h
 has a flat prior in its logarithm, a person's lapse rate is Beta(1, 1/h − 1) about it, and the
@@ -22,6 +28,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtri
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
@@ -33,6 +40,8 @@ USUAL_SPREAD = 0.5
 """Scale of τ's half-normal prior (1): thresholds of most people lie within a factor of e of the
 middle one. Assumed."""
 _NARROWEST = 1e-3
+# Spreads at which the scatter of people is computed; two people may bound theirs nowhere below.
+_TRIED = np.concatenate([[0.0], np.geomspace(1e-3, 1e3, 700)])
 
 MEAN_LAPSES: tuple[si.Dimensionless, ...] = (0.005, 0.01, 0.02, 0.04, 0.08)
 """Mean lapse rates over people that are held possible, alike in their logarithm (1): 1 to 5 % are
@@ -67,9 +76,10 @@ class PersonLikelihood:
 
 @dataclass(frozen=True, slots=True)
 class PopulationEstimate:
-    """Mean and spread over people of a quantity, with central credible intervals.
+    """Mean and spread over people of a quantity, in the unit of x.
 
-    `mean` is the posterior's median of μ, `spread` that of τ, both in the unit of x.
+    `mean` is the posterior's median of μ with a central credible interval. `spread` is that of τ,
+    between the ends of what the scatter of the people does not refuse; all NaN for one person.
     """
 
     mean: float
@@ -96,6 +106,7 @@ class Population:
         self._spreads = 0.5 * (edges[1:] + edges[:-1])
         self._widths = np.diff(edges) * np.exp(-0.5 * (self._spreads / USUAL_SPREAD) ** 2)
         self._edges = edges
+        self._people = people
         self._logs = np.array([self._log_likelihood(one) for one in people])
 
     def _log_likelihood(self, one: PersonLikelihood) -> si.FloatArray:
@@ -127,7 +138,7 @@ class Population:
     ) -> PopulationEstimate:
         """Mean and spread over people, of all or of those of the numbers `people`.
 
-        With one person τ is only what the prior says, and the interval of μ is wide.
+        With one person the interval of μ is wide, and τ is not known.
         Raises `InputError` for a level not between 0 and 1.
         """
         si.require("level", level, above=0.0, below=1.0)
@@ -139,8 +150,42 @@ class Population:
         step = self._means[1] - self._means[0]
         middle = np.append(self._means - step / 2, self._means[-1] + step / 2)
         low, mean, high = _quantiles(middle, weight.sum(axis=1), tails)
-        least, spread, most = _quantiles(self._edges, weight.sum(axis=0), tails)
+        _, spread, _ = _quantiles(self._edges, weight.sum(axis=0), tails)
+        lapses = np.einsum("msl,s->l", np.exp(total - total.max()), self._widths)
+        chosen = range(self.size) if people is None else people
+        moments = np.array([_moments(self._people[one], lapses) for one in chosen])
+        least, most = scatter_interval(moments[:, 0], moments[:, 1], level)
+        if logs.shape[0] == 1:
+            spread = least = most = float("nan")
+        # People who are more alike than chance makes them refuse every spread.
+        least, most = min(least, spread), max(most, spread)
         return PopulationEstimate(mean, low, high, spread, least, most, level, logs.shape[0])
+
+
+def scatter_interval(
+    values: si.FloatArray, variances: si.FloatArray, level: si.Dimensionless = 0.95
+) -> tuple[float, float]:
+    """The deviations of normal people that their scatter does not refuse (the Q profile).
+
+    `values` are estimates of two people or more, `variances` of their errors, both (people,) and
+    known. Both ends are 0 where people are more alike than chance makes them.
+    """
+    wide = variances[:, None] + _TRIED**2
+    middle = (values[:, None] / wide).sum(axis=0) / (1.0 / wide).sum(axis=0)
+    scatter = ((values[:, None] - middle) ** 2 / wide).sum(axis=0)
+    free = max(values.size - 1, 1)
+    tails = float(chdtri(free, 0.5 * (1.0 - level))), float(chdtri(free, 0.5 * (1.0 + level)))
+    # Scatter falls with the deviation.
+    least, most = np.interp([-one for one in tails], -scatter, _TRIED)
+    return float(least), float(most)
+
+
+def _moments(one: PersonLikelihood, lapses: si.FloatArray) -> tuple[float, float]:
+    """Mean and variance of x as a likelihood has them, under weights of the mean lapse rates."""
+    density = lapses @ one.likelihood * one.width
+    density = density / density.sum()
+    mean = float(density @ one.x)
+    return mean, float(density @ (one.x - mean) ** 2)
 
 
 def _quantiles(

@@ -147,21 +147,8 @@ def on_grid(main: Answers, tell: Callable[[str], None]) -> PeopleOnGrid:
         places, where = np.unique(apart[mine], return_inverse=True)
         k = np.bincount(where, first[mine]).astype(np.float64)
         n = np.bincount(where).astype(np.float64)
-        found = np.stack(
-            [
-                kernel.grid_log_likelihood(
-                    kernel.GAUSSIAN,
-                    biases,
-                    middle + math.log(_WIDTH),
-                    np.array([0.5 * lapse]),
-                    np.array([0.5 * lapse]),
-                    places,
-                    k,
-                    n,
-                )[:, :, 0, 0]
-                for lapse in LAPSES
-            ]
-        )
+        wide = middle + math.log(_WIDTH)
+        found = kernel.guessing_log_likelihood(kernel.GAUSSIAN, biases, wide, LAPSES, places, k, n)
         whole = np.exp(found - found.max())
         people.names.append(main.people[person])
         people.likelihood.append(prior @ whole.sum(axis=1))

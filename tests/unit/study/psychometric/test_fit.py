@@ -12,7 +12,9 @@ from squeezefilm.errors import InputError
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import (
     Bootstrap,
+    Experiments,
     PenalisedLikelihood,
+    SamePlaces,
     inverted_interval,
     simulate_bootstrap,
 )
@@ -178,16 +180,17 @@ def test_an_interval_holds_the_best_value_and_stays_within_the_prior(k: list[flo
     prior = PsychometricPrior((0.0, 6.0), (0.4, 12.0))
     likelihood = _likelihood(k, prior)
     best, _ = likelihood.maximum(np.array([3.0, math.log(2.0), 0.02, 0.0]))
-    bootstrap = simulate_bootstrap(likelihood, best, 39, 1)
+    shares = simulate_bootstrap(likelihood, best, 39, 1).shares
+    again = Experiments(likelihood.code, SamePlaces(likelihood, shares))
     for at in range(3):
-        low, high = inverted_interval(likelihood, bootstrap, at, 0.9)
+        low, high = inverted_interval(likelihood, best, again, at, 0.9)
         assert likelihood.low[at] <= low <= best[at] + 1e-6
         assert best[at] - 1e-6 <= high <= likelihood.high[at]
-        wider = inverted_interval(likelihood, bootstrap, at, 0.99)
+        wider = inverted_interval(likelihood, best, again, at, 0.99)
         assert wider[0] <= low + 1e-3
         assert wider[1] >= high - 1e-3
     # No lapse was seen, so that none is not refused.
-    assert inverted_interval(likelihood, bootstrap, 2, 0.9)[0] == pytest.approx(0.0, abs=1e-9)
+    assert inverted_interval(likelihood, best, again, 2, 0.9)[0] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_bootstraps_test_is_counted() -> None:

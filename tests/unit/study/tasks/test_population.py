@@ -14,6 +14,7 @@ from squeezefilm.study.tasks.population import (
     PersonLikelihood,
     Population,
     lapse_weights,
+    scatter_interval,
 )
 
 X = np.linspace(-3.0, 3.0, 601)
@@ -64,6 +65,28 @@ def test_people_who_are_alike_have_no_spread_and_a_group_of_them_is_those_people
     assert few.high - few.low > found.high - found.low
     assert alike.estimate(0.5).high < found.high
     assert alike.size == 12
+
+
+def test_the_interval_of_the_spread_is_what_the_scatter_does_not_refuse() -> None:
+    # Equal errors: the scatter over v + tau^2 is chi-squared, and the ends are closed forms.
+    random = np.random.default_rng(4)
+    values, error = random.normal(0.0, 0.6, 9), 0.2
+    found = Population([person(one, error) for one in values]).estimate(0.9)
+    scatter = float(np.sum((values - values.mean()) ** 2))
+    for end, share in ((found.spread_low, 0.95), (found.spread_high, 0.05)):
+        variance = scatter / stats.chi2.ppf(share, 8) - error**2
+        assert end == pytest.approx(np.sqrt(variance), rel=2e-3)
+    assert found.spread_low < found.spread < found.spread_high
+    one = Population([person(0.0, 0.2)]).estimate()
+    assert np.isnan([one.spread, one.spread_low, one.spread_high]).all()
+
+
+@pytest.mark.parametrize("spread", [0.1, 0.4, 1.2])
+def test_the_spread_of_normal_people_is_held_as_often_as_said(spread: float) -> None:
+    errors, runs = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.2, 0.3]), 2000
+    seen = np.random.default_rng(9).normal(0.0, np.hypot(spread, errors), (runs, errors.size))
+    held = [low <= spread <= high for low, high in (scatter_interval(x, errors**2) for x in seen)]
+    assert np.mean(held) == pytest.approx(0.95, abs=4 * np.sqrt(0.95 * 0.05 / runs))
 
 
 def test_lapse_rates_are_those_that_all_answers_speak_for() -> None:

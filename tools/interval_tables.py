@@ -1,0 +1,110 @@
+"""The tables of docs/explanation/psychometrics.md from the answers of the campaign.
+
+    python tools/interval_tables.py
+
+writes them into the page, below the heads that it has. Of each test the last answer counts; parts
+of a run are put together. A test asks that the page has these very rows.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "explanation" / "psychometrics.md"
+ANSWERS = ROOT / "campaigns" / "statistics.jsonl"
+PEOPLE = {
+    "constant": "constant stimuli", "adaptive": "adaptive series",
+    "same-different": "same or different", "magnitude": "magnitude estimation",
+}  # fmt: skip
+RUNS_OF_PART, PEOPLES_STUDIES = 125, {"magnitude": 2000}
+_LINE = re.compile(r"(.*): ([\w ]+), (\w+): ([\d.]+), median length (\S+)")
+Row = dict[str, tuple[float, float]]
+
+
+def printed(test: str, path: Path = ANSWERS) -> list[str]:
+    """What the tests whose name begins so printed last, passed or not."""
+    last = {}
+    for line in path.read_text(encoding="utf-8").splitlines():
+        one = json.loads(line)
+        if one["test"].split("::")[1].startswith(test):
+            last[one["test"]] = one["printed"]
+    return [line for text in last.values() for line in text.splitlines()]
+
+
+def coverages() -> dict[tuple[str, str], tuple[int, Row]]:
+    """Runs, and share and length by parameter, of each run and kind of interval."""
+    found: dict[tuple[str, str, str], list[tuple[float, float]]] = {}
+    for line in printed("test_intervals_that_ask_again_hold_the_truth"):
+        match = _LINE.fullmatch(line)
+        assert match is not None, line
+        name, kind, parameter, share, length = match.groups()
+        found.setdefault((name, kind, parameter), []).append((float(share), float(length)))
+    rows: dict[tuple[str, str], tuple[int, Row]] = {}
+    for (name, kind, parameter), parts in found.items():
+        share, length = (sum(one) / len(parts) for one in zip(*parts, strict=True))
+        runs = RUNS_OF_PART * len(parts)
+        rows.setdefault((name, kind), (runs, {}))[1][parameter] = share, length
+    return rows
+
+
+def interval_rows() -> list[str]:
+    """Rows of the table of adaptive runs."""
+    rows = []
+    for (name, kind), (runs, of) in sorted(coverages().items()):
+        cells = " | ".join(
+            f"{100 * of[one][0]:.1f} % ({of[one][1]:.2g})"
+            for one in ("threshold", "width", "lapse_rate")
+        )
+        rows.append(f"| {name} | {runs} | {kind} | {cells} |")
+    return rows
+
+
+def people_rows() -> list[str]:
+    """Rows of the table of people together."""
+    rows = []
+    for line in printed("test_intervals_of_many_studies_hold_the_truth"):
+        name, rest = line.split(" ", 1)
+        of = ast.literal_eval(rest)
+        shares = " | ".join(f"{100 * of[one]:.1f} %" for one in ("persons", "population", "spread"))
+        rows.append(f"| {PEOPLE[name]} | {PEOPLES_STUDIES.get(name, 500)} | {shares} |")
+    return sorted(rows)
+
+
+def power_rows() -> list[str]:
+    """Rows of the table of errors of the first kind and of power."""
+    first = dict(line.split(": ", 1) for line in printed("test_a_pair_that_is_felt_alike"))
+    first |= dict(line.split(": ", 1) for line in printed("test_displays_that_are_alike"))
+    both = dict(line.split(": ", 1) for line in printed("test_planned_power_is_that_of"))
+    both |= dict(line.split(": ", 1) for line in printed("test_planned_contrasts_are"))
+    rows = []
+    for name in sorted({*first, *both}):
+        wrong = re.match(r"([\d.]+)", first.get(name, ""))
+        power = re.match(r"planned ([\d.]+).*done ([\d.]+)", both.get(name, ""))
+        cells = [wrong.group(1)] if wrong else [""]
+        cells += list(power.groups()) if power else ["", ""]
+        shown = (f"{100 * float(one):.1f} %" if one else "not yet run" for one in cells)
+        rows.append(f"| {name} | {' | '.join(shown)} |")
+    return rows
+
+
+def written(page: str) -> str:
+    """The page with these rows below each head."""
+    for head, rows in (
+        ("| adaptive run | runs |", interval_rows()),
+        ("| task | studies |", people_rows()),
+        ("| task | found where", power_rows()),
+    ):
+        table = re.compile(
+            rf"(^{re.escape(head)}[^\n]*\n\|[-| ]+\n)((?:\|[^\n]*\n)*)", re.MULTILINE
+        )
+        page, count = table.subn(lambda found, rows=rows: found[1] + "\n".join(rows) + "\n", page)
+        assert count == 1, head
+    return page
+
+
+if __name__ == "__main__":
+    PAGE.write_text(written(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
