@@ -23,7 +23,7 @@ from squeezefilm.study.conduct.sessions import (
     exposure,
 )
 from squeezefilm.study.conduct.study_device import ByHand, NoDevice, StudyDevice
-from squeezefilm.study.conduct.trial_by_trial import Examiner, conduct
+from squeezefilm.study.conduct.trial_by_trial import Examiner, Mark, conduct
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.design.trials import expected_duration
 from squeezefilm.study.identification.course import attention
@@ -43,6 +43,7 @@ class Desk:
         by_hand: is told which surface to put under the finger where no device plays; the
             participant must not read it. Without one nobody is told.
         progress: shows what goes on while it is open; it is closed whenever anybody is asked.
+        mark: is told what happens when, see `conduct`.
     """
 
     examiner: Examiner
@@ -50,6 +51,7 @@ class Desk:
     tell: Callable[[str], None] = print
     progress: Callable[[], AbstractContextManager[SayProgress]] | None = None
     by_hand: Callable[[str], None] | None = None
+    mark: Mark = lambda *_: None
 
 
 def open_study(
@@ -121,7 +123,7 @@ def run_session(
         desk.tell(f"participant {who}: go on with --participant {who}")
         run = StudyRun(store, session)
         try:
-            count = conduct(run, device, desk.examiner)
+            count = conduct(run, device, desk.examiner, mark=desk.mark)
         except KeyboardInterrupt:
             # Stopped by a person: what was answered up to here deserves its verification too.
             end_session(store, session, device)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,8 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.from_text import reads_text
+from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
 from squeezefilm.study.identification.course import course_of
 from squeezefilm.study.identification.exploration import ConditionMean, condition_means
@@ -23,6 +24,7 @@ from squeezefilm.study.identification.response_times import (
     response_time_summary,
 )
 from squeezefilm.study.record.answers import Answers, recorded_answers
+from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
@@ -54,9 +56,12 @@ Numbers = dict[str, Estimate]
 _POPULATION = "posterior, mixed model"
 
 
+@reads_text
 def analyze_study(
     store: StudyStore | str | Path,
     *,
+    design: NamedDesign | None = None,
+    columns: Mapping[str, str] | None = None,
     mixed: bool = False,
     resamples: int = 1000,
     seed: int = 0,
@@ -64,29 +69,37 @@ def analyze_study(
 ) -> dict[str, StudyAnalysis]:
     """The analysis of a study's answers, by display.
 
-    `store` is the study, or the path of its file. Main trials are analysed; practice and
-    familiarisation are left out, catch trials say who attended. Results say whose answers they
-    are. `mixed` adds statsmodels' mixed models to match-to-sample, whose stimuli must each have the
-    grating of their own period among the answers; `resamples` are its bootstraps'.
+    `store` is the study, or the path of its file; with a `design` the path of a CSV that another
+    program recorded of it, whose `columns` are read as `read_answers` says. Main trials are
+    analysed; practice and familiarisation are left out, catch trials say who attended. Results say
+    whose answers they are. `mixed` adds statsmodels' mixed models to match-to-sample, whose stimuli
+    must each have the grating of their own period among the answers; `resamples` are its
+    bootstraps'.
 
     Raises:
         InputError: stimuli that have no right answer, or no answer yet.
         RecordError: the file is damaged.
     """
-    if not isinstance(store, StudyStore):
+    if design is not None and not isinstance(store, StudyStore):
+        if design.task == "match-to-sample":
+            stimuli_and_answers(design)
+        answers, name = read_answers(store, design, columns), design.name
+    elif not isinstance(store, StudyStore):
         with StudyStore.open(store) as opened:
             return analyze_study(
                 opened, mixed=mixed, resamples=resamples, seed=seed, progress=progress
             )
-    if store.design.task == "match-to-sample":
-        stimuli_and_answers(store.design)
-    store.require_whole()
-    answers = recorded_answers(store)
+    else:
+        if store.design.task == "match-to-sample":
+            stimuli_and_answers(store.design)
+        store.require_whole()
+        answers, name = recorded_answers(store), str(store.study["name"])
     if not (answers.phase == "main").any():
-        raise InputError(f"{store.path} has no answered main trial yet; run some first")
+        where = store.path if isinstance(store, StudyStore) else store
+        raise InputError(f"{where} has no answered main trial yet; run some first")
     return analyze_answers(
         answers,
-        str(store.study["name"]),
+        name,
         mixed=mixed,
         resamples=resamples,
         seed=seed,
