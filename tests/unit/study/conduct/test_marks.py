@@ -28,9 +28,10 @@ class Silent(NoDevice):
         return Exploration(ended=self.ended)
 
 
-def marks(
-    folder: Path, device: NoDevice
-) -> tuple[list[tuple[str, float]], list[dict[str, object]]]:
+Told = list[tuple[str, float]]
+
+
+def marks(folder: Path, device: NoDevice) -> tuple[Told, list[Row]]:
     """What was told of a run on a clock that each look moves by a second, and what was recorded."""
     told: Told = []
     now = iter(range(1, 10_000))
