@@ -1,7 +1,6 @@
 """Verbs of the lab, and of a study up to its answers: plan, simulate, rehearse, run."""
 
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -94,11 +93,6 @@ def presets(as_json: AsJson = False) -> None:
             typer.echo(f"{one['name']}: {one['title']}")
 
 
-def _load_chain() -> None:
-    """What a second process needs before it takes fingers."""
-    import_module("squeezefilm.study.simulated.chain_tables")
-
-
 @study.command()
 def simulate(
     design: Design,
@@ -116,16 +110,16 @@ def simulate(
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.report.study.simulated_page import write_simulated
     from squeezefilm.report.study.terminal_analysis import show_simulated
-    from squeezefilm.second_process import second_process
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.answers import simulate_participants
     from squeezefilm.study.simulated.chain_tables import chain_tables
-    from squeezefilm.study.simulated.planned_power import on_one_display
 
     planned, people = load_design(design), load_observer(observer)
     if display is not None:
+        from squeezefilm.study.simulated.planned_power import on_one_display
+
         planned = on_one_display(planned, display)
-    with second_process(_load_chain), working(as_json) as step:
+    with working(as_json) as step:
         tables = chain_tables(planned, people, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables, step)
         written = None if out is None else write_simulated(found, out, step)
@@ -169,14 +163,13 @@ def power(asked: PowerOptions) -> None:
     from squeezefilm.report.study.terminal_analysis import show_power, show_precision
     from squeezefilm.report.subjects import plot
     from squeezefilm.results import write_whole
-    from squeezefilm.second_process import second_process
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.planned_power import planned_power
     from squeezefilm.study.simulated.planned_precision import planned_precision
 
     design, people = load_design(asked.design), load_observer(asked.observer)
     options = given(asked, leave="design observer first second precision out as_json")
-    with second_process(_load_chain), working(asked.as_json) as step:
+    with working(asked.as_json) as step:
         if asked.precision is not None:
             if asked.first is not None:
                 raise InputError("--precision asks of the whole design; leave the stimuli out")

@@ -147,10 +147,11 @@ def show_precision(found: PlannedPrecision) -> None:
 def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
     """Print each display's answers and the model's reasons, or what their analysis says."""
     from squeezefilm.study.simulated.answers import SimulatedAnswers
-    from squeezefilm.study.simulated.judgements import ASSUMED
 
     console = plain_console()
     if isinstance(study, SimulatedAnswers):
+        from squeezefilm.study.simulated.judgements import ASSUMED
+
         show_analyses(study.analyses)
         console.print("SIMULATED: nobody answered. Assumed beyond the observer's file:")
         for said in ASSUMED[study.answers.design.task]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -17,14 +17,15 @@ from squeezefilm.results import Result, stamp
 from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.judgements import ASSUMED, simulate_judgements
 from squeezefilm.study.simulated.participants import (
     SimulatedStudy,
     require_people,
     right_answers,
     simulate_matches,
 )
-from squeezefilm.study.tasks.analyze import StudyAnalysis, analyze_answers
+
+if TYPE_CHECKING:
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,6 +51,9 @@ class SimulatedAnswers(Result):
     @functools.cached_property
     def analyses(self) -> dict[str, StudyAnalysis]:
         """What they say, by display; a psychometric function a person takes some 20 ms."""
+        from squeezefilm.study.simulated.judgements import ASSUMED
+        from squeezefilm.study.tasks.analyze import analyze_answers
+
         design = self.tables.design
         return analyze_answers(
             self.answers, design.name, assumed=ASSUMED[design.task], seed=self.seed
@@ -127,6 +131,9 @@ def simulate_participants(
         raise InputError("the tables are of another design or observer; leave them out")
     if design.task == "match-to-sample":
         return simulate_matches(design, observer, participants, seed, found)
+    # Its psychometric functions are compiled, which a match-to-sample study need not wait for.
+    from squeezefilm.study.simulated.judgements import simulate_judgements
+
     answers = simulate_judgements(design, observer, participants, seed, found, progress)
     return SimulatedAnswers(found, answers, seed)
 

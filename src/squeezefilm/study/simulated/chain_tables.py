@@ -7,19 +7,20 @@ cost seconds.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import squeezefilm
 from squeezefilm import quantities as si
-from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
 from squeezefilm.kept_arrays import KeptArrays
@@ -35,8 +36,11 @@ from squeezefilm.perception.senses import Candidates, line_amplitudes, line_peri
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import config_hash
-from squeezefilm.second_process import later, values
+from squeezefilm.second_process import is_present, later, second_process, values
 from squeezefilm.study.design.study_design import StudyDesign
+
+if TYPE_CHECKING:
+    from squeezefilm.chain.rendered_texture import RenderAnalysis
 
 _AT_ONCE = 6
 """Fingers between two words of progress: of fewer, one of two processes waits for the other."""
@@ -106,8 +110,8 @@ class ChainTables:
         """Candidates of a surface that is not among the design's stimuli, such as a comparison
         that an adaptive method chose, shape (candidates,)."""
         found = _virtual(
-            self.plates[display],
             stimulus,
+            self.plates[display],
             self.observer,
             self.fingers[finger],
             self.apparatus[display],
@@ -129,7 +133,9 @@ def chain_tables(
     displays: tuple[Display, ...] | None = None,
     progress: SayProgress | None = None,
 ) -> ChainTables:
-    """The chain for every display, finger class and surface; cached within the process.
+    """The chain for every display, finger class and surface.
+
+    What was computed before is read from disk; of what was not, a second process computes a part.
 
     Args:
         design: the study; surfaces of its catch trials and adaptive series are felt when asked.
@@ -150,17 +156,16 @@ def chain_tables(
             f"{len(runs)} apparatus were given"
         )
     fingers = observer.fingers()
-    real = [[_real(one, observer, finger) for one in design.alternatives] for finger in fingers]
-    pieces = [
-        later(_of_finger, plate, design.stimuli, observer, one, run)
-        for plate, run in zip(plates, runs, strict=True)
-        for one in fingers
+    pieces: list[_Asked] = [
+        *(_Asked(_real, design.alternatives, (observer, one)) for one in fingers),
+        *(
+            _Asked(_virtual, design.stimuli, (plate, observer, one, run))
+            for plate, run in zip(plates, runs, strict=True)
+            for one in fingers
+        ),
     ]
-    found: list[list[_Felt]] = []
-    for first in range(0, len(pieces), _AT_ONCE):
-        plate, number = plates[first // len(fingers)], first % len(fingers)
-        tell(f"{plate.name}: finger {number + 1} of {len(fingers)}")
-        found += values(*pieces[first : first + _AT_ONCE])
+    found = _found(pieces, tell)
+    real, found = found[: len(fingers)], found[len(fingers) :]
     virtual = [found[k : k + len(fingers)] for k in range(0, len(found), len(fingers))]
     return ChainTables(
         design=design,
@@ -188,50 +193,123 @@ class _Felt:
     causes: Causes
 
 
-def _of_finger(
-    plate: Display,
-    stimuli: tuple[Stimulus, ...],
-    observer: Observer,
-    finger: FingerClass,
-    run: Apparatus,
-) -> list[_Felt]:
-    return [_virtual(plate, one, observer, finger, run) for one in stimuli]
-
-
 _KEPT = KeptArrays("percepts", [Path(squeezefilm.__file__).parent])
 _REASONS = len(dataclasses.fields(Causes))
 _NO_CAUSES: Causes = Causes(*(math.nan,) * _REASONS)
+_MOST_REMEMBERED = 8192
+_REMEMBERED: dict[str, _Felt] = {}
+"""What this process has met, by what was asked: where nothing is kept on disk, and to be quick."""
 
 
-@functools.lru_cache(maxsize=4096)
-def _virtual(
-    display: Display, stimulus: Stimulus, observer: Observer, finger: FingerClass, run: Apparatus
-) -> _Felt:
-    surface = stimulus.surface()
+@dataclass(frozen=True, slots=True, eq=False)
+class _Asked:
+    """What one finger gets of several surfaces: `feel` of each with the `rest` of its inputs."""
+
+    feel: Callable[..., _Felt]
+    surfaces: tuple[Any, ...]
+    rest: tuple[Any, ...]
+
+    def known(self) -> list[_Felt] | None:
+        """What was computed before; None unless all was."""
+        count = next(one for one in self.rest if isinstance(one, Observer)).candidates
+        found = [_known(_name(one, self.rest), count) for one in self.surfaces]
+        return None if None in found else [one for one in found if one is not None]
+
+    def remember(self, found: list[_Felt]) -> None:
+        """What another process found need not be found, nor read, again."""
+        for one, felt in zip(self.surfaces, found, strict=True):
+            _remember(_name(one, self.rest), felt)
+
+
+def _felt_of(feel: Callable[..., _Felt], surfaces: tuple[Any, ...], *rest: Any) -> list[_Felt]:
+    return [feel(one, *rest) for one in surfaces]
+
+
+def _found(asked: list[_Asked], tell: SayProgress) -> list[list[_Felt]]:
+    """What each finger gets, what is not known yet by two processes."""
+    found = [one.known() for one in asked]
+    lacking = [at for at, known in enumerate(found) if known is None]
+    with contextlib.ExitStack() as stack:
+        # One that is started when nothing lacks would still be loading when all is done.
+        if lacking and not is_present():
+            stack.enter_context(second_process(_load))
+        pieces = [
+            later(_felt_of, asked[at].feel, asked[at].surfaces, *asked[at].rest) for at in lacking
+        ]
+        for first in range(0, len(pieces), _AT_ONCE):
+            tell(f"what fingers feel: {first + 1} of {len(pieces)}")
+            now = slice(first, first + _AT_ONCE)
+            for at, felt in zip(lacking[now], values(*pieces[now]), strict=True):
+                found[at] = felt
+                asked[at].remember(felt)
+    return [one for one in found if one is not None]
+
+
+def _load() -> None:
+    """What a second process needs before it takes fingers."""
+    import_module("squeezefilm.chain.rendered_texture")
+
+
+def _name(surface: Stimulus | Grating, rest: tuple[Any, ...]) -> str:
+    """What is asked, as text: the surface, and all else that decides what is felt of it."""
+    parts = " ".join(_hash(one) for one in rest)
+    if isinstance(surface, Grating):
+        return f"real {parts} {config_hash(surface)}"
     # Two kinds of texture may have the same numbers, and the text of an image leaves out pixels.
-    asked = f"{_hash((display, observer, finger, run))} {surface!r} {config_hash(surface)} "
-    asked += repr(stimulus.period)
-    count, lines = observer.candidates, line_periods().size
+    texture = surface.surface()
+    return f"{parts} {texture!r} {config_hash(texture)} {surface.period!r}"
+
+
+def _known(asked: str, count: int) -> _Felt | None:
+    """What was computed before: in this process, or by what is on disk."""
+    if asked in _REMEMBERED:
+        return _REMEMBERED[asked]
+    lines = line_periods().size
     kept = _KEPT.get(asked, 2 * count + lines + _REASONS)
-    if kept is not None:
-        parts = np.split(kept, np.cumsum([count, count, lines]))
-        return _Felt(Candidates(parts[0], parts[1]), parts[2], Causes(*parts[3].tolist()))
+    if kept is None:
+        return None
+    parts = np.split(kept, np.cumsum([count, count, lines]))
+    found = _Felt(Candidates(parts[0], parts[1]), parts[2], Causes(*parts[3].tolist()))
+    _remember(asked, found)
+    return found
+
+
+def _remember(asked: str, found: _Felt) -> None:
+    while len(_REMEMBERED) >= _MOST_REMEMBERED:
+        del _REMEMBERED[next(iter(_REMEMBERED))]
+    _REMEMBERED[asked] = found
+
+
+def _keep(asked: str, found: _Felt) -> _Felt:
+    one = found.candidates
+    reasons = dataclasses.astuple(found.causes)
+    _KEPT.put(asked, np.concatenate([one.period, one.d_prime, found.rhythm, reasons]))
+    _remember(asked, found)
+    return found
+
+
+def _virtual(
+    stimulus: Stimulus, display: Display, observer: Observer, finger: FingerClass, run: Apparatus
+) -> _Felt:
+    asked = _name(stimulus, (display, observer, finger, run))
+    if (known := _known(asked, observer.candidates)) is not None:
+        return known
     found, played = percept(display, stimulus, observer, finger, run)
     why = causes(stimulus, found, played, observer, finger)
-    one, rhythm = found.candidates, found.evidence.rhythm
-    _KEPT.put(asked, np.concatenate([one.period, one.d_prime, rhythm, dataclasses.astuple(why)]))
-    return _Felt(one, rhythm, why)
+    return _keep(asked, _Felt(found.candidates, found.evidence.rhythm, why))
+
+
+def _real(grating: Grating, observer: Observer, finger: FingerClass) -> _Felt:
+    asked = _name(grating, (observer, finger))
+    if (known := _known(asked, observer.candidates)) is not None:
+        return known
+    found = grating_percept(grating, observer, finger)
+    return _keep(asked, _Felt(found.candidates, found.evidence.rhythm, _NO_CAUSES))
 
 
 @functools.lru_cache(maxsize=256)
-def _hash(inputs: tuple[Display, Observer, FingerClass, Apparatus]) -> str:
-    return config_hash(inputs)
-
-
-@functools.lru_cache(maxsize=4096)
-def _real(grating: Grating, observer: Observer, finger: FingerClass) -> _Felt:
-    found = grating_percept(grating, observer, finger)
-    return _Felt(found.candidates, found.evidence.rhythm, _NO_CAUSES)
+def _hash(input: Display | Observer | FingerClass | Apparatus) -> str:
+    return config_hash(input)
 
 
 def _competing(tree: Any) -> Candidates:
