@@ -1,5 +1,6 @@
 """Verbs of the lab, and of a study up to its answers: plan, simulate, rehearse, run."""
 
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -93,6 +94,14 @@ def presets(as_json: AsJson = False) -> None:
             typer.echo(f"{one['name']}: {one['title']}")
 
 
+def drawing_by_two(out: Path | None) -> AbstractContextManager[object]:
+    """A second process that draws its share of the pages in `out`; none where nothing is drawn."""
+    from squeezefilm.report.study.pictures import load_drawing
+    from squeezefilm.second_process import second_process
+
+    return nullcontext() if out is None else second_process(load_drawing)
+
+
 @study.command()
 def simulate(
     design: Design,
@@ -119,7 +128,7 @@ def simulate(
         from squeezefilm.study.simulated.planned_power import on_one_display
 
         planned = on_one_display(planned, display)
-    with working(as_json) as step:
+    with drawing_by_two(out), working(as_json) as step:
         tables = chain_tables(planned, people, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables, step)
         written = None if out is None else write_simulated(found, out, step)
