@@ -42,8 +42,8 @@ from squeezefilm.study.design.study_design import StudyDesign
 if TYPE_CHECKING:
     from squeezefilm.chain.rendered_texture import RenderAnalysis
 
-_AT_ONCE = 6
-"""Fingers between two words of progress: of fewer, one of two processes waits for the other."""
+_AT_ONCE = 3
+"""Fingers that each of two processes has between two words of progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,15 +157,15 @@ def chain_tables(
         )
     fingers = observer.fingers()
     pieces: list[_Asked] = [
-        *(_Asked(_real, design.alternatives, (observer, one)) for one in fingers),
         *(
             _Asked(_virtual, design.stimuli, (plate, observer, one, run))
             for plate, run in zip(plates, runs, strict=True)
             for one in fingers
         ),
+        *(_Asked(_real, design.alternatives, (observer, one)) for one in fingers),
     ]
     found = _found(pieces, tell)
-    real, found = found[: len(fingers)], found[len(fingers) :]
+    real, found = found[-len(fingers) :], found[: -len(fingers)]
     virtual = [found[k : k + len(fingers)] for k in range(0, len(found), len(fingers))]
     return ChainTables(
         design=design,
@@ -233,13 +233,17 @@ def _found(asked: list[_Asked], tell: SayProgress) -> list[list[_Felt]]:
         # One that is started when nothing lacks would still be loading when all is done.
         if lacking and not is_present():
             stack.enter_context(second_process(_load))
-        pieces = [
-            later(_felt_of, asked[at].feel, asked[at].surfaces, *asked[at].rest) for at in lacking
-        ]
-        for first in range(0, len(pieces), _AT_ONCE):
-            tell(f"what fingers feel: {first + 1} of {len(pieces)}")
-            now = slice(first, first + _AT_ONCE)
-            for at, felt in zip(lacking[now], values(*pieces[now]), strict=True):
+        half = -(-len(lacking) // 2)
+        for first in range(0, half, _AT_ONCE):
+            # One process begins with the first, the other with the last: of two displays each
+            # solves one.
+            now = lacking[:half][first : first + _AT_ONCE]
+            now += lacking[half:][first : first + _AT_ONCE]
+            tell(f"what fingers feel: {2 * first + 1} of {len(lacking)}")
+            pieces = [
+                later(_felt_of, asked[at].feel, asked[at].surfaces, *asked[at].rest) for at in now
+            ]
+            for at, felt in zip(now, values(*pieces), strict=True):
                 found[at] = felt
                 asked[at].remember(felt)
     return [one for one in found if one is not None]
@@ -367,8 +371,12 @@ def causes(
 
 
 def _line(way: si.FloatArray, values: si.FloatArray, observer: Observer, period: si.Metre) -> float:
-    lines = line_amplitudes(along_way(way, values, observer, (1.0, 1.0)))
-    return float(np.interp(period, line_periods(), lines))
+    periods = line_periods()
+    # What lies beside the period is all that is asked.
+    at = int(np.searchsorted(periods, period))
+    near = slice(max(at - 1, 0), at + 1)
+    lines = line_amplitudes(along_way(way, values, observer, (1.0, 1.0)), near)
+    return float(np.interp(period, periods[near], lines))
 
 
 def _ripple_share(played: RenderAnalysis) -> si.Dimensionless:
