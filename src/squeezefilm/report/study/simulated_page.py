@@ -51,6 +51,7 @@ ANSWER_COLUMNS = (
     Column("phase", "practice, main or catch"),
     COLUMNS[5],
     Column("second_stimulus", "Name of the second stimulus, if there are two"),
+    Column("adaptive_series", "Series that chose the comparison, if any"),
     Column("intensity", "Of an adaptive comparison, in parts of the reference", "", "number"),
     Column("choice", "What was answered"),
     Column("estimate", "Number given", "", "number"),

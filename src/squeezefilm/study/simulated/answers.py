@@ -80,7 +80,7 @@ class SimulatedAnswers(Result):
         """One row a trial, units in the names."""
         a = self.answers
         names = [one.name for one in a.surfaces]
-        answers = a.design.answers
+        answers, series = a.design.answers, [one.name for one in a.design.adaptive]
         return [
             {
                 "participant": int(a.participant[at]),
@@ -89,6 +89,7 @@ class SimulatedAnswers(Result):
                 "phase": str(a.phase[at]),
                 "stimulus": names[a.first[at]],
                 "second_stimulus": names[a.second[at]] if a.second[at] >= 0 else "",
+                "adaptive_series": series[a.series[at]] if a.series[at] >= 0 else "",
                 "intensity": float(a.intensity[at]),
                 "choice": answers[a.choice[at]] if a.choice[at] >= 0 else "",
                 "estimate": float(a.estimate[at]),

@@ -10,6 +10,7 @@ import pytest
 
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.perception.observer import load_observer
+from squeezefilm.report.study.simulated_page import ANSWER_COLUMNS
 from squeezefilm.study.conduct.rehearsal import rehearse
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.record import foreign
@@ -17,6 +18,9 @@ from squeezefilm.study.record.answers import recorded_answers
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.foreign import PEOPLE, columns_of, read_answers
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.tables import csv_text
+from squeezefilm.study.simulated.answers import SimulatedAnswers, simulate_participants
+from squeezefilm.study.tasks.analyze import analyze_study
 
 Given = Callable[[str], Path]
 DESIGN = load_design("friction-jnd")
@@ -54,6 +58,23 @@ def test_what_a_study_exports_is_read_as_what_it_recorded(name: str, tmp_path: P
     ):  # fmt: skip
         np.testing.assert_array_equal(getattr(found, key), getattr(own, key), err_msg=key)
     assert set(found.exploration) == set(own.exploration)
+
+
+@pytest.mark.slow
+def test_what_simulated_people_answered_is_analysed_as_by_the_verb_itself(tmp_path: Path) -> None:
+    simulated = simulate_participants(DESIGN, load_observer("fingertip"), 3, 7)
+    assert isinstance(simulated, SimulatedAnswers)
+    rows = [{"origin": "simulated", **row} for row in simulated.rows()]
+    path = tmp_path / "trials.csv"
+    path.write_text(csv_text(rows, ANSWER_COLUMNS), encoding="utf-8", newline="")
+    # Everything else is the design's or the file's; people are numbers there.
+    found = analyze_study(path, design=DESIGN, columns={"participant_id": "participant"}, seed=7)
+    for display, one in simulated.analyses.items():
+        own, again = one.summary(), found[display].summary()
+        for key in ("pooled", "spread_over_people", "more", "trials"):
+            assert again[key] == own[key]
+        for key in ("conditions", "response_times"):
+            assert sorted(map(repr, again[key])) == sorted(map(repr, own[key]))
 
 
 def test_columns_may_be_called_otherwise_and_what_is_right_follows(given: Given) -> None:
