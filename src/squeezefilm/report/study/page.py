@@ -27,12 +27,13 @@ from squeezefilm.report.study import task_figures
 from squeezefilm.report.study import time_figures as times
 from squeezefilm.report.study.pictures import pictures, png_files
 from squeezefilm.report.study.words import (
-    CONDITION_HEAD,
     PERSON_HEAD,
+    condition_head,
     condition_rows,
     key_rows,
     person_rows,
     read_first,
+    whose,
 )
 from squeezefilm.study.tasks.findings import TaskAnalysis
 
@@ -130,7 +131,7 @@ def write_overview(
     text = page(
         escape(f"{name}: what to read first"),
         escape(name),
-        f"<b>{escape(printable(origin))}</b> answers, analysed by squeezefilm",
+        f"<b>{escape(printable(whose(origin)))}</b>, analysed by squeezefilm",
         sections + more,
         "What to read first, by display.",
     )
@@ -178,7 +179,7 @@ def study_page(
     """The page as text; `figures` lie beside it, by the names of their files."""
     title = escape(printable(analysis.name))
     head = ("Quantity", "Value", "Remark")
-    numbers = text_table(f"{analysis.origin} answers", head, key_rows(analysis))
+    numbers = text_table(whose(analysis.origin), head, key_rows(analysis))
     details = _task if isinstance(analysis, TaskAnalysis) else _identification
     sections = (
         section("Read first", bullets(read_first(analysis)))
@@ -192,7 +193,7 @@ def study_page(
     return page(
         f"{title}: {kind}",
         title,
-        f"<b>{escape(printable(analysis.origin))}</b> answers, analysed by squeezefilm",
+        f"<b>{escape(printable(whose(analysis.origin)))}</b>, analysed by squeezefilm",
         sections,
         f"{stamped(provenance, 'SHA-256 of the answers')} ·\n"
         f"seed of the resampling {escape(str(provenance['seed']))}.\n"
@@ -206,7 +207,7 @@ def _task(analysis: Any) -> str:
         caption = "Answers by stimulus; intervals as the numbers say"
         found += section(
             "Stimuli in numbers",
-            text_table(caption, CONDITION_HEAD, condition_rows(analysis)),
+            text_table(caption, condition_head(analysis), condition_rows(analysis)),
         )
     caption = f"{analysis.measure} of each person"
     found += section("People in numbers", text_table(caption, PERSON_HEAD, person_rows(analysis)))

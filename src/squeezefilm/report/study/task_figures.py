@@ -175,10 +175,12 @@ def persons(analysis: TaskAnalysis) -> Figure:
 def sensitivity(analysis: TaskAnalysis) -> Figure:
     """d′ of each comparison from the reference."""
     scale, label = _scale(analysis)
-    found = [(one.value, one.d_prime) for one in analysis.conditions if one.d_prime is not None]
-    best = max(found, key=lambda one: one[1].value)
+    known = [one for one in analysis.conditions if one.d_prime is not None]
+    found = [(one.value, one.d_prime) for one in known if one.d_prime is not None]
+    best, name = max(zip(found, known, strict=True), key=lambda one: one[0][1].value)
     figure = style.new_figure(
-        f"Most distinct from the reference: {scale * best[0]:.3g}, d′ = {estimate_words(best[1])}",
+        f"Most distinct from the reference: {style.plain(name.name, 30)}, "
+        f"d′ = {estimate_words(best[1])}",
         f"{data_of(analysis)}; means over people, proportions corrected (Hautus 1995)",
         3.8,
     )

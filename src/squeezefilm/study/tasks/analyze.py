@@ -310,11 +310,14 @@ def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
     """What response times are told apart by: the comparison, the difference or the stimulus."""
     if (main.series >= 0).any():
         return main.series, tuple(one.name for one in main.design.adaptive)
-    names = tuple(one.name for one in main.surfaces)
+    # By value, as they are read, and not in the order in which somebody met them first.
+    order = np.argsort(main.values, kind="stable")
+    place = np.argsort(order, kind="stable")
+    names = tuple(main.surfaces[one].name for one in order)
     if main.design.two_surfaces:
         here = main.design.judged_value(main.design.stimulus(main.design.reference))
-        return np.where(main.values[main.first] != here, main.first, main.second), names
-    return main.first, names
+        return place[np.where(main.values[main.first] != here, main.first, main.second)], names
+    return place[main.first], names
 
 
 def _times(
