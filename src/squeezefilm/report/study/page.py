@@ -209,7 +209,7 @@ def _task(analysis: Any) -> str:
             "Stimuli in numbers",
             text_table(caption, condition_head(analysis), condition_rows(analysis)),
         )
-    caption = f"{analysis.measure} of each person"
+    caption = f"{analysis.measure[:1].upper()}{analysis.measure[1:]} of each person"
     found += section("People in numbers", text_table(caption, PERSON_HEAD, person_rows(analysis)))
     if analysis.assumed:
         found += section("What the simulated answers assume", bullets(analysis.assumed))
