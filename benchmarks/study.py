@@ -1,10 +1,13 @@
-"""How fast identification trials are analysed, what limits it, and against what.
+"""How fast `study simulate` is, and how fast identification trials are analysed; what limits it.
 
-Run `python benchmarks/study.py` (some 30 s). 10 000 simulated participants with 60 trials each are
-analysed with everything `analyze_identification` does, 1 000 resamples of people included; then
-the same confusion matrix, information transfer and participant bootstrap in plain pandas (rows of
-drawn people put together, `crosstab`, the jackknife trial by trial), of which as many resamples
-are made as show its rate. One process, one core.
+Run `python benchmarks/study.py` (some 60 s). The verb is timed as it is typed, in processes of its
+own: with nothing felt on disk (but compiled), with it there, with pages, and for a thousand people;
+beside each its processor time (its second process's too) and the ratio to a Python that only loads
+what every verb needs. Then 10 000 simulated participants with 60 trials each are analysed with
+everything `analyze_identification` does, 1 000 resamples of people included; and the same confusion
+matrix, information transfer and participant bootstrap in plain pandas (rows of drawn people put
+together, `crosstab`, the jackknife trial by trial), of which as many resamples are made as show its
+rate. These in one process, on one core.
 """
 
 from __future__ import annotations
@@ -15,7 +18,12 @@ import os
 os.environ["OMP_NUM_THREADS"] = "1"
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
+import resource
+import subprocess
+import sys
+import tempfile
 import time
+from pathlib import Path
 
 import numpy as np
 import pandas
@@ -68,8 +76,45 @@ def plain_jackknife(table: np.ndarray) -> float:
     return estimate
 
 
+VERB = ["-m", "squeezefilm", "study", "simulate", "biet2008-gratings", "--seed", "7"]
+LEAST = ["-c", "import numpy, pydantic, typer, rich.console, tomlkit"]
+
+
+def timed(arguments: list[str], cache: str) -> tuple[float, float]:
+    """Seconds on the wall and of processors that a Python takes."""
+    before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    environment = {**os.environ, "SQUEEZEFILM_CACHE": cache}
+    subprocess.run([sys.executable, *arguments], env=environment, check=True, capture_output=True)
+    wall, after = time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
+    return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def verbs() -> None:
+    """Print what the verb takes, and what limits it."""
+    with tempfile.TemporaryDirectory() as folder:
+        pages = ["--out", str(Path(folder) / "pages")]
+        # Compiles what is not compiled yet, which is not timed.
+        timed([*VERB, *pages], str(Path(folder) / "compiling"))
+        least, _ = min(timed(LEAST, folder) for _ in range(3))
+        kept = str(Path(folder) / "kept")
+        print(f"least: {least:.2f} s for a Python with NumPy and what reads files")
+        for said, more in (
+            ("12 people, nothing felt on disk", ["--participants", "12"]),
+            ("12 people, all on disk", ["--participants", "12"]),
+            ("12 people, with pages", ["--participants", "12", *pages]),
+            ("1000 people", ["--participants", "1000"]),
+        ):
+            wall, busy = timed([*VERB, *more], kept)
+            print(f"  {said:32s} {wall:6.2f} s, {busy:5.2f} s of processors, {wall / least:4.1f} ×")
+    print(
+        "What limits it: at first the chain from plate to skin for 60 surfaces under 6 fingers, "
+        "half of it predictions; on disk, loading modules; with pages, drawing 14 figures."
+    )
+
+
 def main() -> None:
     """Print times, what limits them, and the ratio to the peer at equal numbers."""
+    verbs()
     who, stimulus, choice, times = trials()
     stages: list[tuple[str, float]] = []
 

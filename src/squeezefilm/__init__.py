@@ -43,6 +43,7 @@ _NAMES = {
     # Rendered, played, recorded
     "render_texture": "chain.rendered_texture",
     "play_texture": "bench.play",
+    "play": "study.conduct.playback",
     "read_trace": "session.record.trace",
     # Measured
     "read_recording": "measure.recordings.read",

@@ -79,6 +79,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.adaptive.bayesian import AdaptiveDesign as _AdaptiveDesign
     from squeezefilm.study.adaptive.bayesian import BayesianAdaptive as BayesianAdaptive
     from squeezefilm.study.adaptive.bayesian import Interest
+    from squeezefilm.study.conduct.playback import Playable, Playback
     from squeezefilm.study.conduct.trial_by_trial import Examiner
     from squeezefilm.study.design.plan import StudyPlan
     from squeezefilm.study.design.study_design import NamedDesign
@@ -88,10 +89,11 @@ if TYPE_CHECKING:
         PsychometricFunction as _PsychometricFunction,
     )
     from squeezefilm.study.psychometric.prior import PsychometricPrior as PsychometricPrior
+    from squeezefilm.study.record.store import StudyStore
     from squeezefilm.study.simulated.answers import SimulatedAnswers
     from squeezefilm.study.simulated.chain_tables import ChainTables
     from squeezefilm.study.simulated.participants import SimulatedStudy
-    from squeezefilm.study.tasks.analyze import analyze_study as analyze_study
+    from squeezefilm.study.tasks.analyze import StudyAnalysis, Tell
     from squeezefilm.texture_file import NamedTexture
     from squeezefilm.texture_file import load_texture as load_texture
     from squeezefilm.texture_file import save_texture as save_texture
@@ -344,6 +346,18 @@ if TYPE_CHECKING:
         progress: SayProgress | None = ...,
     ) -> PlayResult:
         """Play a texture on a device or on a twin of the display, in real time, and judge the record."""
+    def play(
+        display: str | Path,
+        surface: Playable | str | Path,
+        *,
+        drive: str = ...,
+        amplitude_per_pickup: MetrePerVolt | str | None = ...,
+        stroke: str = ...,
+        rate: Hertz | str = ...,
+        out: str | Path | None = ...,
+        lsl: bool | str = ...,
+    ) -> Playback:
+        """A handle on a surface that is started and stopped while a program goes on."""
     def fit_recording(
         recording: NamedRecording | str | Path, display: NamedDisplay | str | Path | None = ...
     ) -> Fit:
@@ -408,6 +422,7 @@ if TYPE_CHECKING:
         tell: Callable[[str], None] = ...,
         progress: Callable[[], AbstractContextManager[Callable[[str], None]]] | None = ...,
         by_hand: str = ...,
+        lsl: bool | str = ...,
     ) -> str:
         """Run a session of a study; stopped by Ctrl-C, it goes on later where it stopped. Returns how"""
     def simulate_participants(
@@ -419,6 +434,17 @@ if TYPE_CHECKING:
         progress: Callable[[str], None] | None = ...,
     ) -> SimulatedStudy | SimulatedAnswers:
         """Answers of simulated participants to a design: a `SimulatedStudy` of match-to-sample, else"""
+    def analyze_study(
+        store: StudyStore | str | Path,
+        *,
+        design: NamedDesign | str | Path | None = ...,
+        columns: Mapping[str, str] | None = ...,
+        mixed: bool = ...,
+        resamples: int = ...,
+        seed: int = ...,
+        progress: Tell | None = ...,
+    ) -> dict[str, StudyAnalysis]:
+        """The analysis of a study's answers, by display."""
     class AdaptiveDesign(_AdaptiveDesign):
         """What a Bayesian choice of stimuli starts from."""
         def __init__(

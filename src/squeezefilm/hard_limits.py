@@ -191,6 +191,9 @@ PARTICIPANT_TRIALS = HardLimit("trials of one participant", 1, 20_000, "a month 
 SIMULATED_TRIALS = HardLimit(
     "answers of simulated people", 1, 20_000_000, "eighty bytes for each of them"
 )
+FOREIGN_TRIALS = HardLimit(
+    "trials in a file of another program", 1, 500_000, "a row is made for each of them"
+)
 PLANNED_TRIALS = HardLimit(
     "planned trials", 1, 500_000, "each participant's order is made and kept"
 )

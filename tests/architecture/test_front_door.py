@@ -46,6 +46,7 @@ NAMES = (
     "load_display",
     "load_texture",
     "plan_study",
+    "play",
     "play_texture",
     "plot",
     "predict",

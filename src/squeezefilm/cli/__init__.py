@@ -19,6 +19,7 @@ from squeezefilm.cli import measure  # noqa: F401 # isort: skip
 from squeezefilm.cli import calibration  # noqa: F401 # isort: skip
 from squeezefilm.cli import study  # noqa: F401 # isort: skip
 from squeezefilm.cli import felt  # noqa: F401 # isort: skip
+from squeezefilm.cli import study_file  # noqa: F401 # isort: skip
 from squeezefilm.cli import cache  # noqa: F401 # isort: skip
 from squeezefilm.cli.app import app
 from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning

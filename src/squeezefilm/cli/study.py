@@ -1,7 +1,7 @@
-"""Verbs of the lab, and of a study: plan, run, look, export, merge, take somebody out."""
+"""Verbs of the lab, and of a study up to its answers: plan, simulate, rehearse, run."""
 
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -94,9 +94,12 @@ def presets(as_json: AsJson = False) -> None:
             typer.echo(f"{one['name']}: {one['title']}")
 
 
-def _load_chain() -> None:
-    """What a second process needs before it takes fingers."""
-    import_module("squeezefilm.study.simulated.chain_tables")
+def drawing_by_two(out: Path | None) -> AbstractContextManager[object]:
+    """A second process that draws its share of the pages in `out`; none where nothing is drawn."""
+    from squeezefilm.report.study.pictures import load_drawing
+    from squeezefilm.second_process import second_process
+
+    return nullcontext() if out is None else second_process(load_drawing)
 
 
 @study.command()
@@ -116,16 +119,16 @@ def simulate(
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.report.study.simulated_page import write_simulated
     from squeezefilm.report.study.terminal_analysis import show_simulated
-    from squeezefilm.second_process import second_process
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.answers import simulate_participants
     from squeezefilm.study.simulated.chain_tables import chain_tables
-    from squeezefilm.study.simulated.planned_power import on_one_display
 
     planned, people = load_design(design), load_observer(observer)
     if display is not None:
+        from squeezefilm.study.simulated.planned_power import on_one_display
+
         planned = on_one_display(planned, display)
-    with second_process(_load_chain), working(as_json) as step:
+    with drawing_by_two(out), working(as_json) as step:
         tables = chain_tables(planned, people, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables, step)
         written = None if out is None else write_simulated(found, out, step)
@@ -176,7 +179,6 @@ def power(asked: PowerOptions) -> None:
     from squeezefilm.report.study.terminal_analysis import show_power, show_precision
     from squeezefilm.report.subjects import plot
     from squeezefilm.results import write_whole
-    from squeezefilm.second_process import second_process
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.planned_contrast import planned_contrast
     from squeezefilm.study.simulated.planned_power import planned_power
@@ -184,7 +186,7 @@ def power(asked: PowerOptions) -> None:
 
     design, people = load_design(asked.design), load_observer(asked.observer)
     options = given(asked, leave="design observer first second precision against out as_json")
-    with second_process(_load_chain), working(asked.as_json) as step:
+    with working(asked.as_json) as step:
         if asked.precision is not None:
             if asked.against is not None:
                 raise InputError("--precision and --against ask two things; give one of them")
@@ -294,6 +296,10 @@ class RunOptions:
             "nowhere, or a file to watch in a second window."
         ),
     ] = "terminal"
+    lsl: Annotated[
+        bool,
+        typer.Option("--lsl", help="Markers for the lab streaming layer; needs squeezefilm[lsl]."),
+    ] = False
     station: Annotated[int, typer.Option(help="Which station this is, from 0.")] = 0
     stations: Annotated[int, typer.Option(help="How many stations there are.")] = 1
 
@@ -315,115 +321,3 @@ def run(asked: RunOptions) -> None:
         progress=lambda: working(quiet=True),
     )
     typer.echo(ended)
-
-
-@study.command()
-def status(store: Store, as_json: AsJson = False) -> None:
-    """Show who is enrolled and how far they are."""
-    from squeezefilm.report.study.terminal import show_status
-    from squeezefilm.study.record.store import StudyStore
-
-    with StudyStore.open(store) as found:
-        if as_json:
-            print_json({"study": found.study["name"], "participants": found.participants()})
-        else:
-            show_status(found)
-
-
-@study.command()
-def export(
-    store: Store,
-    format: Annotated[str, typer.Option("--format", help="csv, psych-ds or bids.")] = "csv",
-    out: Annotated[
-        Path | None,
-        written_to("Folder; beside the study's file without it."),
-    ] = None,
-) -> None:
-    """Write all answers as CSV, a Psych-DS dataset or a BIDS behavioural dataset."""
-    from squeezefilm.study.record.exports import export_study
-    from squeezefilm.study.record.store import StudyStore
-
-    with StudyStore.open(store) as found:
-        typer.echo(f"wrote {export_study(found, format, out)}")  # type: ignore[arg-type] # checked there
-
-
-@study.command()
-def merge(
-    store: Store,
-    others: Annotated[list[Path], typer.Argument(metavar="OTHER.sqlite …", help="To add.")],
-) -> None:
-    """Add other stations' files to this one; merging again changes nothing."""
-    from squeezefilm.report.study.terminal import show_merge
-    from squeezefilm.study.record.merge import merge as add
-    from squeezefilm.study.record.store import StudyStore
-
-    with StudyStore.open(store) as found:
-        for other in others:
-            show_merge(add(found, other), str(other))
-
-
-@study.command()
-def backup(store: Store) -> None:
-    """Copy the study's file, as it is now, into the folder of backups beside it."""
-    from squeezefilm.study.record.store import StudyStore
-
-    with StudyStore.open(store) as found:
-        typer.echo(f"wrote {found.back_up()}")
-
-
-@study.command()
-def delete_participant(
-    store: Store,
-    participant: Annotated[str, typer.Argument(help="The pseudonym.")],
-    yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
-) -> None:
-    """Take a participant out of the file, its traces, backups and exports, without a trace."""
-    from squeezefilm.report.study.terminal import show_deletion
-    from squeezefilm.study.record.deletion import delete_participant as take_out
-    from squeezefilm.study.record.store import StudyStore
-
-    with StudyStore.open(store) as found:
-        if not yes:
-            typer.confirm(f"Delete every answer and trace of {participant} for good?", abort=True)
-        show_deletion(take_out(found, participant), participant)
-
-
-@study.command()
-def analyze(
-    store: Store,
-    out: Annotated[
-        Path | None,
-        written_to("Folder for numbers, figures and a page per display."),
-    ] = None,
-    mixed: Annotated[
-        bool,
-        typer.Option(
-            "--mixed",
-            help="Mixed models of statsmodels too, of match-to-sample (needs the extra 'models').",
-        ),
-    ] = False,
-    seed: Annotated[int, typer.Option(help="Of the bootstraps.")] = 0,
-    as_json: AsJson = False,
-) -> None:
-    """Analyse what was recorded: thresholds, sensitivity, exponents or confusions, with
-    intervals, and how people worked."""
-    from squeezefilm.report.study.terminal_analysis import show_analyses
-    from squeezefilm.study.record.store import StudyStore
-    from squeezefilm.study.tasks.analyze import analyze_study
-
-    with (
-        StudyStore.open(store) as found,
-        working(as_json) as step,
-    ):
-        analyses = analyze_study(found, mixed=mixed, seed=seed, progress=step)
-        page = None
-        if out is not None:
-            from squeezefilm.report.study.page import write_overview
-
-            page = write_overview(analyses, out, step)
-    if as_json:
-        print_json({display: one.summary() for display, one in analyses.items()})
-        return
-    show_analyses(analyses)
-    if page is not None:
-        typer.echo(f"page: {page}")

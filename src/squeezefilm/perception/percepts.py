@@ -10,11 +10,11 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.rendered_texture import RenderAnalysis, render_texture
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import FingerClass, Observer
@@ -32,6 +32,9 @@ from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.texture_file import TextureFile
+
+if TYPE_CHECKING:
+    from squeezefilm.chain.rendered_texture import RenderAnalysis
 
 CONTROL_RATE: si.Hertz = 9.6e3
 _SEED = 0
@@ -80,6 +83,9 @@ def percept(
     The lateral stretch of the skin over the way, from 2 mm after each turn on. The sensor's noise
     has a fixed seed. Raises as `render_texture` does.
     """
+    # What was felt before is read from disk, and needs neither plates nor loop.
+    from squeezefilm.chain.rendered_texture import render_texture
+
     run = apparatus or Apparatus()
     played = render_texture(
         with_finger(display, finger),

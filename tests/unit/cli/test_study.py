@@ -1,4 +1,4 @@
-"""The verbs of a study: what each calls with which values, what it says, what it leaves behind."""
+"""The verbs of a study, and of its file (`study_file`): what each calls, says, leaves behind."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import typer
 from tests.e2e.program import Done
 from tests.e2e.program import run as program
 
+from squeezefilm.cli import study_file
 from squeezefilm.cli.study import study
 from squeezefilm.perception.observer import load_observer
 from squeezefilm.presets import study_names
@@ -51,6 +52,7 @@ def test_without_a_verb_the_verbs_are_listed() -> None:
     done = run()
     said = done.stdout + done.stderr
     assert "Missing command" not in said
+    assert study_file.study is study
     for command in study.registered_commands:
         assert (command.name or command.callback.__name__).replace("_", "-") in said  # type: ignore[union-attr]
 
@@ -99,6 +101,20 @@ def test_simulated_people_are_shown_and_written_where_asked(
     assert json.loads(done.stdout) == {"found": 1}
     assert done.stderr == ""
     assert len(shown.calls) == 2
+
+
+def test_answers_of_another_program_need_their_design(stands_in: StandsIn, tmp_path: Path) -> None:
+    asked = stands_in("study.tasks.analyze:analyze_study", {"one": ANSWER})
+    stands_in("report.study.terminal_analysis:show_analyses")
+    answers = tmp_path / "answers.csv"
+    run("analyze", answers, "--design", PRESET, "--columns", "choice=key, participant_id=who")
+    assert asked.named["design"] == load_design(PRESET)
+    assert asked.named["columns"] == {"choice": "key", "participant_id": "who"}
+    for arguments in ((answers,), ("a.sqlite", "--columns", "choice=key")):
+        done = run("analyze", *arguments)
+        assert done.returncode == 2
+        assert "say to which study they were given by --design" in done.stderr
+    assert len(asked.calls) == 1
 
 
 def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path: Path) -> None:
@@ -176,7 +192,7 @@ def test_a_session_is_given_every_option(
     assert named == {
         "drive": "none", "amplitude_per_pickup": None, "conditions": None, "consent": False,
         "acknowledge": ask_acknowledgement, "seed": None, "station": 0, "stations": 1,
-        "tell": typer.echo, "by_hand": "terminal",
+        "tell": typer.echo, "by_hand": "terminal", "lsl": False,
     }  # fmt: skip
 
     run(
@@ -191,7 +207,7 @@ def test_a_session_is_given_every_option(
     assert named.pop("amplitude_per_pickup") == pytest.approx(2e-6)
     assert named == {
         "drive": "twin", "conditions": Path("c.toml"), "consent": True, "seed": 5, "station": 1,
-        "stations": 3, "tell": typer.echo, "by_hand": "nowhere",
+        "stations": 3, "tell": typer.echo, "by_hand": "nowhere", "lsl": False,
     }  # fmt: skip
     refused = run("run", PRESET, "--store", "a.sqlite", "--pickup", "2 um")
     assert refused.returncode == 2
@@ -259,8 +275,8 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     shown = stands_in("report.study.terminal_analysis:show_analyses")
     written = stands_in("report.study.page:write_overview", tmp_path / "index.html")
     done = run("analyze", store)
-    assert asked.given[0].path == store
-    assert asked.named == {"mixed": False, "seed": 0}
+    assert asked.given == (store,)
+    assert asked.named == {"design": None, "columns": {}, "mixed": False, "seed": 0}
     assert shown.given == (found,)
     assert "  a step …" in done.stderr
     assert done.stdout == ""
@@ -268,7 +284,7 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
 
     out = tmp_path / "pages"
     done = run("analyze", store, "--out", out, "--mixed", "--seed", "6")
-    assert asked.calls[-1][1] == {"mixed": True, "seed": 6}
+    assert asked.calls[-1][1] == {"design": None, "columns": {}, "mixed": True, "seed": 6}
     assert [given[:2] for given, _ in written.calls] == [(found, out)]
     assert done.stdout == f"page: {tmp_path / 'index.html'}\n"
     done = run("analyze", store, "--json")

@@ -62,7 +62,7 @@ def plays(*ending: Any) -> Serving:
             except EOFError:
                 return
             if order[0] == "present":
-                connection.send(("playing",))
+                connection.send(("playing", 1.0))
                 assert connection.recv() == ("stop",)
                 connection.send(ending)
 
@@ -72,7 +72,7 @@ def plays(*ending: Any) -> Serving:
 def dies(connection: Connection) -> None:
     """Is gone while it plays."""
     connection.recv()
-    connection.send(("playing",))
+    connection.send(("playing", 1.0))
 
 
 def refuses(connection: Connection) -> None:

@@ -47,8 +47,8 @@ def analysis_of(path: Path) -> dict[str, Any]:
 def _tables(display: str, one: StudyAnalysis) -> dict[str, Any]:
     """Answers by stimulus and by person, or confusions."""
     from squeezefilm.report.study.words import (
-        CONDITION_HEAD,
         PERSON_HEAD,
+        condition_head,
         condition_rows,
         person_rows,
     )
@@ -56,7 +56,9 @@ def _tables(display: str, one: StudyAnalysis) -> dict[str, Any]:
     if isinstance(one, TaskAnalysis):
         tables = []
         if one.conditions:
-            tables.append({"title": "Stimuli", "head": CONDITION_HEAD, "rows": condition_rows(one)})
+            tables.append(
+                {"title": "Stimuli", "head": condition_head(one), "rows": condition_rows(one)}
+            )
         tables.append({"title": "People", "head": PERSON_HEAD, "rows": person_rows(one)})
         return {"tables": tables, "confusion": None}
     matrix = one.matrix

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm.report.kit import style
+from squeezefilm.report.study.words import whose
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +31,7 @@ def data_of(analysis: StudyAnalysis) -> str:
     """The small print of every figure: whose answers, how many."""
     people = analysis.participants
     return (
-        f"{style.plain(analysis.origin, 40)} answers, {style.plain(analysis.name, 40)}; "
+        f"{whose(style.plain(analysis.origin, 40))}, {style.plain(analysis.name, 40)}; "
         f"{people} participant{'s' if people != 1 else ''}, {analysis.trials} trials"
     )
 

@@ -39,9 +39,14 @@ def channels(tables: ChainTables) -> Figure:
     for one, (color, dashes) in zip(observer.channels, style.LINES, strict=False):
         said = style.plain(one.name)
         axes.plot(frequency, one.gain(frequency), color=color, ls=dashes, label=said)
+    marks: dict[str, list[str]] = {}
     for name, why in tables.explain().items():
-        axes.axvline(why.texture_frequency, **style.ZERO)
-        axes.text(why.texture_frequency, 1.03, style.plain(name, 10), ha="center", **style.SLANTED)
+        marks.setdefault(f"{why.texture_frequency:.4g}", []).append(name)
+    for place, names in marks.items():
+        # Stimuli of one period pass at one frequency: their names would lie upon each other.
+        said = style.plain(names[0], 10) if len(names) == 1 else f"{len(names)} stimuli"
+        axes.axvline(float(place), **style.ZERO)
+        axes.text(float(place), 1.03, said, ha="center", **style.SLANTED)
     for index in range(len(tables.design.displays)):
         width = next(iter(tables.explain(index).values())).envelope_bandwidth
         axes.axvline(width, color=style.METAL, lw=2.2, ls=":")

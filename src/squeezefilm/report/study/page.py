@@ -11,12 +11,12 @@ from squeezefilm.report.kit.folder import json_text, require_folder, write_folde
 from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import (
     FigureOf,
+    Titled,
     as_html,
     bullets,
     drawn_figures,
     links,
     page,
-    picture_files,
     picture_sections,
     section,
     stamped,
@@ -25,15 +25,17 @@ from squeezefilm.report.kit.page_style import (
 from squeezefilm.report.study import figures as draw
 from squeezefilm.report.study import task_figures
 from squeezefilm.report.study import time_figures as times
+from squeezefilm.report.study.pictures import pictures, png_files
 from squeezefilm.report.study.words import (
-    CONDITION_HEAD,
     PERSON_HEAD,
+    condition_head,
     condition_rows,
     exploration_head,
     exploration_rows,
     key_rows,
     person_rows,
     read_first,
+    whose,
 )
 from squeezefilm.study.tasks.findings import TaskAnalysis
 
@@ -75,6 +77,7 @@ TASK_FIGURES = (
     _EXPLORATION,
 )
 """The figures of two-interval, same-different and magnitude studies."""
+_POWER = FigureOf("power", "How many people a study needs", times.power)
 
 
 def write_study(
@@ -95,13 +98,15 @@ def write_study(
     tell = progress or (lambda _: None)
     folder = require_folder(folder)
     tell("figures")
-    figures = study_figures(analysis, power)
-    files = picture_files(_named(figures))
+    found = pictures(drawing, _figures_of(analysis), analysis, "study-")
+    if power is not None:
+        found |= pictures(_power, (_POWER,), power, "study-")
+    files = png_files(found)
     summary = analysis.summary()
     if power is not None:
         summary["power"] = power
     files[_numbers_file(analysis)] = json_text(summary)
-    files["index.html"] = study_page(analysis, figures, summary["provenance"])
+    files["index.html"] = study_page(analysis, found, summary["provenance"])
     tell("writing the report")
     write_folder(folder, files)
     return folder / "index.html"
@@ -128,7 +133,7 @@ def write_overview(
     text = page(
         escape(f"{name}: what to read first"),
         escape(name),
-        f"<b>{escape(printable(origin))}</b> answers, analysed by squeezefilm",
+        f"<b>{escape(printable(whose(origin)))}</b>, analysed by squeezefilm",
         sections + more,
         "What to read first, by display.",
     )
@@ -145,11 +150,23 @@ def study_figures(
     analysis: StudyAnalysis, power: PowerCurve | None = None
 ) -> dict[str, tuple[str, Figure]]:
     """The figures by key: heading and drawing. What was not measured has none."""
-    known = TASK_FIGURES if isinstance(analysis, TaskAnalysis) else FIGURES
-    found = drawn_figures(known, analysis)
+    found = drawn_figures(_figures_of(analysis), analysis)
     if power is not None:
-        found["power"] = ("How many people a study needs", times.power(power))
+        found["power"] = (_POWER.heading, _POWER.draw(power))
     return found
+
+
+def drawing(analysis: StudyAnalysis, key: str) -> Figure:
+    """The figure of a study's analysis of that key."""
+    return next(one for one in _figures_of(analysis) if one.key == key).draw(analysis)
+
+
+def _figures_of(analysis: StudyAnalysis) -> tuple[FigureOf, ...]:
+    return TASK_FIGURES if isinstance(analysis, TaskAnalysis) else FIGURES
+
+
+def _power(curve: PowerCurve, _: str) -> Figure:
+    return times.power(curve)
 
 
 def _numbers_file(analysis: StudyAnalysis) -> str:
@@ -158,18 +175,18 @@ def _numbers_file(analysis: StudyAnalysis) -> str:
 
 def study_page(
     analysis: StudyAnalysis,
-    figures: dict[str, tuple[str, Figure]],
+    figures: Mapping[str, tuple[str, Titled]],
     provenance: dict[str, Any],
 ) -> str:
-    """The page as text; its figures lie beside it as study-KEY.png."""
+    """The page as text; `figures` lie beside it, by the names of their files."""
     title = escape(printable(analysis.name))
     head = ("Quantity", "Value", "Remark")
-    numbers = text_table(f"{analysis.origin} answers", head, key_rows(analysis))
+    numbers = text_table(whose(analysis.origin), head, key_rows(analysis))
     details = _task if isinstance(analysis, TaskAnalysis) else _identification
     sections = (
         section("Read first", bullets(read_first(analysis)))
         + section("Numbers", numbers)
-        + picture_sections(_named(figures))
+        + picture_sections(figures)
         + details(analysis)
         + _worked(analysis)
         + section("What could not be computed, or needs care", bullets(analysis.notes, "Nothing."))
@@ -178,7 +195,7 @@ def study_page(
     return page(
         f"{title}: {kind}",
         title,
-        f"<b>{escape(printable(analysis.origin))}</b> answers, analysed by squeezefilm",
+        f"<b>{escape(printable(whose(analysis.origin)))}</b>, analysed by squeezefilm",
         sections,
         f"{stamped(provenance, 'SHA-256 of the answers')} ·\n"
         f"seed of the resampling {escape(str(provenance['seed']))}.\n"
@@ -192,9 +209,9 @@ def _task(analysis: Any) -> str:
         caption = "Answers by stimulus; intervals as the numbers say"
         found += section(
             "Stimuli in numbers",
-            text_table(caption, CONDITION_HEAD, condition_rows(analysis)),
+            text_table(caption, condition_head(analysis), condition_rows(analysis)),
         )
-    caption = f"{analysis.measure} of each person"
+    caption = f"{analysis.measure[:1].upper()}{analysis.measure[1:]} of each person"
     found += section("People in numbers", text_table(caption, PERSON_HEAD, person_rows(analysis)))
     if analysis.assumed:
         found += section("What the simulated answers assume", bullets(analysis.assumed))
@@ -232,11 +249,6 @@ def _worked(analysis: StudyAnalysis) -> str:
 
 def _judged(attended: bool) -> str:
     return "attended" if attended else "doubtful"
-
-
-def _named(figures: dict[str, tuple[str, Figure]]) -> dict[str, tuple[str, Figure]]:
-    """The figures by the name of their file."""
-    return {f"study-{key}": one for key, one in figures.items()}
 
 
 def _confusion(analysis: IdentificationAnalysis) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
+from squeezefilm.bench.markers import markers_if
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.report.study.terminal import TerminalExaminer, ask_acknowledgement
@@ -37,6 +38,7 @@ class SessionRequest:
     tell: Callable[[str], None] = print
     progress: Callable[[], AbstractContextManager[Callable[[str], None]]] | None = None
     by_hand: str = "terminal"
+    lsl: bool | str = False
 
 
 @reads_text
@@ -48,9 +50,11 @@ def run_study(asked: SessionRequest) -> str:
     `store` is the study's file, made for the preset or file `design` if it is not there; somebody
     new is enrolled without a `participant`. `examiner` asks the questions: without one, this
     terminal does. `by_hand` says where the experimenter is told which surface to put under the
-    finger if no device plays: at this "terminal", in a file (its path), or "nowhere". The rest, and
+    finger if no device plays: at this "terminal", in a file (its path), or "nowhere". `lsl` sends
+    markers to the lab streaming layer (its stream may be named), which needs pylsl. The rest, and
     what is raised, as `open_study` and `run_session`.
     """
+    markers = markers_if(asked.lsl)
     path = Path(asked.store)
     with open_study(path, asked.design, asked.seed, asked.station, asked.stations) as found:
         planned = found.design
@@ -66,6 +70,7 @@ def run_study(asked: SessionRequest) -> str:
                 asked.tell,
                 asked.progress,
                 _told_by_hand(asked) if asked.drive == "none" else None,
+                *(() if markers is None else (markers.push,)),
             ),
             drive=asked.drive,
             amplitude_per_pickup=asked.amplitude_per_pickup,

@@ -13,16 +13,15 @@ from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.page_style import (
     FigureOf,
     bullets,
-    drawn_figures,
     links,
     page,
-    picture_files,
     picture_sections,
     section,
     stamped,
     text_table,
 )
 from squeezefilm.report.study import observer_figures
+from squeezefilm.report.study.pictures import Picture, pictures, png_files
 from squeezefilm.study.record.tables import Column, csv_text
 from squeezefilm.study.simulated.answers import SimulatedAnswers
 from squeezefilm.study.simulated.participants import SimulatedStudy
@@ -64,6 +63,7 @@ ANSWER_COLUMNS = (
     Column("phase", "practice, main or catch"),
     COLUMNS[5],
     Column("second_stimulus", "Name of the second stimulus, if there are two"),
+    Column("adaptive_series", "Series that chose the comparison, if any"),
     Column("intensity", "Of an adaptive comparison, in parts of the reference", "", "number"),
     Column("choice", "What was answered"),
     Column("estimate", "Number given", "", "number"),
@@ -117,8 +117,8 @@ def write_simulated(
         return _write_answers(study, folder, tell)
     summary = study.summary()
     tell("figures")
-    figures = drawn_figures(FIGURES, study)
-    files = picture_files(figures)
+    figures = pictures(drawing, FIGURES, study)
+    files = png_files(figures)
     analysed = _analyses(study, folder, tell)
     files["simulated.json"] = json_text(summary)
     files["trials.csv"] = csv_text(_rows(study), COLUMNS)
@@ -128,11 +128,16 @@ def write_simulated(
     return folder / "index.html"
 
 
+def drawing(study: SimulatedStudy | SimulatedAnswers, key: str) -> Figure:
+    """The figure of simulated participants of that key."""
+    return next(one for one in FIGURES if one.key == key).draw(study)
+
+
 def _write_answers(study: SimulatedAnswers, folder: Path, tell: Callable[[str], None]) -> Path:
     from squeezefilm.report.study.page import write_overview
 
     tell("figures")
-    figures = drawn_figures(FIGURES, study)
+    figures = pictures(drawing, FIGURES, study)
     reasons = f"Reasons the model sees. {LEGEND}"
     more = "".join(
         section(
@@ -142,7 +147,7 @@ def _write_answers(study: SimulatedAnswers, folder: Path, tell: Callable[[str], 
         for index, name in enumerate(study.tables.design.displays)
     )
     files = {
-        **picture_files(figures),
+        **png_files(figures),
         "simulated.json": json_text(study.summary()),
         "trials.csv": csv_text(
             [{"origin": "simulated", **r} for r in study.rows()], ANSWER_COLUMNS
@@ -233,7 +238,7 @@ def reason_rows(study: SimulatedStudy | SimulatedAnswers, index: int) -> list[li
 
 def _page(
     study: SimulatedStudy,
-    figures: dict[str, tuple[str, Figure]],
+    figures: dict[str, tuple[str, Picture]],
     analysed: dict[str, str],
     stamp: dict[str, Any],
 ) -> str:

@@ -199,7 +199,7 @@ def sensitivity(analysis: TaskAnalysis) -> Figure:
     scale = 1.0 if unlike else scale
     found = [(at if unlike else c.value, c.d_prime) for at, c in enumerate(known) if c.d_prime]
     best = max(range(len(found)), key=lambda at: found[at][1].value)
-    which = style.plain(known[best].name, 24) if unlike else f"{scale * found[best][0]:.3g}"
+    which = style.plain(known[best].name, 30)
     figure = style.new_figure(
         f"Most distinct from the reference: {which}, d′ = {estimate_words(found[best][1])}",
         f"{data_of(analysis)}; means over people, proportions corrected (Hautus 1995)",

@@ -21,6 +21,12 @@ if TYPE_CHECKING:
     from squeezefilm.study.record.store import StudyStore
 
 
+def _balanced(people: int) -> str:
+    if people == 1:
+        return "balanced within each participant"
+    return f"balanced over every {people} participants"
+
+
 def show_plan(plan: StudyPlan) -> None:
     """Print a plan: what is presented, how often, how long it takes, what is assumed."""
     design = plan.design
@@ -34,7 +40,7 @@ def show_plan(plan: StudyPlan) -> None:
         ("Time", f"{minutes:.0f} min per participant", f"{design.trial_duration:g} s a trial"),
         ("In all", f"{minutes * plan.participants / 60:.1f} h", everyone),
         ("Exploring", design.exploring, _EXPLORING[design.exploring]),
-        ("Order", design.order, f"balanced over every {plan.balanced_participants} participants"),
+        ("Order", design.order, _balanced(plan.balanced_participants)),
         ("Seed", str(plan.seed), f"design {design.sha256[:12]}"),
     ]
     console = show_rows(f"{design.name}: {design.title}", rows)

@@ -14,12 +14,13 @@ from squeezefilm.report.study.simulated_page import (
     remarks,
 )
 from squeezefilm.report.study.words import (
-    CONDITION_HEAD,
     PERSON_HEAD,
+    condition_head,
     condition_rows,
     key_rows,
     person_rows,
     read_first,
+    whose,
 )
 
 if TYPE_CHECKING:
@@ -42,12 +43,12 @@ def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
 
     console = plain_console()
     for display, one in analyses.items():
-        heading(console, f"{display}: answers of {one.origin}")
+        heading(console, f"{display}: {whose(one.origin)}")
         for sentence in read_first(one):
             console.print(sentence, highlight=False)
         if isinstance(one, TaskAnalysis):
             if one.conditions:
-                table(console, CONDITION_HEAD, condition_rows(one), fixed=(0,))
+                table(console, condition_head(one), condition_rows(one), fixed=(0,))
             if len(one.persons) <= _SHOWN_PEOPLE:
                 table(console, PERSON_HEAD, person_rows(one), fixed=(0,))
         else:
@@ -150,10 +151,11 @@ def show_precision(found: PlannedPrecision) -> None:
 def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
     """Print each display's answers and the model's reasons, or what their analysis says."""
     from squeezefilm.study.simulated.answers import SimulatedAnswers
-    from squeezefilm.study.simulated.assumptions import assumed
 
     console = plain_console()
     if isinstance(study, SimulatedAnswers):
+        from squeezefilm.study.simulated.assumptions import assumed
+
         show_analyses(study.analyses)
         console.print("SIMULATED: nobody answered. Assumed beyond the observer's file:")
         for said in assumed(study.answers.design):

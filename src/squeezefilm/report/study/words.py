@@ -260,8 +260,20 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
     return rows
 
 
-CONDITION_HEAD = ("Stimulus", "Value", "Trials", "People", "Answers", "d′")
-"""Of `condition_rows`."""
+def whose(origin: str) -> str:
+    """Whose answers: "simulated answers", "measured answers", "answers of people"."""
+    is_noun = any(word in origin for word in ("people", "participants", "nobody"))
+    return f"answers of {origin}" if is_noun else f"{origin} answers"
+
+
+def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
+    """Of `condition_rows`: what is counted depends on the task."""
+    counted = {
+        "two-interval": "Right" if analysis.is_adaptive else "Has more",
+        "same-different": "Different",
+        "magnitude-estimation": "Number",
+    }[analysis.task]
+    return ("Stimulus", "Value", "Trials", "People", counted, "d′")
 
 
 def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:

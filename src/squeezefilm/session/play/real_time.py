@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import math
 import os
 import signal
 import threading
@@ -51,12 +52,17 @@ LONGEST_SILENCE: si.Second = 35e-3
 
 @dataclass(frozen=True, slots=True)
 class PlayOutcome:
-    """How a session ended: why, what there is to say of it, and where its record is."""
+    """How a session ended: why, what there is to say of it, and where its record is.
+
+    `silent` is when the device said that its output is at zero, or was given up (s,
+    `time.monotonic`).
+    """
 
     ending: Ending
     message: str
     trace: Path
     rows: int
+    silent: si.Second = math.nan
 
     @property
     def failed(self) -> bool:
@@ -87,7 +93,7 @@ def run_play(
         metadata: of the record.
         duration: for which to play (s).
         sensor: makes the sensor from the loop's clock, where it is not the device's own.
-        show: is told what there is to see, ten times a second.
+        show: is told what there is to see, ten times a second and when the device's state changes.
         tap: is given the rows as they are recorded; must be quick.
         until: is asked every millisecond whether to end as on Ctrl-C; must be quick.
         study: whether participants touch the plate, see `require_safe_drive`.
@@ -123,12 +129,13 @@ def run_play(
                             player, clock, lambda: time.sleep(PAUSE), duration, interrupted, show
                         )
                     player.end(ending, time.sleep, message)
+                silent = time.monotonic()
             finally:
                 report = loop.stop()
         player.drain()
         writer.event("loop", {**to_json(report), "lateness": report.lateness.to_json()})
         writer.event("link", to_json(link.statistics))
-        return PlayOutcome(ending, message, trace, writer.acknowledged)
+        return PlayOutcome(ending, message, trace, writer.acknowledged, silent)
 
 
 def _compile(plan: PlayPlan) -> None:
@@ -154,7 +161,7 @@ def played(
     """
     player.begin()
     began = clock()
-    shown = 0.0
+    shown, state = 0.0, player.state
     try:
         while player.ending is None:
             now = clock()
@@ -162,8 +169,8 @@ def played(
                 break
             wait()
             player.step()
-            if show is not None and now - shown >= SHOW_PERIOD:
-                shown = now
+            if show is not None and (now - shown >= SHOW_PERIOD or player.state is not state):
+                shown, state = now, player.state
                 show(player.view())
         if player.faulted:
             return Ending.FAULT, fault_sentence(player)

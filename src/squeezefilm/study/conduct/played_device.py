@@ -7,9 +7,14 @@ play`, with a record of every tick; the drive must stop by itself. What fails on
 
 from __future__ import annotations
 
+import contextlib
+import math
 import multiprocessing
 import secrets
+import sys
 import threading
+import types
+from collections.abc import Iterator
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Self
@@ -17,10 +22,9 @@ from typing import Any, Self
 from squeezefilm import quantities as si
 from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import config_hash
-from squeezefilm.study.conduct.playing_process import WorkerOrders, serve
+from squeezefilm.study.conduct.playing_process import Surface, WorkerOrders, serve
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
 from squeezefilm.twin.hand import EXPLORING
 from squeezefilm.twin.settings import PickupModel, TwinSettings
@@ -84,7 +88,7 @@ class SessionDevice:
         self._process: Any = None
         self._connection: Connection | None = None
         self._speaking = threading.Lock()
-        self._presenting = False
+        self._presenting, self._began = False, math.nan
 
     def __enter__(self) -> Self:
         return self
@@ -96,6 +100,17 @@ class SessionDevice:
     def presenting(self) -> bool:
         """Whether a surface was presented and not stopped yet."""
         return self._presenting
+
+    @property
+    def began(self) -> si.Second:
+        """When the device said that it plays what was presented last (s, `time.monotonic`)."""
+        return self._began
+
+    @property
+    def over(self) -> bool:
+        """Whether what was presented ended by itself, which is a failure; `stop` tells which."""
+        connection = self._connection
+        return self._presenting and (connection is None or connection.poll(0.0))
 
     def identity(self) -> DeviceIdentity:
         """ "twin" or "serial", the display's hash, and that of the pickup's calibration (of the
@@ -122,7 +137,15 @@ class SessionDevice:
         found: DeviceVerification = self._asked(("verify",), "verified")[1]
         return found
 
-    def present(self, stimulus: Stimulus, seed: int) -> None:
+    def prepare(self, surface: Surface) -> None:
+        """Solve, compile and start what a surface needs, so that `present` need not.
+
+        Raises what `present` raises.
+        """
+        self._require_silence()
+        self._asked(("prepare", surface), "prepared")
+
+    def present(self, stimulus: Surface, seed: int) -> None:
         """Play a surface; returns when it plays, so that a response time runs from its onset.
 
         Raises:
@@ -135,7 +158,7 @@ class SessionDevice:
         if answer[0] == "ended":
             why = answer[1] or "it was stopped before it played"
             raise DeviceError(f"the surface could not be presented: {why}. It comes again")
-        self._presenting = True
+        self._presenting, self._began = True, float(answer[1])
 
     def stop(self) -> Exploration:
         """Ramp to zero, disarm, close the record; returns how the finger explored.
@@ -144,22 +167,29 @@ class SessionDevice:
             DeviceError: the device, its link or its loop failed since `present`: what was felt
                 is not known, so the trial must not be answered.
         """
+        failure, found = self.ended()
+        if failure:
+            raise DeviceError(
+                f"the device failed while the surface was presented: {failure.rstrip('.')}. This "
+                "trial was not answered and comes again; look at the device, then go on"
+            )
+        return found
+
+    def ended(self) -> tuple[str, Exploration]:
+        """As `stop`, but a failure is returned: what failed (empty: nothing) and the exploration,
+        of which nothing is known where the process that plays failed."""
         if not self._presenting:
-            return Exploration()
+            return "", Exploration()
         self._presenting = False
         self.halt()
         try:
             answer = self._heard(STOP_LIMIT)
         except DeviceError as error:
-            self.close()
-            raise _unanswered(str(error)) from error
-        failure, found = answer[1], answer[-1]
-        if failure:
+            answer = ("failed", str(error))
+        if answer[1]:
             # The next surface begins with a new process, and a new twin.
             self.close()
-            raise _unanswered(failure)
-        assert isinstance(found, Exploration)
-        return found
+        return answer[1], answer[2] if answer[0] == "ended" else Exploration()
 
     def halt(self) -> None:
         """Let the output ramp to zero now; returns at once, from any thread.
@@ -235,7 +265,8 @@ class SessionDevice:
             context = multiprocessing.get_context("spawn")
             ours, theirs = context.Pipe()
             process = context.Process(target=serve, args=(theirs, self._orders), daemon=True)
-            process.start()
+            with _without_main():
+                process.start()
             theirs.close()
             with self._speaking:
                 self._process, self._connection = process, ours
@@ -243,8 +274,13 @@ class SessionDevice:
         return self._connection
 
 
-def _unanswered(why: str) -> DeviceError:
-    return DeviceError(
-        f"the device failed while the surface was presented: {why.rstrip('.')}. This trial was "
-        "not answered and comes again; look at the device, then go on"
-    )
+@contextlib.contextmanager
+def _without_main() -> Iterator[None]:
+    """A process started within does not run the user's script again, which may open windows and
+    has no `if __name__ == "__main__"` where another program wrote it."""
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = types.ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main

@@ -4,16 +4,19 @@ It is a process of its own so that nothing the study does can hold up what is pl
 the safety of `session.play.real_time`; where the study's program dies, the pipe breaks and the
 output ramps to zero; where this process dies, the device's own watchdog stops it.
 
-Orders in: ("verify",), ("present", stimulus, seed, name), ("stop",). Answers: ("verified",
-verification), ("playing",), ("ended", failure, exploration), ("failed", sentence); after "playing"
-comes one of the last two. A stop while nothing plays has no answer.
+Orders in: ("verify",), ("prepare", surface), ("present", surface, seed, name), ("stop",). Answers:
+("verified", verification), ("prepared",), ("playing", since), ("ended", failure, exploration),
+("failed", sentence); after "playing" comes one of the last two. A stop while nothing plays has no
+answer.
 """
 
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import math
 import signal
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -63,6 +66,9 @@ _SETTLE = 10.0
 """Time constants waited at each carrier: e⁻¹⁰ of the change is left."""
 _PATH = ("time_s", "x_m", "y_m", "speed_m_per_s", "amplitude_m", "relative_friction")
 
+
+Surface = Stimulus | TextureFile
+"""What may be played: a study's stimulus, or any texture with what it is called."""
 
 Sweep = Callable[[Limits, si.HertzArray, si.Volt, si.Second], ResonanceSweep | None]
 """Sweeps carriers within limits at a voltage, settling at each; None without a pickup."""
@@ -118,6 +124,10 @@ class Bench:
         """Carry out an order; returns the answer. Raises `SqueezefilmError` where it cannot."""
         if order[0] == "verify":
             return ("verified", self.verification())
+        if order[0] == "prepare":
+            self._setup(surface_of(order[1]))
+            self._streaming(self._orders.stroke)
+            return ("prepared",)
         return ("ended", *self.presentation(*order[1:]))
 
     def verification(self) -> DeviceVerification:
@@ -134,25 +144,26 @@ class Bench:
             require_safe_drive(SerialDrive(host, 1 / self._orders.rate), limits, study=True)
             return sweep_resonance(host, limits, carriers, voltage, settle=settle)
 
-    def presentation(self, stimulus: Stimulus, seed: int, name: str) -> tuple[str, Exploration]:
+    def presentation(self, given: Surface, seed: int, name: str) -> tuple[str, Exploration]:
         """Play until an order comes; returns what failed (empty: nothing) and the exploration."""
-        orders, setup = self._orders, self._setup(stimulus)
-        told = False
+        orders, surface = self._orders, surface_of(given)
+        setup = self._setup(surface)
+        began = math.nan
 
         def show(view: PlayView) -> None:
-            nonlocal told
-            if not told and view.state is State.PLAYING:
-                told = True
+            nonlocal began
+            if math.isnan(began) and view.state is State.PLAYING:
+                began = time.monotonic()
                 # A pipe that broke ends the session by `until`, which is safe.
                 with contextlib.suppress(OSError):
-                    self._connection.send(("playing",))
+                    self._connection.send(("playing", began))
 
         metadata = {
-            **stamp((setup.display, stimulus, orders.rate), seed),
+            **stamp((setup.display, given, orders.rate), seed),
             "display": setup.display.name,
             "drive": orders.drive.partition(":")[0],
-            "stimulus": stimulus.name,
-            "surface_sha256": stimulus.surface_sha256,
+            "stimulus": surface.title,
+            **({"surface_sha256": given.surface_sha256} if isinstance(given, Stimulus) else {}),
             "assumed_limits": list(setup.assumed_limits),
         }
         outcome = run_play(
@@ -166,7 +177,8 @@ class Bench:
             study=True,
         )
         trace = read_trace(outcome.trace)
-        return _failure(outcome, trace), explored(trace, name)
+        felt = dataclasses.replace(explored(trace, name), began=began, ended=outcome.silent)
+        return _failure(outcome, trace), felt
 
     @cached_property
     def _amplitude_per_pickup(self) -> si.MetrePerVolt | None:
@@ -186,11 +198,11 @@ class Bench:
             self._display = load_display(self._orders.target)
         return self._display
 
-    def _setup(self, stimulus: Stimulus) -> PlaySetup:
+    def _setup(self, surface: TextureFile) -> PlaySetup:
         twin = self._orders.drive == "twin"
         return play_setup(
             self._loaded(),
-            TextureFile(stimulus.surface(), stimulus.name),
+            surface,
             device=KnownDevice(LVDT_10_KHZ, self._amplitude_per_pickup, twin=twin),
             rate=self._orders.rate,
         )
@@ -204,6 +216,13 @@ class Bench:
             self._stream = self._twin.enter_context(found)
             self._finger = finger
         return self._stream
+
+
+def surface_of(given: Surface) -> TextureFile:
+    """The texture that is played, and what it is called."""
+    if isinstance(given, TextureFile):
+        return given
+    return TextureFile(given.surface(), given.name)
 
 
 def resonance_verified(

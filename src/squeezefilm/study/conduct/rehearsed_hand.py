@@ -20,7 +20,7 @@ from squeezefilm.study.conduct.study_device import Exploration
 from squeezefilm.study.design.matching import Exploring
 from squeezefilm.study.record.exploration import PATH_PERIOD
 from squeezefilm.study.record.explored_trials import explored_table
-from squeezefilm.study.simulated.chain_tables import free_path
+from squeezefilm.study.simulated.felt_surfaces import free_path
 
 _STROKES = "Strokes to and fro along x, each pass of least jerk, as the simulated answers assume."
 

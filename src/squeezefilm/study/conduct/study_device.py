@@ -89,7 +89,8 @@ class Exploration:
     `trace` is a table's CSV text (`formats.traces.csv_text`) of the finger's path, empty if there
     is none; its metadata must not name the participant. `raw_trace` is the random name of a file
     that the device wrote into the study's folder of traces, empty if there is none. `touch` is the
-    share of the time in which the finger touched.
+    share of the time in which the finger touched. `began` and `ended` are when the device said that
+    it plays, and that its output is at zero (s, `time.monotonic`).
     """
 
     path_length: si.Metre = math.nan
@@ -98,6 +99,8 @@ class Exploration:
     trace: str = ""
     raw_trace: str = ""
     touch: si.Dimensionless = math.nan
+    began: si.Second = math.nan
+    ended: si.Second = math.nan
 
 
 class StudyDevice(Protocol):

@@ -28,7 +28,7 @@ from squeezefilm.study.conduct.sessions import (
     exposure,
 )
 from squeezefilm.study.conduct.study_device import ByHand, NoDevice, StudyDevice
-from squeezefilm.study.conduct.trial_by_trial import Examiner, conduct
+from squeezefilm.study.conduct.trial_by_trial import Examiner, Mark, conduct
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.design.trials import expected_duration
 from squeezefilm.study.identification.course import attention
@@ -48,6 +48,7 @@ class Desk:
         by_hand: is told which surface to put under the finger where no device plays; the
             participant must not read it. Without one nobody is told.
         progress: shows what goes on while it is open; it is closed whenever anybody is asked.
+        mark: is told what happens when, see `conduct`.
     """
 
     examiner: Examiner
@@ -55,6 +56,7 @@ class Desk:
     tell: Callable[[str], None] = print
     progress: Callable[[], AbstractContextManager[SayProgress]] | None = None
     by_hand: Callable[[str], None] | None = None
+    mark: Mark = lambda *_: None
 
 
 def open_study(
@@ -126,7 +128,7 @@ def run_session(
         desk.tell(f"participant {who}: go on with --participant {who}")
         run = StudyRun(store, session)
         try:
-            count = conduct(run, device, desk.examiner)
+            count = conduct(run, device, desk.examiner, mark=desk.mark)
         except KeyboardInterrupt:
             # Stopped by a person: what was answered up to here deserves its verification too.
             end_session(store, session, device)
@@ -165,7 +167,7 @@ def _sitting(conditions: Path | None, consent: bool) -> SessionConditions:
 
 def _free_path(display: Display) -> FingerPath:
     """How the hand of a twin explores freely: as a median simulated person would."""
-    from squeezefilm.study.simulated.chain_tables import free_path
+    from squeezefilm.study.simulated.felt_surfaces import free_path
 
     observer = load_observer()
     return free_path(display, observer, observer.median_finger())

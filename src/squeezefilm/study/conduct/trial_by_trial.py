@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from typing import Protocol
@@ -11,6 +12,9 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, Response, StudyRun
 from squeezefilm.study.conduct.study_device import Exploration, StudyDevice
 from squeezefilm.study.record.store import utc_now
+
+Mark = Callable[[str, si.Second | None], None]
+"""Is told what happened and when (s, the run's clock; now, without a moment)."""
 
 
 class Examiner(Protocol):
@@ -39,19 +43,22 @@ def conduct(
     examiner: Examiner,
     *,
     clock: Callable[[], float] = time.monotonic,
+    mark: Mark = lambda *_: None,
 ) -> int:
     """Present and ask every trial that is left on the session's display. Returns how many.
 
     One surface plays while the question is asked, as the person compares it with what lies
     beside it; the response time runs from its onset. Two surfaces play one after the other, and
     it runs from the end of the second. Whatever happens, the device is silent afterwards.
+    `mark` is told "start NAME" and "stop NAME" of each surface, and "answer CHOICE" with the moment
+    that is recorded as the end of the trial.
     Raises what the device and the study's file raise; the trial then comes again.
     """
     count = 0
     while (presentation := run.next_trial()) is not None:
         if presentation.rest:
             examiner.rest(presentation.rest)
-        response = _presented(presentation, device, examiner, clock)
+        response = _presented(presentation, device, examiner, clock, mark)
         told = run.respond(presentation.token, response)
         examiner.acknowledge(presentation, told)
         count += 1
@@ -63,6 +70,7 @@ def _presented(
     device: StudyDevice,
     examiner: Examiner,
     clock: Callable[[], float],
+    mark: Mark,
 ) -> Response:
     trial = presentation.trial
     begun, begun_utc = clock(), utc_now()
@@ -75,6 +83,7 @@ def _presented(
         try:
             if isinstance(surface, Stimulus):
                 device.present(surface, trial.seed)
+                mark(f"start {surface.name}", clock())
             if trial.asks and last == 0:
                 asked = clock()
                 answer = examiner.ask(presentation)
@@ -83,10 +92,14 @@ def _presented(
         finally:
             if plays:
                 felt.append(device.stop())
+                ended = felt[-1].ended
+                mark(f"stop {surface.name}", clock() if math.isnan(ended) else ended)
     if trial.asks and answer is None:
         asked = clock()
         answer = examiner.ask(presentation)
     ended = clock()
+    if answer is not None:
+        mark(f"answer {answer}", ended)
     return Response(
         choice=answer if isinstance(answer, str) else "",
         estimate=None if answer is None or isinstance(answer, str) else float(answer),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.explored_trials import MEASURES
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.tables import origin_of, trial_table
+from squeezefilm.study.record.tables import Cell, origin_of, trial_table
 
 EXPLORED = ("mean_speed_m_per_s", "mean_normal_force_N", "path_length_m", *MEASURES)
 
@@ -95,12 +95,12 @@ def recorded_answers(store: StudyStore) -> Answers:
 
     Raises `RecordError` if the file cannot be read.
     """
-    design = store.design
-    rows = [
-        row
-        for row in trial_table(store)
-        if row["phase"] != "familiarisation" and not row["set_aside"]
-    ]
+    return answers_of(store.design, trial_table(store), origin_of(store))
+
+
+def answers_of(design: StudyDesign, table: Sequence[Mapping[str, Cell]], origin: str) -> Answers:
+    """The same of a table with the keys of `COLUMNS` that answers need, whoever wrote it."""
+    rows = [row for row in table if row["phase"] != "familiarisation" and not row["set_aside"]]
     known: dict[tuple[str, object], int] = {}
     surfaces: list[Stimulus] = []
 
@@ -133,7 +133,7 @@ def recorded_answers(store: StudyStore) -> Answers:
 
     return Answers(
         design=design,
-        origin=origin_of(store),
+        origin=origin,
         people=people,
         participant=whole([place[str(row["participant_id"])] for row in rows]),
         number=whole([int(str(row["trial"])) for row in rows]),

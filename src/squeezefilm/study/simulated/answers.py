@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -18,14 +18,15 @@ from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.assumptions import assumed
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import (
     SimulatedStudy,
     require_people,
     right_answers,
     simulate_matches,
 )
-from squeezefilm.study.tasks.analyze import StudyAnalysis, analyze_answers
+
+if TYPE_CHECKING:
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -51,6 +52,8 @@ class SimulatedAnswers(Result):
     @functools.cached_property
     def analyses(self) -> dict[str, StudyAnalysis]:
         """What they say, by display; a psychometric function a person takes some 20 ms."""
+        from squeezefilm.study.tasks.analyze import analyze_answers
+
         design = self.tables.design
         return analyze_answers(self.answers, design.name, assumed=assumed(design), seed=self.seed)
 
@@ -75,7 +78,7 @@ class SimulatedAnswers(Result):
         """One row a trial, units in the names."""
         a = self.answers
         names = [one.name for one in a.surfaces]
-        answers = a.design.answers
+        answers, series = a.design.answers, [one.name for one in a.design.adaptive]
         return [
             {
                 "participant": int(a.participant[at]),
@@ -84,6 +87,7 @@ class SimulatedAnswers(Result):
                 "phase": str(a.phase[at]),
                 "stimulus": names[a.first[at]],
                 "second_stimulus": names[a.second[at]] if a.second[at] >= 0 else "",
+                "adaptive_series": series[a.series[at]] if a.series[at] >= 0 else "",
                 "intensity": float(a.intensity[at]),
                 "choice": answers[a.choice[at]] if a.choice[at] >= 0 else "",
                 "estimate": float(a.estimate[at]),
@@ -126,6 +130,9 @@ def simulate_participants(
         raise InputError("the tables are of another design or observer; leave them out")
     if design.task == "match-to-sample":
         return simulate_matches(design, observer, participants, seed, found)
+    # Its psychometric functions are compiled, which a match-to-sample study need not wait for.
+    from squeezefilm.study.simulated.judgements import simulate_judgements
+
     answers = simulate_judgements(design, observer, participants, seed, found, progress)
     return SimulatedAnswers(found, answers, seed)
 

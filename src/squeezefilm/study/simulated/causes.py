@@ -5,16 +5,19 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.rendered_texture import RenderAnalysis
 from squeezefilm.perception.observer import FingerClass, Observer
 from squeezefilm.perception.path_percepts import RunPercept
 from squeezefilm.perception.percepts import Percept, along_way
 from squeezefilm.perception.senses import line_amplitudes, line_periods
 from squeezefilm.perception.stimuli import Stimulus
+
+if TYPE_CHECKING:
+    from squeezefilm.chain.rendered_texture import RenderAnalysis
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +112,12 @@ def _causes(
 
 
 def _line(way: si.FloatArray, values: si.FloatArray, observer: Observer, period: si.Metre) -> float:
-    lines = line_amplitudes(along_way(way, values, observer, (1.0, 1.0)))
-    return float(np.interp(period, line_periods(), lines))
+    periods = line_periods()
+    # What lies beside the period is all that is asked.
+    at = int(np.searchsorted(periods, period))
+    near = slice(max(at - 1, 0), at + 1)
+    lines = line_amplitudes(along_way(way, values, observer, (1.0, 1.0)), near)
+    return float(np.interp(period, periods[near], lines))
 
 
 def _ripple_share(played: RenderAnalysis) -> si.Dimensionless:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,8 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.from_text import reads_text
+from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
 from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
 from squeezefilm.study.identification.course import course_of
@@ -23,6 +24,7 @@ from squeezefilm.study.identification.response_times import (
     response_time_summary,
 )
 from squeezefilm.study.record.answers import Answers, recorded_answers
+from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
@@ -61,9 +63,12 @@ Numbers = dict[str, Estimate]
 _POPULATION = "posterior, mixed model"
 
 
+@reads_text
 def analyze_study(
     store: StudyStore | str | Path,
     *,
+    design: NamedDesign | None = None,
+    columns: Mapping[str, str] | None = None,
     mixed: bool = False,
     resamples: int = 1000,
     seed: int = 0,
@@ -71,29 +76,37 @@ def analyze_study(
 ) -> dict[str, StudyAnalysis]:
     """The analysis of a study's answers, by display.
 
-    `store` is the study, or the path of its file. Main trials are analysed; practice and
-    familiarisation are left out, catch trials say who attended. Results say whose answers they
-    are. `mixed` adds statsmodels' mixed models to match-to-sample, whose stimuli must each have the
-    grating of their own period among the answers; `resamples` are its bootstraps'.
+    `store` is the study, or the path of its file; with a `design` the path of a CSV that another
+    program recorded of it, whose `columns` are read as `read_answers` says. Main trials are
+    analysed; practice and familiarisation are left out, catch trials say who attended. Results say
+    whose answers they are. `mixed` adds statsmodels' mixed models to match-to-sample, whose stimuli
+    must each have the grating of their own period among the answers; `resamples` are its
+    bootstraps'.
 
     Raises:
         InputError: stimuli that have no right answer, or no answer yet.
         RecordError: the file is damaged.
     """
-    if not isinstance(store, StudyStore):
+    if design is not None and not isinstance(store, StudyStore):
+        if design.task == "match-to-sample":
+            stimuli_and_answers(design)
+        answers, name = read_answers(store, design, columns), design.name
+    elif not isinstance(store, StudyStore):
         with StudyStore.open(store) as opened:
             return analyze_study(
                 opened, mixed=mixed, resamples=resamples, seed=seed, progress=progress
             )
-    if store.design.task == "match-to-sample":
-        stimuli_and_answers(store.design)
-    store.require_whole()
-    answers = recorded_answers(store)
+    else:
+        if store.design.task == "match-to-sample":
+            stimuli_and_answers(store.design)
+        store.require_whole()
+        answers, name = recorded_answers(store), str(store.study["name"])
     if not (answers.phase == "main").any():
-        raise InputError(f"{store.path} has no answered main trial yet; run some first")
+        where = store.path if isinstance(store, StudyStore) else store
+        raise InputError(f"{where} has no answered main trial yet; run some first")
     return analyze_answers(
         answers,
-        str(store.study["name"]),
+        name,
         mixed=mixed,
         resamples=resamples,
         seed=seed,
@@ -328,11 +341,15 @@ def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
     """What response times are told apart by: the comparison, the difference or the stimulus."""
     if (main.series >= 0).any():
         return main.series, tuple(one.name for one in main.design.adaptive)
-    names = tuple(one.name for one in main.surfaces)
+    # By value, as they are read, and not in the order in which somebody met them first.
+    order = np.argsort(main.values, kind="stable")
+    place = np.argsort(order, kind="stable")
+    names = tuple(main.surfaces[one].name for one in order)
     if main.design.two_surfaces:
         here = names.index(main.design.reference) if main.design.reference in names else -1
-        return np.where(main.first != here, main.first, main.second), names
-    return main.first, names
+        first, second = place[main.first], place[main.second]
+        return np.where(first != here, first, second), names
+    return place[main.first], names
 
 
 def _times(

@@ -31,9 +31,9 @@ def test_each_display_has_its_confusions_and_main_numbers(
 ) -> None:
     lines = printed(lambda: show_analyses({"plate": analysis, "ring": analysis}))
     half = lines[: len(lines) // 2]
-    assert lines[len(half) :] == ["ring: answers of simulated", *half[1:]]
+    assert lines[len(half) :] == ["ring: simulated answers", *half[1:]]
     first = [printable(" ".join(one.split())) for one in read_first(analysis)]
-    assert half[: 1 + len(first)] == ["plate: answers of simulated", *first]
+    assert half[: 1 + len(first)] == ["plate: simulated answers", *first]
     rest = half[1 + len(first) :]
     assert rest[:3] == ["answered 4 mm 8 mm", "4 mm 100 % 25 %", "8 mm 0 % 75 %"]
     rows = [printable(" ".join(map(printable, row))) for row in key_rows(analysis)]

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.device.wire.states import Fault
+from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.errors import DeviceError, InputError, LoopError, RecordError
 from squeezefilm.session.loop.lateness import CLASSES, Lateness
 from squeezefilm.session.loop.plan import LoopPlan
@@ -42,6 +42,7 @@ class Bench:
         self.plan: Any = SimpleNamespace(loop=plan, limits="limits", twin=True)
         self.ending: Ending | None = None
         self.fault, self.held_up = Fault.NONE, 0.0
+        self.state = State.ARMED
         for name, made in {
             "open_stream": lambda drive: SimpleNamespace(close=lambda: self.note(f"close {drive}")),
             "TraceWriter": lambda *_: self, "LoopProcess": lambda _: self.loop(),
@@ -50,7 +51,7 @@ class Bench:
             "SerialDrive": lambda host, period: "drive",
             "require_safe_drive": lambda *given, **how: self.note(("safe", given, how)),
             "Player": self.player_of, "_compile": lambda _: self.note("compiled"),
-            "time": SimpleNamespace(sleep=self.sleep),
+            "time": SimpleNamespace(sleep=self.sleep, monotonic=lambda: self.now + 1000.0),
         }.items():  # fmt: skip
             monkeypatch.setattr(real_time, name, made)
 
@@ -143,7 +144,7 @@ FADING = round(FADE / 1e-3)
 def test_a_session_plays_fades_ends_and_is_recorded_to_its_last_row(bench: Bench) -> None:
     before = signal.getsignal(signal.SIGINT)
     found = bench.run()
-    assert found == PlayOutcome(Ending.DURATION, "", Path("trace"), 12)
+    assert found == PlayOutcome(Ending.DURATION, "", Path("trace"), 12, bench.now + 1000.0)
     assert bench.done == [
         ("safe", ("drive", "limits"), {"study": False, "bench_only": False}), "compiled",
         "loop start", "begin", ("fade", pytest.approx(50, abs=1)),
@@ -162,6 +163,20 @@ def test_what_is_seen_is_shown_ten_times_a_second(bench: Bench) -> None:
     assert shown[0] == "view after 1"
     steps = np.array([int(one.split()[-1]) for one in shown])
     assert steps == pytest.approx([1, 101, 201, 301, 401], abs=2)
+
+
+def test_a_change_of_the_devices_state_is_shown_at_once(bench: Bench) -> None:
+    shown: list[str] = []
+
+    def plays() -> None:
+        bench.state = State.PLAYING
+
+    bench.at[37] = plays
+    bench.run(duration=0.2, show=shown.append)
+    steps = [int(one.split()[-1]) for one in shown]
+    assert steps[:2] == [1, 37]
+    # And from there ten times a second again.
+    assert steps[2] == pytest.approx(137, abs=2)
 
 
 @pytest.mark.parametrize("by", ["until", "signal"])

@@ -134,7 +134,9 @@ def test_a_port_of_one_letter_is_a_port_and_a_long_drive_is_quoted_in_part() -> 
 
 
 def test_a_surface_is_presented_felt_and_stopped(playing: Playing, tmp_path: Path) -> None:
-    pipe = Pipe(("playing",), ("ended", "", FELT), ("playing",), ("ended", "", Exploration()))
+    pipe = Pipe(
+        ("playing", 1.0), ("ended", "", FELT), ("playing", 1.0), ("ended", "", Exploration())
+    )
     device, context = playing(pipe, amplitude_per_pickup=2e-6, rate=4e3, stroke="0.08 m")
     assert not device.presenting
     device.present(GRATING, 11)
@@ -191,7 +193,7 @@ def test_a_verification_is_what_the_process_measured(playing: Playing) -> None:
 def test_what_ended_before_it_played_was_not_presented(
     playing: Playing, why: str, says: str
 ) -> None:
-    device, context = playing(Pipe(("ended", why, Exploration()), ("playing",)))
+    device, context = playing(Pipe(("ended", why, Exploration()), ("playing", 1.0)))
     with pytest.raises(DeviceError, match=f"could not be presented: {says}.*It comes again"):
         device.present(GRATING, 1)
     assert not device.presenting
@@ -201,7 +203,7 @@ def test_what_ended_before_it_played_was_not_presented(
 
 
 def test_after_a_failure_comes_a_new_process(playing: Playing) -> None:
-    first, second = Pipe(("failed", "the port is not there")), Pipe(("playing",))
+    first, second = Pipe(("failed", "the port is not there")), Pipe(("playing", 1.0))
     device, context = playing(first, second)
     with pytest.raises(DeviceError, match=r"^the port is not there$"):
         device.present(GRATING, 1)
@@ -214,7 +216,7 @@ def test_after_a_failure_comes_a_new_process(playing: Playing) -> None:
 
 
 def test_a_process_that_died_meanwhile_is_replaced(playing: Playing) -> None:
-    first, second = Pipe(("playing",), ("ended", "", FELT)), Pipe(("playing",))
+    first, second = Pipe(("playing", 1.0), ("ended", "", FELT)), Pipe(("playing", 1.0))
     device, context = playing(first, second)
     device.present(GRATING, 1)
     device.stop()
@@ -258,7 +260,7 @@ def test_an_order_that_nobody_takes_says_that_the_process_is_gone(playing: Playi
     ],
 )
 def test_a_trial_that_failed_is_not_answered(playing: Playing, answer: Any, says: str) -> None:
-    first, second = Pipe(("playing",), answer), Pipe(("playing",))
+    first, second = Pipe(("playing", 1.0), answer), Pipe(("playing", 1.0))
     device, context = playing(first, second)
     device.present(GRATING, 1)
     with pytest.raises(DeviceError, match=says) as failed:
@@ -272,7 +274,7 @@ def test_a_trial_that_failed_is_not_answered(playing: Playing, answer: Any, says
 
 
 def test_who_halts_a_process_that_is_gone_is_not_bothered(playing: Playing) -> None:
-    pipe = Pipe(("playing",), EOFError())
+    pipe = Pipe(("playing", 1.0), EOFError())
     device, _ = playing(pipe)
     device.present(GRATING, 1)
     device.halt()
@@ -286,7 +288,7 @@ def test_who_halts_a_process_that_is_gone_is_not_bothered(playing: Playing) -> N
 def test_what_was_closed_by_another_thread_is_presented_again(
     playing: Playing, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    device, _ = playing(Pipe(("playing",)))
+    device, _ = playing(Pipe(("playing", 1.0)))
     device.present(GRATING, 1)
     # The other thread comes just between the order to stop and its answer.
     monkeypatch.setattr(device, "halt", device.close)
@@ -297,7 +299,7 @@ def test_what_was_closed_by_another_thread_is_presented_again(
 def test_a_process_that_does_not_end_is_killed(
     playing: Playing, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pipe = Pipe(("playing",))
+    pipe = Pipe(("playing", 1.0))
     device, context = playing(pipe)
     with device as entered:
         assert entered is device

@@ -30,6 +30,7 @@ from squeezefilm.study.conduct.playing_process import (
     explored,
     serve,
 )
+from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.settings import PickupModel, TwinSettings
 from squeezefilm.twin.working_point import WorkingPoint
 
@@ -121,7 +122,7 @@ class Around:
         self.plays.append((how, more))
         for state in self.views:
             more["show"](SimpleNamespace(state=state))
-        return PlayOutcome(self.ending, self.message, how[2], 1000)
+        return PlayOutcome(self.ending, self.message, how[2], 1000, 12.5)
 
     def _sweep(self, *how: Any, **more: Any) -> Any:
         self.sweeps.append((how, more))
@@ -184,8 +185,12 @@ def test_a_surface_is_played_until_an_order_comes(around: Around) -> None:
     with Bench(pipe, around.orders()) as bench:  # type: ignore[arg-type]
         kind, failure, found = bench.done(("present", GRATING, 5, NAME))
     assert (kind, failure) == ("ended", "")
-    assert pipe.sent == [("playing",)]
-    assert found == explored(record(), NAME)
+    ((word, since),) = pipe.sent
+    assert word == "playing"
+    # From the onset that was told to the silence that the session knew of.
+    assert (found.began, found.ended) == (since, 12.5)
+    known = dataclasses.replace(found, began=math.nan, ended=math.nan)
+    assert repr(known) == repr(explored(record(), NAME))
     ((plan, stream, path, metadata), how) = around.plays[0]
     assert (plan, stream, path) == ("the plan", "stream 1", around.folder / NAME)
     assert how["study"] is True
@@ -204,6 +209,18 @@ def test_a_surface_is_played_until_an_order_comes(around: Around) -> None:
     assert around.streams == [
         ("serial:/dev/ttyACM0", "biet2008-plate", around.orders().settings, "a stroke", None)
     ]
+
+
+def test_what_is_prepared_needs_no_solving_when_it_is_played(around: Around) -> None:
+    texture = TextureFile(GRATING.surface(), "a grating")
+    with Bench(Pipe(), around.orders("twin")) as bench:  # type: ignore[arg-type]
+        assert bench.done(("prepare", texture)) == ("prepared",)
+        assert [one[0][1] for one in around.setups] == [texture]
+        assert len(around.streams) == 1
+        bench.done(("present", texture, 0, NAME))
+    # The twin that was started for it is the one that plays; the record says what by its title.
+    assert len(around.streams) == 1
+    assert around.plays[0][0][3]["stimulus"] == "a grating"
 
 
 def test_what_never_played_is_not_said_to(around: Around) -> None:

@@ -1,0 +1,145 @@
+"""Verbs of a study's file: look, export, merge, back up, take somebody out, analyse."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.cli.app import AsJson, print_json, working, written_to
+from squeezefilm.cli.study import Store, drawing_by_two, study
+
+
+@study.command()
+def status(store: Store, as_json: AsJson = False) -> None:
+    """Show who is enrolled and how far they are."""
+    from squeezefilm.report.study.terminal import show_status
+    from squeezefilm.study.record.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        if as_json:
+            print_json({"study": found.study["name"], "participants": found.participants()})
+        else:
+            show_status(found)
+
+
+@study.command()
+def export(
+    store: Store,
+    format: Annotated[str, typer.Option("--format", help="csv, psych-ds or bids.")] = "csv",
+    out: Annotated[
+        Path | None,
+        written_to("Folder; beside the study's file without it."),
+    ] = None,
+) -> None:
+    """Write all answers as CSV, a Psych-DS dataset or a BIDS behavioural dataset."""
+    from squeezefilm.study.record.exports import export_study
+    from squeezefilm.study.record.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        typer.echo(f"wrote {export_study(found, format, out)}")  # type: ignore[arg-type] # checked there
+
+
+@study.command()
+def merge(
+    store: Store,
+    others: Annotated[list[Path], typer.Argument(metavar="OTHER.sqlite …", help="To add.")],
+) -> None:
+    """Add other stations' files to this one; merging again changes nothing."""
+    from squeezefilm.report.study.terminal import show_merge
+    from squeezefilm.study.record.merge import merge as add
+    from squeezefilm.study.record.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        for other in others:
+            show_merge(add(found, other), str(other))
+
+
+@study.command()
+def backup(store: Store) -> None:
+    """Copy the study's file, as it is now, into the folder of backups beside it."""
+    from squeezefilm.study.record.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        typer.echo(f"wrote {found.back_up()}")
+
+
+@study.command()
+def delete_participant(
+    store: Store,
+    participant: Annotated[str, typer.Argument(help="The pseudonym.")],
+    yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
+) -> None:
+    """Take a participant out of the file, its traces, backups and exports, without a trace."""
+    from squeezefilm.report.study.terminal import show_deletion
+    from squeezefilm.study.record.deletion import delete_participant as take_out
+    from squeezefilm.study.record.store import StudyStore
+
+    with StudyStore.open(store) as found:
+        if not yes:
+            typer.confirm(f"Delete every answer and trace of {participant} for good?", abort=True)
+        show_deletion(take_out(found, participant), participant)
+
+
+@study.command()
+def analyze(
+    store: Annotated[
+        Path,
+        typer.Argument(metavar="STUDY.sqlite|ANSWERS.csv", help="The study's file, or answers."),
+    ],
+    design: Annotated[
+        str | None,
+        typer.Option(help="What answers in a CSV of another program were given to."),
+    ] = None,
+    columns: Annotated[
+        str,
+        typer.Option(
+            help='What its columns are called, like "participant_id=who, choice=key_resp.keys".'
+        ),
+    ] = "",
+    out: Annotated[
+        Path | None,
+        written_to("Folder for numbers, figures and a page per display."),
+    ] = None,
+    mixed: Annotated[
+        bool,
+        typer.Option(
+            "--mixed",
+            help="Mixed models of statsmodels too, of match-to-sample (needs the extra 'models').",
+        ),
+    ] = False,
+    seed: Annotated[int, typer.Option(help="Of the bootstraps.")] = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Analyse what was recorded: thresholds, sensitivity, exponents or confusions, with
+    intervals, and how people worked."""
+    from squeezefilm.errors import InputError
+    from squeezefilm.report.study.terminal_analysis import show_analyses
+    from squeezefilm.study.design.study_design import load_design
+    from squeezefilm.study.record.foreign import columns_of
+    from squeezefilm.study.tasks.analyze import analyze_study
+
+    if design is None and (columns or store.suffix.lower() in (".csv", ".tsv")):
+        raise InputError(
+            f"{store} is analysed as answers of another program; say to which study they were "
+            "given by --design NAME|FILE"
+        )
+    with drawing_by_two(out), working(as_json) as step:
+        analyses = analyze_study(
+            store,
+            design=None if design is None else load_design(design),
+            columns=columns_of(columns),
+            mixed=mixed,
+            seed=seed,
+            progress=step,
+        )
+        page = None
+        if out is not None:
+            from squeezefilm.report.study.page import write_overview
+
+            page = write_overview(analyses, out, step)
+    if as_json:
+        print_json({display: one.summary() for display, one in analyses.items()})
+        return
+    show_analyses(analyses)
+    if page is not None:
+        typer.echo(f"page: {page}")

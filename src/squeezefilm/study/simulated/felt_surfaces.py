@@ -1,0 +1,220 @@
+"""What fingers get of surfaces: felt once, kept on disk, and shared by two processes."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import squeezefilm
+from squeezefilm import quantities as si
+from squeezefilm.display import Display
+from squeezefilm.errors import InputError
+from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.perception.free_hand import free_exploration
+from squeezefilm.perception.observer import FingerClass, Observer
+from squeezefilm.perception.path_percepts import path_percept
+from squeezefilm.perception.percepts import Apparatus, grating_percept, percept
+from squeezefilm.perception.senses import Candidates, line_periods
+from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.plate.layout import AnnularStator
+from squeezefilm.progress import SayProgress
+from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.results import config_hash
+from squeezefilm.second_process import is_present, later, second_process, values
+from squeezefilm.study.simulated.causes import Causes, causes, free_causes
+from squeezefilm.texture_file import TextureFile
+
+_AT_ONCE = 3
+"""Fingers that each of two processes has between two words of progress."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FeltSurface:
+    """What one finger gets of one surface: candidates and evidence by period, of free exploration
+    along x, and `across` along y; why it may be confused (a real grating has no causes)."""
+
+    candidates: Candidates
+    rhythm: si.DimensionlessArray
+    causes: Causes
+    across: Candidates | None = None
+    across_rhythm: si.DimensionlessArray | None = None
+
+
+_KEPT = KeptArrays("percepts", [Path(squeezefilm.__file__).parent])
+_REASONS = len(dataclasses.fields(Causes))
+_NO_CAUSES: Causes = Causes(*(math.nan,) * _REASONS)
+_MOST_REMEMBERED = 8192
+_REMEMBERED: dict[str, FeltSurface] = {}
+"""What this process has met, by what was asked: where nothing is kept on disk, and to be quick."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Asked:
+    """What one finger gets of several surfaces: `feel` of each with the `rest` of its inputs."""
+
+    feel: Callable[..., FeltSurface]
+    surfaces: tuple[Any, ...]
+    rest: tuple[Any, ...]
+
+    def known(self) -> list[FeltSurface] | None:
+        """What was computed before; None unless all was."""
+        count = next(one for one in self.rest if isinstance(one, Observer)).candidates
+        ways = 2 if self.feel is felt_freely else 1
+        names = (_name(self.feel, one, self.rest) for one in self.surfaces)
+        found = [_known(name, count, ways) for name in names]
+        return None if None in found else [one for one in found if one is not None]
+
+    def remember(self, found: list[FeltSurface]) -> None:
+        """What another process found need not be found, nor read, again."""
+        for one, felt in zip(self.surfaces, found, strict=True):
+            _remember(_name(self.feel, one, self.rest), felt)
+
+
+def _felt_of(
+    feel: Callable[..., FeltSurface], surfaces: tuple[Any, ...], *rest: Any
+) -> list[FeltSurface]:
+    return [feel(one, *rest) for one in surfaces]
+
+
+def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[FeltSurface]]:
+    """What each finger gets, what is not known yet by two processes."""
+    found = [one.known() for one in asked]
+    lacking = [at for at, known in enumerate(found) if known is None]
+    with contextlib.ExitStack() as stack:
+        # One that is started when nothing lacks would still be loading when all is done.
+        if lacking and not is_present():
+            stack.enter_context(second_process(_load))
+        half = -(-len(lacking) // 2)
+        for first in range(0, half, _AT_ONCE):
+            # One process begins with the first, the other with the last: of two displays each
+            # solves one.
+            now = lacking[:half][first : first + _AT_ONCE]
+            now += lacking[half:][first : first + _AT_ONCE]
+            tell(f"what fingers feel: {2 * first + 1} of {len(lacking)}")
+            pieces = [
+                later(_felt_of, asked[at].feel, asked[at].surfaces, *asked[at].rest) for at in now
+            ]
+            for at, felt in zip(now, values(*pieces), strict=True):
+                found[at] = felt
+                asked[at].remember(felt)
+    return [one for one in found if one is not None]
+
+
+def _load() -> None:
+    """What a second process needs before it takes fingers."""
+    import_module("squeezefilm.chain.rendered_texture")
+
+
+def _name(feel: Callable[..., FeltSurface], surface: Stimulus | Grating, rest: Any) -> str:
+    """What is asked, as text: how, the surface, and all else that decides what is felt of it."""
+    parts = " ".join(_hash(one) for one in rest)
+    if isinstance(surface, Grating):
+        return f"{feel.__name__} {parts} {config_hash(surface)}"
+    # Two kinds of texture may have the same numbers, and the text of an image leaves out pixels.
+    texture = surface.surface()
+    return f"{feel.__name__} {parts} {texture!r} {config_hash(texture)} {surface.period!r}"
+
+
+def _known(asked: str, count: int, ways: int = 1) -> FeltSurface | None:
+    """What was computed before: in this process, or by what is on disk."""
+    if asked in _REMEMBERED:
+        return _REMEMBERED[asked]
+    lines = line_periods().size
+    each = [count, count, lines]
+    kept = _KEPT.get(asked, ways * sum(each) + _REASONS)
+    if kept is None:
+        return None
+    *parts, reasons = np.split(kept, np.cumsum(each * ways))
+    across, rhythm = (Candidates(parts[3], parts[4]), parts[5]) if ways == 2 else (None, None)
+    why = Causes(*reasons.tolist())
+    found = FeltSurface(Candidates(parts[0], parts[1]), parts[2], why, across, rhythm)
+    _remember(asked, found)
+    return found
+
+
+def _remember(asked: str, found: FeltSurface) -> None:
+    while len(_REMEMBERED) >= _MOST_REMEMBERED:
+        del _REMEMBERED[next(iter(_REMEMBERED))]
+    _REMEMBERED[asked] = found
+
+
+def _keep(asked: str, found: FeltSurface) -> FeltSurface:
+    one, other = found.candidates, found.across
+    parts = [one.period, one.d_prime, found.rhythm]
+    if other is not None and found.across_rhythm is not None:
+        parts += [other.period, other.d_prime, found.across_rhythm]
+    _KEPT.put(asked, np.concatenate([*parts, dataclasses.astuple(found.causes)]))
+    _remember(asked, found)
+    return found
+
+
+def felt_by_strokes(
+    stimulus: Stimulus, display: Display, observer: Observer, finger: FingerClass, run: Apparatus
+) -> FeltSurface:
+    """A virtual surface under strokes along x."""
+    asked = _name(felt_by_strokes, stimulus, (display, observer, finger, run))
+    if (known := _known(asked, observer.candidates)) is not None:
+        return known
+    found, played = percept(display, stimulus, observer, finger, run)
+    why = causes(stimulus, found, played, observer, finger)
+    return _keep(asked, FeltSurface(found.candidates, found.evidence.rhythm, why))
+
+
+def felt_freely(
+    stimulus: Stimulus, display: Display, observer: Observer, finger: FingerClass, run: Apparatus
+) -> FeltSurface:
+    """A virtual surface under a plain hand that explores the face freely."""
+    asked = _name(felt_freely, stimulus, (display, observer, finger, run))
+    if (known := _known(asked, observer.candidates, ways=2)) is not None:
+        return known
+    path = free_path(display, observer, finger)
+    surface = TextureFile(stimulus.surface(), stimulus.name)
+    found = path_percept(display, surface, observer, finger, [path], run)
+    # The hand sweeps both ways, on lines far longer than the shortest run.
+    assert found.along is not None
+    assert found.across is not None
+    one, other = found.along, found.across
+    clearer = max(one, other, key=lambda run: run.clearest_d_prime)
+    felt = FeltSurface(
+        one.percept.candidates,
+        one.percept.evidence.rhythm,
+        free_causes(stimulus, clearer, found.played[0], finger),
+        other.percept.candidates,
+        other.percept.evidence.rhythm,
+    )
+    return _keep(asked, felt)
+
+
+def felt_really(grating: Grating, observer: Observer, finger: FingerClass) -> FeltSurface:
+    """A real grating."""
+    asked = _name(felt_really, grating, (observer, finger))
+    if (known := _known(asked, observer.candidates)) is not None:
+        return known
+    found = grating_percept(grating, observer, finger)
+    return _keep(asked, FeltSurface(found.candidates, found.evidence.rhythm, _NO_CAUSES))
+
+
+def free_path(display: Display, observer: Observer, finger: FingerClass) -> FingerPath:
+    """How a finger explores a display freely. Raises `InputError` for a ring: it has no plane."""
+    plate = display.actuator
+    if isinstance(plate, AnnularStator):
+        raise InputError(
+            f"display '{display.name}' is a ring, and its finger goes along its circumference; for "
+            'exploring = "free" take a plate, or take exploring = "strokes"',
+            quantity="exploring",
+        )
+    return free_exploration(observer, finger, plate.extent)
+
+
+@functools.lru_cache(maxsize=256)
+def _hash(input: Display | Observer | FingerClass | Apparatus) -> str:
+    return config_hash(input)

@@ -1,0 +1,174 @@
+"""Answers of another program: read as the study's own, or refused with line and column."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.perception.observer import load_observer
+from squeezefilm.report.study.simulated_page import ANSWER_COLUMNS
+from squeezefilm.study.conduct.rehearsal import rehearse
+from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.record import foreign
+from squeezefilm.study.record.answers import recorded_answers
+from squeezefilm.study.record.exports import export_study
+from squeezefilm.study.record.foreign import PEOPLE, columns_of, read_answers
+from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.tables import csv_text
+from squeezefilm.study.simulated.answers import SimulatedAnswers, simulate_participants
+from squeezefilm.study.tasks.analyze import analyze_study
+
+Given = Callable[[str], Path]
+DESIGN = load_design("friction-jnd")
+HEAD = "participant_id,stimulus,second_stimulus,choice"
+
+
+@pytest.fixture
+def given(tmp_path: Path) -> Given:
+    """A file with a text in it."""
+
+    def made(text: str) -> Path:
+        path = tmp_path / "answers.csv"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return made
+
+
+@pytest.mark.parametrize(
+    "name", ["period-jnd", "period-same-different", "coarseness-magnitude", "biet2008-gratings"]
+)
+def test_what_a_study_exports_is_read_as_what_it_recorded(name: str, tmp_path: Path) -> None:
+    design = load_design(name)
+    with StudyStore.create(tmp_path / "s.sqlite", design, 3) as store:
+        rehearse(store, load_observer("fingertip"), 2)
+        own = recorded_answers(store)
+        export_study(store, "csv", tmp_path / "out")
+    (path,) = (tmp_path / "out").glob("*trials.csv")
+    found = read_answers(path, design)
+    assert found.origin == PEOPLE
+    assert (found.people, found.surfaces) == (own.people, own.surfaces)
+    for key in (
+        "participant", "number", "phase", "display", "series", "first", "second", "choice", "right",
+        "intensity", "estimate", "response_time",
+    ):  # fmt: skip
+        np.testing.assert_array_equal(getattr(found, key), getattr(own, key), err_msg=key)
+    assert set(found.exploration) == set(own.exploration)
+
+
+@pytest.mark.slow
+def test_what_simulated_people_answered_is_analysed_as_by_the_verb_itself(tmp_path: Path) -> None:
+    simulated = simulate_participants(DESIGN, load_observer("fingertip"), 3, 7)
+    assert isinstance(simulated, SimulatedAnswers)
+    rows = [{"origin": "simulated", **row} for row in simulated.rows()]
+    path = tmp_path / "trials.csv"
+    path.write_text(csv_text(rows, ANSWER_COLUMNS), encoding="utf-8", newline="")
+    # Everything else is the design's or the file's; people are numbers there.
+    found = analyze_study(path, design=DESIGN, columns={"participant_id": "participant"}, seed=7)
+    for display, one in simulated.analyses.items():
+        own, again = one.summary(), found[display].summary()
+        for key in ("pooled", "spread_over_people", "more", "trials"):
+            assert again[key] == own[key]
+        for key in ("conditions", "response_times"):
+            assert sorted(map(repr, again[key])) == sorted(map(repr, own[key]))
+
+
+def test_columns_may_be_called_otherwise_and_what_is_right_follows(given: Given) -> None:
+    path = given(
+        "\ufeffwho;left one;right one;key_resp.keys;rt;remark\n"
+        "anna;30 %;42 %;second;0.8;\n"
+        "anna;18 %;30 %;first;n/a;\n"
+        ";;;;;\n"
+        "anna;18 %;30 %;;;a pause\n"
+        "bert;30 %;30 %;first;1.5;\n"
+    )
+    found = read_answers(
+        path,
+        DESIGN,
+        columns_of(
+            "participant_id=who, stimulus=left one, second_stimulus=right one,"
+            "choice=key_resp.keys, response_time_s=rt"
+        ),
+    )
+    assert found.people == ("anna", "bert")
+    assert list(found.number) == [1, 2, 1]
+    assert [found.surfaces[one].name for one in found.first] == ["30 %", "18 %", "30 %"]
+    # More is right; nothing is where both are the same.
+    assert list(found.right) == [1, 1, -1]
+    assert list(found.choice) == [1, 0, 0]
+    np.testing.assert_array_equal(found.response_time, [0.8, np.nan, 1.5])
+    assert set(found.phase) == {"main"}
+
+
+def test_a_row_may_stand_for_many_trials(given: Given) -> None:
+    found = read_answers(
+        given(f"{HEAD},count\na,30 %,42 %,second,17\na,30 %,42 %,first,3\na,30 %,18 %,first,0\n"),
+        DESIGN,
+    )
+    assert found.trials == 20
+    assert found.correct.mean() == 17 / 20
+    assert list(found.number) == list(range(1, 21))
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (f"{HEAD}\na,30 %,42 %,left\n", r"line 2: choice: 'left' is none of: first, second"),
+        (f"{HEAD}\na,30 %,43 %,first\n", r"line 2.*no stimulus '43 %'"),
+        (f"{HEAD}\na,30 %\n", "line 2: has 2 cells where the header has 4"),
+        (f"{HEAD},display\na,30 %,42 %,first,mine\n", "display: 'mine' is none of: biet2008"),
+        (f"{HEAD},response_time_s\na,30 %,42 %,first,1s\n", "response_time_s: '1s' is no number"),
+        (f"{HEAD},count\na,30 %,42 %,first,1.5\n", "'1.5' is no count"),
+        (f"{HEAD},count\na,30 %,42 %,first,-1\n", "'-1' is no count"),
+        (f"{HEAD},count\na,30 %,42 %,first,\n", "'' is no count"),
+    ],
+)
+def test_what_is_not_understood_is_told_with_its_line(given: Given, text: str, says: str) -> None:
+    with pytest.raises(ConfigError, match=says):
+        read_answers(given(text), DESIGN)
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "says"),
+    [
+        ("", {}, "no column participant_id, stimulus, choice, second_stimulus; .*it has none"),
+        ("participant_id,stimulus,choice\n", {}, "no column second_stimulus"),
+        (f"{HEAD}\n", {"choice": "key"}, "no column 'key'; it has participant_id, stimulus"),
+        (f"{HEAD}\n", {"chosen": "choice"}, "there is no 'chosen'; columns may be told of"),
+        (f"{HEAD}\n", {}, "no row with an answer"),
+    ],
+)
+def test_what_is_lacking_is_told(
+    given: Given, text: str, columns: dict[str, str], says: str
+) -> None:
+    with pytest.raises(InputError, match=says):
+        read_answers(given(text), DESIGN, columns)
+
+
+def test_a_count_that_no_memory_holds_is_refused(
+    given: Given, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(InputError, match="trials in a file of another program"):
+        read_answers(given(f"{HEAD},count\na,30 %,42 %,first,1e12\n"), DESIGN)
+
+
+def test_a_task_of_one_surface_needs_no_second_and_of_numbers_no_choice(given: Given) -> None:
+    design: StudyDesign = load_design("coarseness-magnitude")
+    one = design.stimuli[0].name
+    found = read_answers(given(f"participant_id,stimulus,estimate\na,{one},12\n"), design)
+    assert (found.estimate[0], found.choice[0], found.second[0]) == (12.0, -1, -1)
+
+
+def test_columns_are_told_as_pairs() -> None:
+    assert columns_of(" choice = key_resp.keys , participant_id=who,") == {
+        "choice": "key_resp.keys", "participant_id": "who",
+    }  # fmt: skip
+    assert columns_of("") == {}
+    for wrong in ("choice", "choice=", "=who"):
+        with pytest.raises(InputError, match="says no column; write NAME=COLUMN"):
+            columns_of(wrong)
+    assert foreign.COUNT == "count"

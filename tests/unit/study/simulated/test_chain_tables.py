@@ -1,0 +1,122 @@
+"""What every finger gets: read where it is kept, computed by one process or two, the same."""
+
+from __future__ import annotations
+
+import dataclasses
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from squeezefilm import second_process
+from squeezefilm.kept_arrays import CACHE_VARIABLE
+from squeezefilm.perception.observer import Observer, load_observer
+from squeezefilm.perception.senses import line_amplitudes, line_periods
+from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.simulated import felt_surfaces as felt
+from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Nothing is kept, here or on disk."""
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    monkeypatch.setattr(felt, "_REMEMBERED", {})
+    return tmp_path
+
+
+@pytest.fixture
+def small() -> tuple[StudyDesign, Observer]:
+    """Two displays, two stimuli and answers, two fingers."""
+    design = load_design("biet2008-gratings")
+    names = ("4 mm", "8 mm")
+    design = dataclasses.replace(
+        design,
+        stimuli=tuple(one for one in design.stimuli if one.name in names),
+        alternatives=tuple(one for one in design.alternatives if one.name in names),
+    )
+    return design, dataclasses.replace(load_observer("fingertip"), finger_classes=2)
+
+
+def numbers(found: ChainTables) -> list[Any]:
+    """All that tables hold."""
+    arrays = [found.virtual.period, found.virtual.d_prime, found.real.period, found.real.d_prime]
+    reasons = [
+        dataclasses.astuple(one) for display in found.causes for row in display for one in row
+    ]
+    return [*arrays, found.virtual_rhythm, found.real_rhythm, np.array(reasons)]
+
+
+def test_two_processes_one_and_the_disk_give_the_same(
+    small: tuple[StudyDesign, Observer], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(second_process, "_processors", lambda: 1)
+    alone = numbers(chain_tables(*small))
+    kept = {one.name: one.read_bytes() for one in (folder / "percepts").iterdir()}
+    # Two displays of two stimuli and two real gratings, each under two fingers.
+    assert len(kept) == 12
+    monkeypatch.setattr(felt, "_REMEMBERED", {})
+
+    def none(*_: Any) -> None:
+        raise AssertionError("all is on disk")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(felt, "percept", none)
+        patched.setattr(felt, "grating_percept", none)
+        # No process is started for what is there.
+        patched.setattr(felt, "second_process", none)
+        read = numbers(chain_tables(*small))
+    for one in (folder / "percepts").iterdir():
+        one.unlink()
+    monkeypatch.setattr(felt, "_REMEMBERED", {})
+    monkeypatch.setattr(second_process, "_processors", lambda: 2)
+    together = numbers(chain_tables(*small))
+    for a, b, c in zip(alone, read, together, strict=True):
+        np.testing.assert_array_equal(a, b)
+        np.testing.assert_array_equal(a, c)
+    assert {one.name: one.read_bytes() for one in (folder / "percepts").iterdir()} == kept
+    # What the other process found is known here too.
+    monkeypatch.setenv(CACHE_VARIABLE, "off")
+    with monkeypatch.context() as patched:
+        patched.setattr(felt, "percept", none)
+        np.testing.assert_array_equal(numbers(chain_tables(*small))[1], alone[1])
+
+
+def test_what_is_remembered_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(felt, "_MOST_REMEMBERED", 3)
+    for name in "abcde":
+        felt._remember(name, None)  # type: ignore[arg-type]
+    assert list(felt._REMEMBERED) == ["c", "d", "e"]
+
+
+def test_a_line_by_itself_is_that_of_the_whole_spectrum() -> None:
+    passes = np.random.default_rng(1).normal(size=(2, 400))
+    whole = line_amplitudes(passes)
+    near = slice(100, 102)
+    np.testing.assert_allclose(line_amplitudes(passes, near), whole[near], rtol=1e-12)
+    assert whole.shape == line_periods().shape
+
+
+def test_what_was_felt_before_needs_no_plate_no_loop_and_no_statistics(
+    small: tuple[StudyDesign, Observer],
+) -> None:
+    chain_tables(*small)
+    code = (
+        "import dataclasses, sys\n"
+        "from squeezefilm.perception.observer import load_observer\n"
+        "from squeezefilm.study.design.study_design import load_design\n"
+        "from squeezefilm.study.simulated.answers import simulate_participants\n"
+        "d = load_design('biet2008-gratings')\n"
+        "names = ('4 mm', '8 mm')\n"
+        "keep = lambda many: tuple(one for one in many if one.name in names)\n"
+        "d = dataclasses.replace(d, stimuli=keep(d.stimuli), alternatives=keep(d.alternatives))\n"
+        "o = dataclasses.replace(load_observer('fingertip'), finger_classes=2)\n"
+        "simulate_participants(d, o, 12, 7)\n"
+        "heavy = {'numba', 'scipy.stats', 'scipy.interpolate', 'matplotlib'} & set(sys.modules)\n"
+        "assert not heavy, heavy"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
