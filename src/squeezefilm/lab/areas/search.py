@@ -180,7 +180,7 @@ class SearchArea:
         if one is None:
             return
         if kind == "search says":
-            one.says = message["text"]
+            one.says, one.found["left"] = message["text"], ""
             self._lab.tell({"type": kind, **message})
             return
         if kind == SearchProcess.ended:

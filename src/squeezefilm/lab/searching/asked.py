@@ -63,7 +63,11 @@ def asked_of(text: str, folder: Path) -> dict[str, Any]:
         "title": asked.title,
         "note": asked.note,
         "objectives": [
-            {"key": one.key, "said": one.said, "unit": "" if one.unit.symbol == "1" else one.unit.symbol}
+            {
+                "key": one.key,
+                "said": one.said,
+                "unit": "" if one.unit.symbol == "1" else one.unit.symbol,
+            }
             for one in map(criterion_of, asked.objectives)
         ],
         "limits": [

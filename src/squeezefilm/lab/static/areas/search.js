@@ -24,7 +24,7 @@ class SearchView {
     const hear = this.lab.socket.on;
     hear("connection", ({ open }) => open && this.begin());
     hear("search", ({ search }) => this.take(search));
-    hear("search says", ({ text }) => this.search && this.showState(Object.assign(this.search, { says: text })));
+    hear("search says", ({ text }) => this.search && this.showState(Object.assign(this.search, { says: text, left: "" })));
     if (this.lab.socket.open) await this.begin();
   }
 
@@ -42,7 +42,7 @@ class SearchView {
     };
     this.startButton = element("button", { class: "main", text: "Start the search", onclick: () => this.begun() });
     this.startError = element("p", { class: "error", role: "alert", hidden: true });
-    this.stage = element("p", { class: "stage", role: "status", text: "No search has been started." });
+    this.stage = element("p", { class: "stage", role: "status", text: "No search has been started. The requirements say what the finger should feel, what a display may take and what it may be built from." });
     this.time = element("p", { class: "muted" });
     const bar = (text) => {
       const progress = element("progress", { max: 1, value: 0, "aria-label": `${text} so far` }), said = element("span", {});
@@ -52,16 +52,18 @@ class SearchView {
     this.stopButton = element("button", { text: "Stop", hidden: true, onclick: () => this.stop() });
     this.end = element("p", { hidden: true });
     this.front = new FrontView({ open: (name) => this.open(name), point: (name) => this.pointAt(name) });
-    this.pointedBox = element("div", { class: "pointed" });
+    this.pointedBox = element("section", { class: "card" });
     this.frontNote = element("p", { class: "muted" });
     this.head = element("tr", {});
     this.body = element("tbody", {});
     this.reasons = element("div", { class: "reasons", hidden: true });
     this.foundBox = element("div", { class: "found", hidden: true },
-      element("section", { class: "card" }, element("h2", { text: "The front" }), this.front.box, this.frontNote, this.pointedBox),
+      element("section", { class: "card" }, element("h2", { text: "The front" }), this.front.box, this.frontNote),
       element("section", { class: "card" }, element("h2", { text: "Its plates" }),
         element("div", { class: "scroll", role: "region", "aria-label": "table of the plates", tabindex: 0 },
-          element("table", { class: "plates" }, element("thead", {}, this.head), this.body))), this.reasons);
+          element("table", { class: "plates" }, element("thead", {}, this.head), this.body))),
+      // Below what is pointed at, which must not move.
+      this.pointedBox, this.reasons);
     this.place.append(element("div", { class: "columns search" },
       element("section", { class: "card side" }, element("h2", { text: "Requirements" }),
         field("start from", this.choice), field("as TOML text", this.text), this.error, this.line, this.asked,
@@ -286,7 +288,7 @@ class SearchView {
     this.pointedBox.hidden = !one;
     if (!one) return;
     const pair = ([said, value]) => element("div", {}, element("dt", { text: said }), element("dd", { text: value }));
-    this.pointedBox.replaceChildren(element("h3", { text: `Plate ${name}${name === this.search.chosen ? ", the one to build" : ""}` }),
+    this.pointedBox.replaceChildren(element("h2", { text: `Plate ${name}${name === this.search.chosen ? ", the one to build" : ""}` }),
       element("dl", { class: "pairs" }, ...one.chosen.map(pair), ...one.numbers.map(([, said, value]) => pair([said, value]))),
       ...one.warnings.map((text) => element("p", { class: "warning", text })));
   }
