@@ -110,7 +110,9 @@ def test_a_search_is_stopped_and_goes_on_from_what_is_known(
     ask_for(page, SMALL, screened=3000, solved=5)
     page.locator(".far", has_text=re.compile(r"^[1-9]\d* of 3000 designs")).wait_for(timeout=SOLVED)
     assert page.get_by_role("button", name="Start the search").is_disabled()
-    assert re.search("about .* left of this step", page.locator(".search").inner_text())
+    page.locator(".search p", has_text=re.compile("about .* left of this step")).wait_for(
+        timeout=SOLVED
+    )
     page.get_by_role("button", name="Stop").click()
     page.locator(STAGE, has_text="The search is stopped.").wait_for(timeout=SOLVED)
     assert page.get_by_role("button", name="Start the search").is_enabled()

@@ -59,7 +59,7 @@ class SearchView {
     this.reasons = element("div", { class: "reasons", hidden: true });
     this.foundBox = element("div", { class: "found", hidden: true },
       element("section", { class: "card" }, element("h2", { text: "The front" }), this.front.box, this.frontNote),
-      element("section", { class: "card" }, element("h2", { text: "Its plates" }),
+      this.tableCard = element("section", { class: "card" }, element("h2", { text: "Its plates" }),
         element("div", { class: "scroll", role: "region", "aria-label": "table of the plates", tabindex: 0 },
           element("table", { class: "plates" }, element("thead", {}, this.head), this.body))),
       // Below what is pointed at, which must not move.
@@ -75,8 +75,9 @@ class SearchView {
       element("div", { class: "results" },
         element("section", { class: "card" }, this.title = element("h2", { text: "Search" }), this.stage,
           this.farBox = element("div", { hidden: true }, this.far.screened.box, this.far.solved.box), this.time, this.end,
-          element("div", { class: "row" }, this.stopButton)),
+          this.stopButton),
         this.foundBox)));
+    this.fresh = !this.lab.shared.search;
     this.lab.remember("search", this.fields);
     this.lab.keep(() => clearTimeout(this.settled));
     this.lab.keep(() => clearInterval(this.ticking));
@@ -86,6 +87,8 @@ class SearchView {
   async begin() {
     try {
       this.take((await this.lab.socket.ask("what searches")).search);
+      if (this.fresh && this.search) for (const [name, field] of Object.entries(this.fields)) field.value = this.search.asked[name];
+      this.fresh = false;
       const { presets, saved } = await this.lab.socket.ask("requirements");
       const group = (label, names, kind) => element("optgroup", { label }, ...names.map((name) => element("option", { value: `${kind}:${name}`, text: name })));
       this.choice.replaceChildren(element("option", { value: "", text: "choose…" }), group("presets", presets, "preset"),
@@ -247,12 +250,13 @@ class SearchView {
   }
 
   showRows(plates, search) {
+    this.tableCard.hidden = !plates.length;
     const { objectives } = search.asked, shapes = new Set(plates.map((one) => one.shape)).size > 1;
     const made = plates.some((one) => one.yield !== null);
     const others = COLUMNS.filter((key) => objectives.every((one) => one.key !== key));
     const cell = (name, key) => element("th", { scope: "col" }, EXPLAINED.includes(key) ? element("span", { "data-tip": key, tabindex: 0, text: name }) : name);
     const heads = [["plate", ""], ...(shapes ? [["shape", ""]] : []), ...objectives.map((one) => [one.said, one.key]),
-      ...others.map((key) => [plates[0]?.numbers.find(([one]) => one === key)?.[1] ?? key.replaceAll("_", " "), key]),
+      ...others.map((key) => [plates[0]?.numbers.find(([one]) => one === key)?.[1] ?? key, key]),
       ...(made ? [["made within the limits", "made_within"]] : []), ["chosen freely", ""]];
     const headed = heads.map(([name]) => name).join();
     if (headed !== this.headed) this.head.replaceChildren(...heads.map(([name, key]) => cell(name, key)));
@@ -328,11 +332,10 @@ function wholeNumber(field) {
   throw new Error(`${name}: a whole number from ${field.min} to ${field.max} is wanted`);
 }
 
-/** What differs between plates, in words. */
+/** What the search chose for a plate, in words. */
 function freely(one, search) {
-  const front = search.front.filter((each) => each.shape === one.shape);
-  const differs = one.chosen.filter(([name, value]) => front.some((each) => each.chosen.some(([other, there]) => other === name && there !== value)));
-  return (differs.length ? differs : one.chosen).map(([name, value]) => `${name} ${value}`).join(", ");
+  const free = search.asked.shapes.find((each) => each.name === one.shape).chosen;
+  return one.chosen.filter(([name]) => free.includes(name)).map(([name, value]) => `${name} ${value}`).join(", ");
 }
 
 const sentence = (text) => (text.endsWith(".") ? text : `${text}.`);
