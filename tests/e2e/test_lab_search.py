@@ -170,6 +170,62 @@ def test_what_is_wrong_is_said_with_its_line_before_anything_is_computed(
     assert complaints == []
 
 
+FRONT = """async () => {
+  const { FrontView } = await import("/static/front_view.js");
+  const opened = [], pointed = [], all = (what) => [...document.querySelectorAll(what)];
+  const view = new FrontView({
+    open: (name) => opened.push(name), point: (name) => pointed.push(name),
+  });
+  document.getElementById("area").replaceChildren(view.box);
+  const said = (unit, said) => ({ said, unit });
+  const plate = (name, ...objectives) => ({ name, objectives, words: objectives.map(String) });
+  const found = (...plates) => ({
+    objectives: [said("", "friction"), said("m", "period"), said("kg", "mass")],
+    screened: [[0.2, null, 0.06], [0.3, 4e-4, 0.07]], plates, reference: null, chosen: "b",
+  });
+  const b = plate("b", 0.3, 4e-4, 0.04);
+  view.set(found(plate("a", 0.2, 5e-4, 0.05), b, plate("c", 0.4, null, 0.03)));
+  const labels = () => all(".front-view text.label").map((one) => one.textContent);
+  const names = () => all("circle[data-plate]").map((one) => one.dataset.plate);
+  const dots = () => all("path.screened")[0].getAttribute("d").split("M").length - 1;
+  const first = [labels(), names(), dots()];
+  const [, up] = all(".front-view select");
+  up.value = "2";
+  up.dispatchEvent(new Event("change"));
+  const second = [labels(), names(), dots()];
+  all("circle[data-plate=b]")[0].focus();
+  const key = (key) =>
+    document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+  key("ArrowRight");
+  key("Enter");
+  key("ArrowLeft");
+  key(" ");
+  // The plate that has the focus keeps it while others come and go.
+  view.set(found(plate("d", 0.1, 6e-4, 0.06), b));
+  const kept = document.activeElement.getAttribute("aria-label");
+  view.set(found());
+  view.close();
+  return { first, second, opened, pointed, kept, left: names() };
+}"""
+
+
+def test_three_objectives_are_drawn_two_at_a_time(
+    chromium: Browser, running_lab: RunningLab
+) -> None:
+    page, complaints = opened(chromium, running_lab, "help")
+    page.get_by_role("heading", name="Quantities").wait_for()
+    assert page.evaluate(FRONT) == {
+        # What is not known has no place.
+        "first": [["friction", "period (µm)"], ["a", "b"], 1],
+        "second": [["friction", "mass (g)"], ["a", "b", "c"], 2],
+        "opened": ["c", "b"],
+        "pointed": ["b", "c", "b"],
+        "kept": "plate b, chosen: friction 0.3, period 0.0004, mass 0.04; opens in Design",
+        "left": [],
+    }
+    assert complaints == []
+
+
 def _processes_of(pid: int) -> set[int]:
     """A process's children and theirs, by Linux's list."""
     found: set[int] = set()

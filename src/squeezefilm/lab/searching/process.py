@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 TELL_EVERY: si.Second = 0.25
 """Between two glimpses that the pages get; a new stage and the end are told at once."""
+_SLOWER = 100
+"""Plates of a front for which it is twice as long, since each has a row."""
 
 
 class SearchProcess(ToldProcess):
@@ -133,7 +135,8 @@ def _found(
     def watch(seen: Glimpse) -> None:
         nonlocal last
         now, left = time.monotonic(), pace.left(seen)
-        if last is not None and last[0] == seen.stage and now - last[1] < TELL_EVERY:
+        every = TELL_EVERY * (1 + len(seen.front) / _SLOWER)
+        if last is not None and last[0] == seen.stage and now - last[1] < every:
             return
         last = seen.stage, now
         with stop.held():

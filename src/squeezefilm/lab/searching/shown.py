@@ -33,10 +33,15 @@ def plate(requirements: Requirements, one: Evaluated, made: Made | None = None) 
             unit = getattr(variable, "unit", si.Unit("1"))
             value = si.format_quantity(float(value), unit, 4)
         chosen.append([variable.name.replace("_", " "), str(value)])
+    objectives = one.objectives(requirements.objectives)
     return {
         "name": design.address,
         "shape": space.shape,
-        "objectives": list(one.objectives(requirements.objectives)),
+        "objectives": list(objectives),
+        "words": [
+            criterion_of(name).shown(value)
+            for name, value in zip(requirements.objectives, objectives, strict=True)
+        ],
         "numbers": numbers(one),
         "chosen": chosen,
         "design": {"shape": design.shape, "values": design.settings},

@@ -1,11 +1,11 @@
 // The front of a design search: what was screened, what was solved, the display to compare with. A
 // plate opens with a press; the arrow keys go from one to the next.
 
-import { element, plain, quantity } from "./numbers.js";
+import { element, plain } from "./numbers.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const HEIGHT = 340, LEFT = 58, BOTTOM = 44, TOP = 14, RIGHT = 18;
-const PREFIXES = [[1, ""], [1e-3, "m"], [1e-6, "µ"]];
+const PREFIXES = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"]];
 
 export class FrontView {
   /** `open(name)` is called for a plate that is pressed, `point(name)` for one under pointer or focus. */
@@ -26,7 +26,7 @@ export class FrontView {
     this.watcher.observe(this.box);
   }
 
-  /** `objectives` ({said, unit}), `screened` (rows), `plates` ({name, objectives}), `reference`, `chosen` (a name). */
+  /** `objectives` ({said, unit}), `screened` (rows), `plates` ({name, objectives, words}), `reference`, `chosen` (a name). */
   set(found) {
     const before = this.found?.objectives.length;
     this.found = found;
@@ -129,7 +129,7 @@ export class FrontView {
 
   /** A plate's objectives in words. */
   said(one) {
-    return this.found.objectives.map(({ said, unit }, k) => `${said} ${quantity(one.objectives[k], unit)}`).join(", ");
+    return this.found.objectives.map(({ said }, k) => `${said} ${one.words[k]}`).join(", ");
   }
 
   reach(name) {
@@ -183,11 +183,14 @@ function scale(values, { said, unit }, [from, to], most) {
   const step = power * [1, 2, 5, 10].find((one) => one * power >= rough);
   const ticks = [];
   for (let tick = Math.ceil(low / step) * step; tick <= high; tick += step) ticks.push(tick);
-  const [factor, prefix] = unit ? PREFIXES.find(([one]) => high >= one) ?? PREFIXES.at(-1) : [1, ""];
+  // A kilogram has its prefix already.
+  const whole = unit === "kg" ? 1e-3 : 1, name = unit === "kg" ? "g" : unit;
+  const [times, prefix] = unit ? PREFIXES.find(([one]) => high >= whole * one) ?? PREFIXES.at(-1) : [1, ""];
+  const factor = whole * times;
   return {
     ticks,
     at: (value) => Math.round(10 * (from + ((value - low) / (high - low)) * (to - from))) / 10,
     said: (tick) => plain(tick / factor, 3),
-    label: unit ? `${said} (${prefix}${unit})` : said,
+    label: unit ? `${said} (${prefix}${name})` : said,
   };
 }

@@ -110,6 +110,23 @@ def test_what_is_seen_is_told_a_few_times_a_second_and_each_stage_at_once(
     assert told[1]["left"] == "less than 1 s"
 
 
+def test_a_long_front_is_told_less_often(
+    searched: Searched, clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shown, "glimpse", lambda _, seen: {"solved": seen.solved})
+    many: Any = (None,) * 300
+
+    def how(one: SearchRequest) -> Any:
+        assert one.watch is not None
+        for solved in range(9):
+            one.watch(Glimpse("solving", 0, solved, (), many, None))
+            clock.now += 0.5
+        return SimpleNamespace(stopped=False, of="")
+
+    told = [one["solved"] for one in searched(how) if one["type"] == "search found"]
+    assert told == [0, 2, 4, 6, 8]
+
+
 def test_what_is_left_of_a_stage_follows_from_how_fast_it_went(clock: SimpleNamespace) -> None:
     pace = Pace(200, 16)
     found = []

@@ -33,6 +33,7 @@ def test_a_plate_has_what_is_drawn_in_si_and_what_is_read_in_words() -> None:
     found = shown.plate(ASKED, FIRST, Made(64, 0.75, {}, {}, {}))
     assert found["name"] == FIRST.design.address
     assert found["objectives"] == [0.3, 0.4e-3]
+    assert found["words"] == ["0.3", "400 µm"]
     assert ["resonance_frequency", "resonance", "25 kHz"] in found["numbers"]
     assert not {"cost", "highest_frequency"} & {key for key, _, _ in found["numbers"]}
     assert ["thickness", "1 mm"] in found["chosen"]

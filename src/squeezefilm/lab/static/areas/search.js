@@ -1,7 +1,7 @@
 // Search: say what the finger should feel, watch a search for the plates that can do it, open any.
 
 import { FrontView } from "../front_view.js";
-import { element, plain, quantity } from "../numbers.js";
+import { element, plain } from "../numbers.js";
 
 const KEPT = "squeezefilm requirements";
 const SETTLE = 600;
@@ -211,7 +211,7 @@ class SearchView {
 
   showState(search) {
     const { asked, end, stopping } = search;
-    this.title.textContent = asked.title;
+    this.title.textContent = asked.title || asked.name;
     const stage = search.stage && search.says.startsWith(search.stage) ? search.stage : search.says;
     this.stage.textContent = end ? (end.failed ? "The search failed." : `The search is ${end.message.startsWith("stopped") ? "stopped" : "finished"}.`)
       : stopping ? "Stopping: what is being computed is finished first…" : `${stage[0].toUpperCase()}${stage.slice(1)}.`;
@@ -272,7 +272,7 @@ class SearchView {
       const first = row.firstChild ?? element("th", { scope: "row" }, button);
       const beats = search.beats?.includes(one.name) ? `beats ${search.reference.name}` : "";
       first.replaceChildren(button, ...[best ? "the one to build" : "", beats].filter(Boolean).map((text) => element("small", { text })));
-      const cells = [...(shapes ? [one.shape.replaceAll("_", " ")] : []), ...objectives.map((each, k) => quantity(one.objectives[k], each.unit)), ...others.map(number),
+      const cells = [...(shapes ? [one.shape.replaceAll("_", " ")] : []), ...one.words, ...others.map(number),
         ...(made ? [one.yield === null ? "–" : `${plain(100 * one.yield, 3)} %`] : [])];
       if (row.firstChild !== first) row.prepend(first);
       while (row.children.length > 1) row.lastChild.remove();
