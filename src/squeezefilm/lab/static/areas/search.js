@@ -214,16 +214,16 @@ class SearchView {
     this.title.textContent = asked.title || asked.name;
     const stage = search.stage && search.says.startsWith(search.stage) ? search.stage : search.says;
     this.stage.textContent = end ? (end.failed ? "The search failed." : `The search is ${end.message.startsWith("stopped") ? "stopped" : "finished"}.`)
-      : stopping ? "Stopping: what is being computed is finished first…" : `${stage[0].toUpperCase()}${stage.slice(1)}.`;
+      : stopping ? "Stopping: what is being computed is finished first…" : `${capital(stage)}.`;
     this.farBox.hidden = false;
     for (const [name, most] of [["screened", asked.screened], ["solved", asked.solved]]) {
       const { progress, said } = this.far[name], done = search[name] ?? 0;
       progress.value = most ? Math.min(1, done / most) : 1;
       said.textContent = name === "screened" ? `${done > most ? done : `${done} of ${most}`} designs screened` : `${done} of at most ${most} plates solved`;
     }
-    this.end.hidden = !end || (!end.failed && end.message === "finished");
+    this.end.hidden = !end || (!end.failed && ["finished", "stopped"].includes(end.message));
     this.end.className = end?.failed ? "error" : "muted";
-    this.end.textContent = end?.message ?? "";
+    this.end.textContent = end ? (end.failed ? end.message : `${capital(end.message.replace("stopped; ", ""))}.`) : "";
     this.stopButton.hidden = Boolean(end);
     this.stopButton.textContent = stopping ? "End it at once" : "Stop";
     this.tick();
@@ -338,6 +338,7 @@ function freely(one, search) {
   return one.chosen.filter(([name]) => free.includes(name)).map(([name, value]) => `${name} ${value}`).join(", ");
 }
 
+const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 const sentence = (text) => (text.endsWith(".") ? text : `${text}.`);
 
 function time(seconds) {
