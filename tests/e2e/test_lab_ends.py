@@ -9,8 +9,11 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+from squeezefilm.presets import resolve_requirements
 
 from .conftest import RunningLab
 from .test_lab_lan import experimenters_page
@@ -62,3 +65,20 @@ def test_while_it_computes(tmp_path: Path) -> None:
         assert json.loads(page.recv(120))["type"] == "design"
         assert ended(process) == ""
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_while_it_searches(tmp_path: Path, jobs: int) -> None:
+    text = resolve_requirements("biet2008-plate").read_text(encoding="utf-8")
+    process = begun(tmp_path)
+    lab = RunningLab.of(process, tmp_path)
+    with experimenters_page(lab) as page:
+        start = {"id": 1, "type": "start search", "text": text, "screened": 3000, "jobs": jobs}
+        page.send(json.dumps(start))
+        said: dict[str, Any] = {}
+        while not (said.get("search") or {}).get("screened"):
+            said = json.loads(page.recv(120))
+        assert ended(process) == ""
+    # What was screened is kept, and no key.
+    assert [one.name for one in tmp_path.iterdir()] == ["searches"]
+    assert list(tmp_path.glob("searches/*/designs.jsonl"))

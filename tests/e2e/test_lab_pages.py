@@ -68,7 +68,7 @@ def keep(page: Page, name: str) -> None:
     page.screenshot(path=folder / f"{name}.png", full_page=True)
 
 
-AREAS = ("design", "feel", "device", "study", "results", "help")
+AREAS = ("design", "search", "feel", "device", "study", "results", "help")
 
 
 def test_what_is_pressed_before_the_lab_has_answered_breaks_nothing(

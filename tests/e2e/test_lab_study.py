@@ -628,7 +628,7 @@ def test_a_stored_script_is_shown_as_text(chromium: Browser, running_lab: Runnin
 @pytest.mark.parametrize(
     ("colours", "areas"),
     [
-        ("light", ("device", "study", "results", "help")),
+        ("light", ("search", "device", "study", "results", "help")),
         *(
             pytest.param(
                 one,

@@ -9,17 +9,15 @@ from __future__ import annotations
 
 import contextlib
 import math
-import multiprocessing
-import os
 import signal
-import threading
 from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.errors import SqueezefilmError
+from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
@@ -27,78 +25,17 @@ if TYPE_CHECKING:
 
 ROW_PERIOD: si.Second = 2e-3
 """Between two rows that the page's scope gets; the record has them all."""
-_STOP_LIMIT: si.Second = 5.0
-
 _STOPPED_BEFORE = "stopped before anything was played"
-_WITHOUT_A_WORD = (
-    "the process that played ended without a word; the device stops by its own watchdog"
-)
-
-Tell = Callable[[dict[str, Any]], None]
 
 
-class DeviceSession:
-    """At most one session at a time. `tell` is called from a thread with messages for the pages."""
+class DeviceSession(ToldProcess):
+    """At most one session at a time. Stopped, it ramps to zero, disarms and ends."""
 
-    def __init__(self, tell: Tell) -> None:
-        self._tell = tell
-        self._process: Any = None
-        self._reader: threading.Thread | None = None
-        self._stopped = False
-
-    @property
-    def running(self) -> bool:
-        """Whether something plays."""
-        return self._process is not None and self._process.is_alive()
-
-    def start(self, work: Callable[..., None], **arguments: Any) -> None:
-        """Begin; `work(connection, **arguments)` runs in the process.
-
-        Raises:
-            InputError: something plays already.
-        """
-        if self.running:
-            raise InputError("a device is in use by this lab already; stop it first")
-        self._stopped = False
-        context = multiprocessing.get_context("spawn")
-        ours, theirs = context.Pipe(duplex=False)
-        self._process = context.Process(target=work, args=(theirs,), kwargs=arguments, daemon=False)
-        self._process.start()
-        theirs.close()
-        self._reader = threading.Thread(target=self._read, args=(ours, self._process), daemon=True)
-        self._reader.start()
-
-    def stop(self) -> None:
-        """Ask it to ramp to zero, disarm and end. Returns at once."""
-        if self.running:
-            self._stopped = True
-            os.kill(self._process.pid, signal.SIGINT)
-
-    def close(self) -> None:
-        """Stop, and do not wait for long."""
-        if self.running:
-            self.stop()
-            self._process.join(_STOP_LIMIT)
-            if self._process.is_alive():
-                self._process.kill()
-
-    def _read(self, connection: Connection, process: Any) -> None:
-        end: dict[str, Any] | None = None
-        while True:
-            try:
-                message = connection.recv()
-            except (EOFError, OSError):
-                break
-            if message["type"] == "device ended":
-                end = message
-            else:
-                self._tell(message)
-        # Told only now: who hears of the end may begin again at once.
-        process.join()
-        if end is None:
-            message = _STOPPED_BEFORE if self._stopped else _WITHOUT_A_WORD
-            end = {"type": "device ended", "failed": not self._stopped, "message": message}
-        self._tell(end)
+    ended = "device ended"
+    in_use = "a device is in use by this lab already; stop it first"
+    stopped = _STOPPED_BEFORE
+    died = "the process that played ended without a word; the device stops by its own watchdog"
+    patience = 5.0
 
 
 class _Watched:
@@ -139,7 +76,7 @@ def play(connection: Connection, display: str, texture: str, out: str, **how: An
     from squeezefilm.bench.play import JUDGING, play_texture
     from squeezefilm.texture_file import load_texture
 
-    tell = _telling(connection)
+    tell = telling(connection)
     page = _Watched(tell)
     stopped = _STOPPED_BEFORE
 
@@ -181,7 +118,7 @@ def check(connection: Connection, drive: str, display: str) -> None:
     """Check a device, and tell of it."""
     from squeezefilm.bench.play import check_drive
 
-    tell = _telling(connection)
+    tell = telling(connection)
     with _ends(tell, lambda: "the check was stopped"):
         result = check_drive(drive, display, progress=_Watched(tell).progress)
         found = {"passed": result.passed, "results": to_json(result.results)}
@@ -199,14 +136,3 @@ def _ends(tell: Tell, stopped: Callable[[], str]) -> Iterator[None]:
         tell({"type": "device ended", "failed": False, "message": stopped()})
     except SqueezefilmError as error:
         tell({"type": "device ended", "failed": True, "message": str(error)})
-
-
-def _telling(connection: Connection) -> Tell:
-    def tell(message: dict[str, Any]) -> None:
-        try:
-            connection.send(message)
-        except OSError:
-            # The server is gone: stop as Ctrl-C does, which is safe at any moment.
-            os.kill(os.getpid(), signal.SIGINT)
-
-    return tell

@@ -15,6 +15,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.lab.areas.design import DesignArea
 from squeezefilm.lab.areas.device import DeviceArea
 from squeezefilm.lab.areas.feel import FeelArea
+from squeezefilm.lab.areas.search import SearchArea
 from squeezefilm.lab.areas.study import StudyArea
 from squeezefilm.lab.door import Door, room_for
 from squeezefilm.lab.guard import Places
@@ -69,6 +70,7 @@ def _serve(
     keys = Keys(folder / f".lab-{found}.keys")
     lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{found}"))
     DesignArea(lab)
+    SearchArea(lab)
     FeelArea(lab)
     StudyArea(lab)
     DeviceArea(lab)

@@ -278,7 +278,7 @@ def _end_with_parent() -> None:
 def _work(line: Connection) -> None:
     """Answer one piece of work after the other, until the line is closed."""
     global _line
-    _prepare()
+    prepare()
     _line = line
     with contextlib.suppress(EOFError, OSError):
         while True:
@@ -299,7 +299,9 @@ def _answered(work: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[boo
         return False, error
 
 
-def _prepare() -> None:
+def prepare() -> None:
+    """Make this process one that computes: for a server that may be killed, within limits, its
+    warnings unsaid; Ctrl-C in the terminal is the server's to act on."""
     # Ctrl-C in a terminal reaches every process of the lab; the server's own ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()

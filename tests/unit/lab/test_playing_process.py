@@ -18,7 +18,7 @@ from squeezefilm.bench import play as bench_play
 from squeezefilm.bench.check import CheckResult
 from squeezefilm.device.wire.states import Fault, State
 from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.lab import playing_process
+from squeezefilm.lab import told_process
 from squeezefilm.lab.playing_process import DeviceSession, check, play
 from squeezefilm.report.played import page
 from squeezefilm.session.loop.rows import COLUMNS
@@ -211,7 +211,7 @@ def test_where_the_server_is_gone_the_session_stops_as_by_ctrl_c(
     killed: list[Any] = []
     monkeypatch.setattr(os, "kill", lambda *given: killed.append(given))
     pipe: Any = Pipe()
-    tell = playing_process._telling(pipe)
+    tell = told_process.telling(pipe)
     tell({"type": "a"})
     assert (pipe.said, killed) == ([{"type": "a"}], [])
     pipe.broken = True

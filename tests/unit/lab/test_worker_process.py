@@ -58,7 +58,7 @@ def test_one_piece_is_answered_after_the_other_until_the_line_is_closed(
     monkeypatch: pytest.MonkeyPatch, end: Exception
 ) -> None:
     prepared: list[Any] = []
-    monkeypatch.setattr(worker, "_prepare", lambda: prepared.append(worker._line))
+    monkeypatch.setattr(worker, "prepare", lambda: prepared.append(worker._line))
     monkeypatch.setattr(worker, "_line", None)
     line: Any = Line((max, (1, 2)), (min, (1, 2)), end)
     worker._work(line)
@@ -118,7 +118,7 @@ def test_a_process_is_prepared_for_a_server_that_may_be_killed(
         monkeypatch.delenv(f"{name}_NUM_THREADS", raising=False)
     monkeypatch.setenv("MKL_NUM_THREADS", "3")
     with warnings.catch_warnings():
-        worker._prepare()
+        worker.prepare()
         with warnings.catch_warnings(record=True) as seen:
             warnings.warn("answers carry it", SqueezefilmWarning, stacklevel=1)
         assert seen == []

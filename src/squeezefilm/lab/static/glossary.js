@@ -125,6 +125,16 @@ export const DISPLAY = {
   moisture: { name: "moisture", text: "Of the skin: water softens it and makes it grip.", source: "assumed" },
 };
 
+/** A search for plates. */
+export const SEARCH = {
+  finest_period: { name: "finest grating felt", text: "The shortest period of a square grating that the observer notices at the finger's speed, on the plate at full swing.", source: "the simulated observer; docs/explanation/observers.md" },
+  temperature_rise: { name: "temperature rise", text: "Of the plate above the room, driven all the time at the resonance that it drifts to.", source: "heat lost in the plate, natural convection and radiation" },
+  screened_designs: { name: "screened", text: "Judged by the screening theory, some ten milliseconds each: it says which designs are worth solving, and why others fail.", source: "Timoshenko beam, shear plate; discs as they are solved" },
+  solved_designs: { name: "solved", text: "In three dimensions, seconds each: only solved plates are on the front.", source: "finite elements; Fourier harmonics of a disc" },
+  made_within: { name: "made within the limits", text: "The share of plates, made with the tolerances, that keep all limits.", source: "64 drawn by a scrambled Sobol sequence; the tolerances of the requirements" },
+  empty_corners: { name: "empty corners", text: "Parts of what may be chosen in which no screened design meets the limits, and what stands in the way there.", source: "the screened designs, in five parts of every range" },
+};
+
 /** A finger on it: Feel and Device. */
 export const MOTION = {
   lag: { name: "lag", text: "How far the rendered vibration trails the finger: the resonator's time constant times the speed.", source: "first-order envelope" },
@@ -154,4 +164,4 @@ export const RESULTS = {
   response_time: { name: "response time", text: "Mean and spread of its normal part and mean of its exponential tail, all trials.", source: "ex-Gaussian distribution" },
 };
 
-export const GLOSSARY = { ...DISPLAY, ...MOTION, ...RESULTS };
+export const GLOSSARY = { ...DISPLAY, ...SEARCH, ...MOTION, ...RESULTS };

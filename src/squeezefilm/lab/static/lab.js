@@ -8,7 +8,7 @@ import { watchTips } from "./tips.js";
 import { offerTour } from "./tour.js";
 import { Visit } from "./visit.js";
 
-const AREAS = ["design", "feel", "device", "study", "results", "help"];
+const AREAS = ["design", "search", "feel", "device", "study", "results", "help"];
 const place = document.getElementById("area");
 const connection = document.getElementById("connection");
 const notice = document.getElementById("notice");

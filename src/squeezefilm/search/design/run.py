@@ -58,13 +58,15 @@ _NEAR, _FROM = 10, 16
 @dataclass(frozen=True)
 class Glimpse:
     """What a search has so far, for whoever watches: the stage in words, how many of how many
-    designs, and the objectives of screened and solved designs that are feasible now."""
+    designs, the objectives of screened and solved designs that are feasible now, and the display
+    to compare with."""
 
     stage: str
     screened: int
     solved: int
     screened_front: tuple[tuple[float, ...], ...]
     front: tuple[Evaluated, ...]
+    reference: Evaluated | None
 
 
 @dataclass(frozen=True)
@@ -134,6 +136,7 @@ class SearchRun:
         self._corrections: list[Correction | None] = [None] * len(self.requirements.spaces)
         self._seen: dict[Level, dict[Design, Evaluated]] = {"screened": {}, "solved": {}}
         self._began, self._done = time.monotonic(), False
+        self._stage, self._shown_next = "", 0.0
 
     def finish(self) -> None:
         """All that is left to do. What came is kept where this is interrupted."""
@@ -182,7 +185,7 @@ class SearchRun:
                 asked = proposals.ask(size, batch)
                 found = self._evaluated(pool, [design for _, design in asked], "screened")
                 proposals.tell([(trial, found[design]) for trial, design in asked])
-                self._show(f"screening {space.shape}")
+                self._show()
         if all(one.reason for one in self._seen["screened"].values()):
             first = next(iter(self._seen["screened"].values()), None)
             raise InputError(
@@ -191,7 +194,7 @@ class SearchRun:
             )
 
     def _say_screening(self, shape: str, done: int, begun: float) -> None:
-        every = self._asked.screened
+        self._stage, every = f"screening {shape}", self._asked.screened
         left = ""
         if done:
             seconds = (time.monotonic() - begun) / done * (every - done)
@@ -217,7 +220,7 @@ class SearchRun:
                 return
             self._say_solving("the best that were screened")
             self._evaluated(pool, chosen, "solved")
-            self._show("solving the best that were screened")
+            self._show()
 
     def _screen_beside_the_front(self, pool: Workers) -> None:
         """Look by the screening theory at what differs a little from the solved front: there its
@@ -307,14 +310,14 @@ class SearchRun:
                 self._evaluated(pool, fresh, "screened")
                 found = self._evaluated(pool, fresh, "solved")
                 studies[shape].tell([(trial, found[design]) for trial, design in asked])
-                self._show("solving what lies beside the front")
+                self._show()
             batch += 1
             if len(solved) == before:
                 return  # it proposes nothing new
         self._learn()
 
     def _say_solving(self, what: str) -> None:
-        solved = self._seen["solved"]
+        self._stage, solved = f"solving {what}", self._seen["solved"]
         took = [one.seconds for one in solved.values()]
         left = ""
         if took:
@@ -356,6 +359,7 @@ class SearchRun:
                 ]
             self._store.add(answers)
             found.update((one.design, one) for one in answers)
+            self._show_meanwhile(level, found)
         self._seen[level].update((design, found[design]) for design in designs)
         return found
 
@@ -373,7 +377,19 @@ class SearchRun:
         at = front_of(rows)
         return [feasible[k] for k in sorted(at, key=lambda k: tuple(rows[k]))]
 
-    def _show(self, stage: str) -> None:
+    def _show_meanwhile(self, level: Level, found: Mapping[Design, Evaluated]) -> None:
+        """Show what came in the middle of a batch, of which the order does not depend on it; so
+        seldom that it takes little of the time."""
+        now = time.monotonic()
+        if self._asked.watch is None or now < self._shown_next:
+            return
+        known = self._seen[level]
+        self._seen[level] = {**known, **found}
+        self._show()
+        self._seen[level] = known
+        self._shown_next = time.monotonic() + max(1.0, 20 * (time.monotonic() - now))
+
+    def _show(self) -> None:
         if self._asked.watch is None:
             return
         names = self.requirements.objectives
@@ -381,7 +397,8 @@ class SearchRun:
         rows = np.array(feasible).reshape(len(feasible), len(names))
         screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows)) if feasible else ()
         counts = len(self._seen["screened"]), len(self._seen["solved"])
-        self._asked.watch(Glimpse(stage, *counts, screened, tuple(self._front())))
+        front = tuple(self._front())
+        self._asked.watch(Glimpse(self._stage, *counts, screened, front, self._reference))
 
     def result(self) -> DesignSearch:
         """What was found until now."""

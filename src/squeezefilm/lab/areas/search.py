@@ -1,0 +1,198 @@
+"""The messages of the Search area: requirements, a search that runs, the plates that it finds."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from pydantic import Field
+
+from squeezefilm import presets
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED
+from squeezefilm.lab.files import existing, named
+from squeezefilm.lab.searching.asked import asked_of, display_text, folder_of
+from squeezefilm.lab.searching.process import SearchProcess, search
+from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
+from squeezefilm.results import write_whole
+
+if TYPE_CHECKING:
+    from squeezefilm.lab.server import Lab
+
+MOST_JOBS = 64
+LONGEST_STOP: si.Second = 20.0
+"""For a search that was stopped to say what it found; then its process is ended."""
+_REQUIREMENTS = "requirements"
+
+
+class RequirementsText(Request):
+    """The text of preset requirements, or of those of a search that was begun here."""
+
+    preset: str | None = Field(None, max_length=100)
+    file: str | None = Field(None, max_length=100)
+
+
+class CheckRequirements(Request):
+    """Requirements as TOML text."""
+
+    text: str = Field(max_length=LONGEST_TEXT)
+
+
+class StartSearch(CheckRequirements):
+    """How many designs are looked at and solved, the seed, and processes."""
+
+    screened: int = Field(2000, ge=int(DESIGNS_SCREENED.least), le=int(DESIGNS_SCREENED.most))
+    solved: int = Field(120, ge=int(DESIGNS_SOLVED.least), le=int(DESIGNS_SOLVED.most))
+    seed: int = Field(1, ge=0, le=2**53)
+    jobs: int = Field(1, ge=1, le=MOST_JOBS)
+
+
+class OpenFound(Request):
+    """A plate of the front by its short name."""
+
+    name: str = Field(max_length=64)
+
+
+@dataclass(slots=True)
+class _Search:
+    """The search that runs, or the last one: what was asked, and what is known of it."""
+
+    text: str
+    asked: dict[str, Any]
+    began: si.Second = field(default_factory=time.monotonic)
+    took: si.Second | None = None
+    says: str = "starting"
+    found: dict[str, Any] = field(default_factory=dict)
+    stopping: bool = False
+    end: dict[str, Any] | None = None
+
+    def message(self) -> Answer:
+        """What a page is told."""
+        seconds = time.monotonic() - self.began if self.took is None else self.took
+        return {
+            "asked": self.asked,
+            "seconds": seconds,
+            "says": self.says,
+            "stopping": self.stopping,
+            "end": self.end,
+            **self.found,
+        }
+
+
+class SearchArea:
+    """Answers the Search area's messages; `process` has the process that searches."""
+
+    def __init__(self, lab: Lab) -> None:
+        self._lab, self._folder = lab, lab.folder / "searches"
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._search: _Search | None = None
+        self.process = SearchProcess(self._tell)
+        lab.closing.append(self.process.close)
+        add = lab.experimenter.add
+        add("requirements", Request, self._listing)
+        add("requirements text", RequirementsText, self._text_of)
+        add("check requirements", CheckRequirements, self._check)
+        add("start search", StartSearch, self._start)
+        add("what searches", Request, self._what)
+        add("stop search", Request, self._stop)
+        add("open found", OpenFound, self._open)
+
+    async def _listing(self, _: Request) -> Answer:
+        files = self._folder.glob(f"*/{_REQUIREMENTS}.toml")
+        saved = sorted(path.parent.name for path in files)
+        return {
+            "type": "requirements",
+            "presets": list(presets.requirement_names()),
+            "saved": saved,
+        }
+
+    async def _text_of(self, asked: RequirementsText) -> Answer:
+        if (asked.preset is None) == (asked.file is None):
+            raise InputError("say which requirements: a preset or those of a search, one of them")
+        if asked.preset is not None:
+            if asked.preset not in presets.requirement_names():
+                raise InputError(f"'{asked.preset}' is no preset of requirements")
+            file = presets.resolve_requirements(asked.preset)
+        else:
+            place = named(self._folder, str(asked.file), "")
+            file = existing(place, _REQUIREMENTS, ".toml")
+        return {"type": "requirements text", "text": file.read_text(encoding="utf-8")}
+
+    async def _asked(self, text: str) -> dict[str, Any]:
+        return await self._lab.workers.quick.do("requirements", asked_of, text, self._lab.folder)
+
+    async def _check(self, asked: CheckRequirements) -> Answer:
+        return {"type": "requirements checked", **await self._asked(asked.text)}
+
+    async def _start(self, asked: StartSearch) -> Answer:
+        how = asked.model_dump(include={"screened", "solved", "seed", "jobs"})
+        wanted = await self._asked(asked.text)
+        if self.process.running or (self._search is not None and self._search.end is None):
+            raise InputError(SearchProcess.in_use)
+        place = named(self._folder, folder_of(wanted["name"], asked.text), "")
+        place.mkdir(parents=True, exist_ok=True)
+        write_whole(place / f"{_REQUIREMENTS}.toml", asked.text)
+        self._loop = asyncio.get_running_loop()
+        self.process.start(search, text=asked.text, folder=self._lab.folder, out=place, **how)
+        self._search = _Search(asked.text, {**wanted, **how, "folder": f"searches/{place.name}"})
+        self._tell_pages()
+        return {"type": "searching"}
+
+    async def _what(self, _: Request) -> Answer:
+        return self._message()
+
+    async def _stop(self, _: Request) -> Answer:
+        one = self._search
+        if one is not None and one.end is None:
+            if one.stopping:
+                # Who presses it again does not want to wait.
+                self.process.kill()
+            else:
+                one.stopping = True
+                self.process.stop()
+                asyncio.get_running_loop().call_later(LONGEST_STOP, self._end, one)
+                self._tell_pages()
+        return {"type": "stopping"}
+
+    def _end(self, one: _Search) -> None:
+        if one is self._search and one.end is None:
+            self.process.kill()
+
+    async def _open(self, asked: OpenFound) -> Answer:
+        one = self._search
+        front = [] if one is None else one.found.get("front", [])
+        found = next((plate["design"] for plate in front if plate["name"] == asked.name), None)
+        if one is None or found is None:
+            raise InputError(f"no plate {asked.name} is on the front; search again")
+        work = display_text, one.text, self._lab.folder, found["shape"], found["values"]
+        return {"type": "found display", "text": await self._lab.workers.quick.do(None, *work)}
+
+    def _tell(self, message: dict[str, Any]) -> None:
+        if self._loop is not None and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._told, message)
+
+    def _told(self, message: dict[str, Any]) -> None:
+        """The process said something."""
+        one, kind = self._search, message.pop("type")
+        if one is None:
+            return
+        if kind == "search says":
+            one.says, one.found["left"] = message["text"], ""
+            self._lab.tell({"type": kind, **message})
+            return
+        if kind == SearchProcess.ended:
+            one.took = time.monotonic() - one.began
+            one.found |= message.pop("result", {})
+            one.end, one.says = message, message["message"]
+        else:
+            one.found |= message
+        self._tell_pages()
+
+    def _message(self) -> Answer:
+        return {"type": "search", "search": self._search and self._search.message()}
+
+    def _tell_pages(self) -> None:
+        self._lab.tell(self._message())

@@ -1,0 +1,27 @@
+"""Requirements of which everything is quick, and evaluated designs that nobody computed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from squeezefilm import presets
+from squeezefilm.lab.searching.asked import requirements_of
+from squeezefilm.search.design.candidate import Evaluated, Level, design_of
+from squeezefilm.search.design.criteria import breaches
+from squeezefilm.search.design.requirements import Requirements
+
+TEXT = presets.resolve_requirements("biet2008-plate").read_text(encoding="utf-8")
+
+
+def requirements(text: str = TEXT) -> Requirements:
+    """The preset's."""
+    return requirements_of(text, Path())
+
+
+def evaluated(
+    asked: Requirements, share: float, level: Level = "solved", **numbers: float
+) -> Evaluated:
+    """The design at a share of every range, with numbers that are made up."""
+    space = asked.spaces[0]
+    design = design_of(0, space.at({one.name: share for one in space.free}))
+    return Evaluated(design, level, numbers, breaches(numbers, asked.limits))
