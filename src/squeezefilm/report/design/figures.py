@@ -39,6 +39,16 @@ _SOLVED = "three-dimensional solves of plates as drawn, quality factor assumed"
 # An axis on which the largest is more than so many times the smallest is logarithmic.
 _WIDE = 12.0
 _SHAPES = "osD^"
+_BROKEN: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": "x", "ms": 4, "mew": 0.8}
+_SOLVED_LOOK: dict[str, Any] = {
+    "ls": "", "marker": "o", "ms": 5, "mec": style.BLUE, "mfc": style.PAPER
+}  # fmt: skip
+_COMPARED: dict[str, Any] = {
+    "color": style.ORANGE, "ls": "", "marker": "s", "ms": 8, "mec": style.PAPER
+}  # fmt: skip
+_RING: dict[str, Any] = {
+    "ls": "", "marker": "o", "ms": 13, "mfc": "none", "mec": style.INK, "mew": 1.5
+}  # fmt: skip
 _CLOUD: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": ".", "ms": 5, "alpha": 0.45}
 
 
@@ -53,11 +63,17 @@ def front(found: DesignSearch) -> Figure:
         return style.message_figure(
             "No design meets the requirements", "What each limit costs is in the next figure."
         )
-    figure = style.new_figure(_front_title(found), _SOLVED, 5.6 if len(pairs) == 1 else 5.2)
-    places = figure.subplots(1, len(pairs), squeeze=False)[0]
-    for axes, (first, second) in zip(places, pairs, strict=True):
-        _front_axes(axes, found, rows, first, second)
-    style.legend_below(places[len(pairs) // 2], columns=3, gap=0.15 if len(pairs) == 1 else 0.17)
+    figure = style.new_figure(_front_title(found), _SOLVED, 5.2)
+    # Two objectives have room for the whole cloud, and beside it for what matters of it.
+    close = [(0, 1, False), (0, 1, True)] if found.front else [(0, 1, False)]
+    panels = close if len(pairs) == 1 else [(*pair, False) for pair in pairs]
+    grid = figure.add_gridspec(2, len(panels), height_ratios=[1, 0.14])
+    places = [figure.add_subplot(grid[0, k]) for k in range(len(panels))]
+    for axes, (first, second, zoomed) in zip(places, panels, strict=True):
+        _front_axes(axes, found, rows, first, second, zoomed=zoomed)
+    strip = figure.add_subplot(grid[1, :])
+    strip.set_axis_off()
+    style.legend_in(strip, places[0], columns=3)
     return figure
 
 
@@ -78,32 +94,36 @@ def _front_title(found: DesignSearch) -> str:
 
 
 def _front_axes(
-    axes: Axes, found: DesignSearch, screened: si.FloatArray, first: int, second: int
+    axes: Axes,
+    found: DesignSearch,
+    screened: si.FloatArray,
+    first: int,
+    second: int,
+    *,
+    zoomed: bool,
 ) -> None:
+    """Two objectives against each other; `zoomed` on the front and what it is compared with."""
     names = found.requirements.objectives
     goals = [criterion_of(names[k]) for k in (first, second)]
     solved = _rows(found, [one for one in found.solved if one.is_feasible])
     broken = _rows(found, [one for one in found.solved if one.broken])
     reference = _rows(found, [] if found.reference is None else [found.reference])
-    shown = np.concatenate([screened, solved, found.objectives, reference])[:, [first, second]]
+    most = [found.objectives, reference] + ([] if zoomed else [screened, solved])
+    within = np.concatenate(most)[:, [first, second]]
     scales = []
     for k, one in enumerate(goals):
-        factor, symbol = scaled(shown[:, k], one.unit)
+        factor, symbol = scaled(within[:, k], one.unit)
         scales.append(factor)
-        _axis(axes, "xy"[k], shown[:, k] * factor, labelled(one.said, symbol))
+        _axis(axes, "xy"[k], within[:, k] * factor, labelled(one.said, symbol))
 
     def at(rows: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
         return rows[:, first] * scales[0], rows[:, second] * scales[1]
 
     axes.plot(*at(screened), **_CLOUD, label="screened, keeps all limits")
-    low, high = axes.get_xlim(), axes.get_ylim()
     if broken.size:
-        cross = {"color": style.MUTED, "ls": "", "marker": "x", "ms": 4, "mew": 0.8}
-        axes.plot(*at(broken), **cross, label="solved, breaks a limit")
-        axes.set(xlim=low, ylim=high)
+        axes.plot(*at(broken), **_BROKEN, label="solved, breaks a limit")
     if solved.size:
-        ring = {"ls": "", "marker": "o", "ms": 5, "mec": style.BLUE, "mfc": style.PAPER}
-        axes.plot(*at(solved), **ring, label="solved, keeps all limits")
+        axes.plot(*at(solved), **_SOLVED_LOOK, label="solved, keeps all limits")
     if found.front and len(names) == 2:
         axes.plot(*at(found.objectives), color=style.BLUE, lw=1.2, zorder=3)
     for number, (member, x, y) in enumerate(
@@ -111,18 +131,29 @@ def _front_axes(
     ):
         mark = axes.scatter([x], [y], s=62, color=style.BLUE, edgecolor=style.PAPER, zorder=4)
         mark.set_urls([f"{ROW}{member.name}"])
-        mark.set_gid(f"{MARKED}{member.name}-{first}{second}")
+        mark.set_gid(f"{MARKED}{member.name}-{first}{second}{int(zoomed)}")
         if number == 0:
             mark.set_label("the front")
     if found.chosen is not None:
         here = found.objectives[[member is found.chosen for member in found.front]]
-        ring = {"marker": "o", "ms": 14, "mfc": "none", "mec": style.INK, "mew": 1.6, "ls": ""}
-        axes.plot(*at(here), **ring, zorder=5, label="the plate to build")
+        axes.plot(*at(here), **_RING, zorder=5, label="the plate to build")
     if reference.size:
-        square = {"color": style.ORANGE, "marker": "s", "ms": 8, "mec": style.PAPER, "ls": ""}
         name = style.plain(found.requirements.compare_with)
-        axes.plot(*at(reference), **square, zorder=5, label=f"{name}, to compare")
-    axes.autoscale_view()
+        axes.plot(*at(reference), **_COMPARED, zorder=5, label=f"{name}, to compare")
+    if zoomed:
+        axes.set_title("the front, from near")
+    axes.set_xlim(_ends(within[:, 0] * scales[0], axes.get_xscale() == "log"))
+    axes.set_ylim(_ends(within[:, 1] * scales[1], axes.get_yscale() == "log"))
+
+
+def _ends(values: si.FloatArray, logarithmic: bool) -> tuple[float, float]:
+    """The ends of an axis with room for marks around the values."""
+    low, high = float(values.min()), float(values.max())
+    if logarithmic:
+        room = (high / low) ** 0.08
+        return low / room, high * room
+    room = 0.08 * (high - low) or 0.1 * abs(high) or 1.0
+    return low - room, high + room
 
 
 def _axis(axes: Axes, which: str, values: si.FloatArray, label: str) -> None:
@@ -144,7 +175,8 @@ def _rows(found: DesignSearch, designs: Sequence[Evaluated]) -> si.FloatArray:
     """The finite objectives of designs (SI), shape (designs, objectives)."""
     names = found.requirements.objectives
     rows = np.array([one.objectives(names) for one in designs]).reshape(len(designs), len(names))
-    return rows[np.isfinite(rows).all(axis=1)]
+    finite: si.FloatArray = rows[np.isfinite(rows).all(axis=1)]
+    return finite
 
 
 def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
@@ -161,9 +193,10 @@ def limits(found: DesignSearch) -> Figure:
             "No limit was asked for", "Every design that can be built keeps the requirements."
         )
     most, alone = found.limits[0], max(found.limits, key=lambda one: one.alone)
-    said = f"{CRITERIA[most.key].said} is the limit that most designs break"
+    said = f"Most designs break the limit on {CRITERIA[most.key].said}"
     if alone.alone:
-        said += f"; {CRITERIA[alone.key].said} alone stands in the way of {alone.alone}"
+        which = "it" if alone is most else f"that on {CRITERIA[alone.key].said}"
+        said += f"; {which} alone stands in the way of {alone.alone}"
     figure = style.new_figure(
         said, "the screening theory: beams, strips with shear, rings as solved",
         1.5 + 0.42 * len(reasons),
@@ -174,8 +207,9 @@ def limits(found: DesignSearch) -> Figure:
     axes.barh(
         at, [one.alone for one in reasons], height=0.45, color=style.ORANGE, label="break it alone"
     )
-    for row, one in zip(at, reasons, strict=True):
-        axes.text(one.broken, row, f" {one.broken}, {one.alone} alone", va="center", fontsize=9)
+    for row, one in enumerate(reasons):
+        alone_too = f", {one.alone} alone" if one.alone else ""
+        axes.text(one.broken, row, f" {one.broken}{alone_too}", va="center", fontsize=9)
     axes.set_yticks(at, [limit_words(one.key, one.limit) for one in reasons])
     axes.set(xlabel=f"designs, of {every} screened", xlim=(0, 1.22 * max(most.broken, 1)))
     axes.grid(visible=False, axis="y")
@@ -203,8 +237,11 @@ def screening(found: DesignSearch) -> Figure:
         "the screening theory across, three-dimensional solves up",
         4.3,
     )
-    for axes, name in zip(figure.subplots(1, len(names)), names, strict=True):
+    places = figure.subplots(1, len(names))
+    for axes, name in zip(places, names, strict=True):
         _screening_axes(axes, found, name, pairs)
+    if len(found.requirements.spaces) > 1:
+        style.legend_below(places[len(names) // 2], columns=4, gap=0.22)
     return figure
 
 
@@ -219,25 +256,30 @@ def _screening_axes(
     factor, symbol = scaled(values.ravel(), one.unit)
     for number, space in enumerate(found.requirements.spaces):
         here = factor * values[shape == number]
-        look = {"ls": "", "marker": _SHAPES[number % 4], "ms": 5, "mec": style.PAPER}
+        look: dict[str, Any] = {
+            "ls": "",
+            "marker": _SHAPES[number % 4],
+            "ms": 5,
+            "mec": style.PAPER,
+        }
         color = style.LINES[number % len(style.LINES)][0]
         axes.plot(here[:, 0], here[:, 1], color=color, **look, label=space.shape)
     if values.size:
         ends = factor * np.array([values.min(), values.max()])
         axes.plot(ends, ends, **style.REFERENCE)
     axes.set(xlabel=labelled("screened", symbol), ylabel=labelled("solved", symbol))
+    axes.locator_params(axis="x", nbins=4)
     known = [c for c in found.corrections if c is not None and one.key in c.raw]
-    off = f"\noff by {max(si.percent(c.raw[one.key]) for c in known)}" if known else ""
+    off = f"\noff by {si.percent(max(c.raw[one.key] for c in known), 1)}" if known else ""
     axes.set_title(f"{one.said}{off}")
-    if len(found.requirements.spaces) > 1:
-        axes.legend(loc="best")
 
 
 @style.drawn
 def settings(found: DesignSearch) -> Figure:
     """What was chosen along the front: each variable over the first objective."""
     spaces = found.requirements.spaces
-    free = {variable.name: variable for space in spaces for variable in space.free}
+    of_front = sorted({one.evaluated.design.shape for one in found.front})
+    free = {variable.name: variable for shape in of_front for variable in spaces[shape].free}
     if not found.front or not free:
         return style.message_figure(
             "What was chosen", "The front is empty." if not found.front else "Nothing was free."
@@ -250,16 +292,17 @@ def settings(found: DesignSearch) -> Figure:
         _SOLVED,
         1.0 + 2.4 * lines,
     )
-    places = figure.subplots(lines, columns, squeeze=False, sharex=True).ravel()
+    places = figure.subplots(lines, columns, squeeze=False).ravel()
     for axes, variable in zip(places, free.values(), strict=False):
         _settings_axes(axes, found, variable)
     for spare in places[len(free) :]:
         spare.set_axis_off()
     factor, symbol = scaled(found.objectives[:, 0], goal.unit)
-    del factor
+    for axes in places[: len(free)]:
+        axes.set_xlim(_ends(factor * found.objectives[:, 0], logarithmic=False))
+        axes.locator_params(axis="x", nbins=4)
     for axes in places[max(len(free) - columns, 0) : len(free)]:
         axes.set_xlabel(labelled(goal.said, symbol))
-        axes.tick_params(labelbottom=True)
     return figure
 
 
@@ -288,16 +331,21 @@ def _settings_axes(axes: Axes, found: DesignSearch, variable: Variable) -> None:
         values = np.array([float(o.evaluated.design.settings[variable.name]) for _, o in members])
         scale, symbol = scaled(values, variable.unit)
         y = (scale * values).tolist()
+        axes.set_ylim(_ends(scale * values, logarithmic=False))
         if variable.name.startswith("nodal_"):
-            axes.yaxis.get_major_locator().set_params(integer=True)
+            axes.locator_params(axis="y", integer=True)
     chosen = found.chosen
     for number, (value, (x, one)) in enumerate(zip(y, members, strict=True)):
         shape = one.evaluated.design.shape
-        look = {"color": style.BLUE, "marker": _SHAPES[shape % 4], "ms": 6, "mec": style.PAPER}
+        look: dict[str, Any] = {
+            "color": style.BLUE,
+            "marker": _SHAPES[shape % 4],
+            "ms": 6,
+            "mec": style.PAPER,
+        }
         axes.plot([x], [value], ls="", **look, zorder=3 + number / 100)
         if one is chosen:
-            ring = {"marker": "o", "ms": 12, "mfc": "none", "mec": style.INK, "mew": 1.4}
-            axes.plot([x], [value], ls="", **ring, zorder=5)
+            axes.plot([x], [value], **_RING, zorder=5)
     axes.set_title(labelled(variable.name.replace("_", " "), symbol))
 
 

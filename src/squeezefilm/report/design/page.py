@@ -8,10 +8,12 @@ from collections.abc import Iterator
 from html import escape
 from pathlib import Path
 
+from squeezefilm import quantities as si
 from squeezefilm.report.design.figures import FIGURES, MARKED
 from squeezefilm.report.design.plates import plate_file
 from squeezefilm.report.design.words import (
     asked_sentences,
+    bound_words,
     chosen_sentences,
     chosen_words,
     counts_sentence,
@@ -145,9 +147,9 @@ def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
         why = "" if worst is None else f", mostly for its {CRITERIA[worst[0]].said}"
         yield (
             "limit",
-            f"Of the plates made from its drawing {100 * (1 - chosen.made.kept):.0f} % break a limit"
-            f"{why}: a limit met exactly is met by half of what is made. least_yield among the "
-            "limits asks for more.",
+            f"Of the plates made from its drawing {100 * (1 - chosen.made.kept):.0f} % break a "
+            f"limit{why}: a limit met exactly is met by half of what is made. least_yield among "
+            "the limits asks for more.",
         )
     yield (
         "doubt",
@@ -247,9 +249,7 @@ def _criteria_rows(found: DesignSearch, member: FrontMember) -> Iterator[tuple[s
         value = member.evaluated.numbers.get(key)
         if value is None or math.isnan(value) or (key == "highest_frequency" and key not in bounds):
             continue
-        limit = ""
-        if key in bounds:
-            limit = f"{'at least' if one.is_floor else 'at most'} {criterion_words(key, bounds[key])}"
+        limit = bound_words(key, bounds[key]) if key in bounds else ""
         yield (
             one.said,
             criterion_words(key, value),
@@ -307,9 +307,8 @@ def _errors(found: DesignSearch) -> str:
             if key == "highest_frequency":
                 continue
             after = one.errors[key] if one is not None else raw
-            rows.append(
-                (f"{space.shape}: {CRITERIA[key].said}", f"{100 * raw:.1f} %", f"{100 * after:.1f} %")
-            )
+            what = f"{space.shape}: {CRITERIA[key].said}"
+            rows.append((what, si.percent(raw, 1), si.percent(after, 1)))
     table = text_table(
         "Screened against solved, one standard deviation",
         ("number", "as screened", "corrected, on plates left out"),
@@ -320,10 +319,9 @@ def _errors(found: DesignSearch) -> str:
 
 def _files(found: DesignSearch) -> str:
     plates = [f"{PLATES}/{one.name}.toml" for one in found.front]
-    said = (
+    return (
         f"<p>{links((DATA, TABLE, *plates))}</p>"
         "<p>A plate's file is a display like any other: <code>squeezefilm analyze "
         "plates/NAME.toml</code> works it out, <code>squeezefilm render</code> plays a texture on "
         "it.</p>"
     )
-    return said

@@ -62,7 +62,7 @@ def plate_sources(
     found["drive.voltage"] = chosen
     given = Provenance(f"given by the requirements '{requirements.name}'", "assumed")
     for leaf in _stated(display):
-        _, name, *rest = leaf.path
+        name = leaf.path[1]
         path = ".".join(map(str, leaf.path))
         if name in _GIVEN:
             found[path] = given

@@ -85,11 +85,9 @@ def _show_front(console: Console, found: DesignSearch) -> None:
         if found.reference is not None and not found.reference.reason:
             rows.append(["to compare", *row_of(requirements, found.reference), ""])
         chosen = found.chosen_name
-        table(console, head, rows, styles=lambda row: "bold" if row[0] == chosen else "")
+        table(console, head, rows, fixed=(0,), styles=lambda row: "bold" if row[0] == chosen else "")
         heading(console, "The front: what was chosen")
-        made_of = [
-            [one.name, chosen_words(requirements, one.evaluated.design)] for one in members
-        ]
+        made_of = [[one.name, chosen_words(requirements, one.evaluated.design)] for one in members]
         table(console, ("", ""), made_of, fixed=(0,))
         if len(found.front) > len(members):
             console.print(f"{len(found.front) - len(members)} more plates stand in front.csv")

@@ -50,8 +50,12 @@ def criterion_words(key: str, value: float | None) -> str:
 
 def limit_words(key: str, bound: float) -> str:
     """A criterion with its limit (SI) in words."""
-    one = CRITERIA[key]
-    return f"{one.said} {'at least' if one.is_floor else 'at most'} {criterion_words(key, bound)}"
+    return f"{CRITERIA[key].said} {bound_words(key, bound)}"
+
+
+def bound_words(key: str, bound: float) -> str:
+    """A limit (SI) in words."""
+    return f"at {'least' if CRITERIA[key].is_floor else 'most'} {criterion_words(key, bound)}"
 
 
 def setting_words(variable: Variable, design: Design, requirements: Requirements) -> str:
@@ -75,7 +79,7 @@ def material_words(kind: str, name: str, requirements: Requirements) -> str:
 
 
 def chosen_words(requirements: Requirements, design: Design) -> str:
-    """What was chosen of a plate, in a line: the shape where there are several, sheet, ceramic, counts, sides, voltage."""
+    """What was chosen of a plate, in a line; the shape before it where there are several."""
     said = ", ".join(_chosen(requirements, design))
     if len(requirements.spaces) == 1:
         return said
@@ -118,8 +122,8 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     shapes = ", ".join(one.shape for one in requirements.spaces)
     return [
         f"A finger at {shown(touch.speed, si.Unit('m/s'))} with "
-        f"{shown(finger.normal_force, si.Unit('N'))} on '{surface}'; a plate of {size}, driven with "
-        f"{volts}.",
+        f"{shown(finger.normal_force, si.Unit('N'))} on '{surface}'; a plate of {size}, driven "
+        f"with {volts}.",
         f"As small as possible: {goals}.",
         f"Limits: {'; '.join(bounds) if bounds else 'none'}.",
         f"Shapes: {shapes}. Where a material is '{OWN}', it is that of {requirements.start_from}.",
@@ -313,8 +317,8 @@ def _left(found: DesignSearch, k: int, own: tuple[float, ...]) -> str:
 def rank_sentences(found: DesignSearch) -> list[str]:
     """How well the screening ranked what was then solved."""
     said = [
-        f"Screening and solving rank the solved plates by {criterion_of(name).said} with Spearman's "
-        f"ρ = {value:.2f}."
+        f"Screening and solving rank the solved plates by {criterion_of(name).said} with "
+        f"Spearman's ρ = {value:.2f}."
         for name, value in found.ranks.items()
     ]
     for space, one in zip(found.requirements.spaces, found.corrections, strict=True):
