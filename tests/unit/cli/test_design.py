@@ -1,4 +1,4 @@
-"""`squeezefilm design` as a person types it: mistakes are told before any work, a stop keeps all."""
+"""`squeezefilm design` as a person types it: mistakes are told before any work."""
 
 import json
 import re
@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 import squeezefilm as sf
-from squeezefilm import presets
+from squeezefilm import config, presets
 from squeezefilm.cli import app
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.search.design import run as searches
