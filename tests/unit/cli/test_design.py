@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 import squeezefilm as sf
-from squeezefilm import config, presets
+from squeezefilm import presets
 from squeezefilm.cli import app
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.search.design import run as searches

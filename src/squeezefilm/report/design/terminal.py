@@ -84,8 +84,8 @@ def _show_front(console: Console, found: DesignSearch) -> None:
         rows = [[one.name, *front_row(requirements, one)] for one in members]
         if found.reference is not None and not found.reference.reason:
             rows.append(["to compare", *row_of(requirements, found.reference), ""])
-        chosen = found.chosen_name
-        table(console, head, rows, fixed=(0,), styles=lambda row: "bold" if row[0] == chosen else "")
+        looks = {found.chosen_name: "bold"}
+        table(console, head, rows, fixed=(0,), styles=lambda row: looks.get(row[0], ""))
         heading(console, "The front: what was chosen")
         made_of = [[one.name, chosen_words(requirements, one.evaluated.design)] for one in members]
         table(console, ("", ""), made_of, fixed=(0,))

@@ -25,6 +25,7 @@ POPULATION = 100
 # In place of an objective that is infinite or not known, which no sampler takes.
 _NONE = 1e6
 _EXCESS = "excess"
+_TOLD = "told"  # of trials that were known from elsewhere, and proposed by no one
 
 
 class Proposals:
@@ -65,6 +66,20 @@ class Proposals:
             load_if_exists=True,
         )
         self._end_what_was_left()
+        self._before = self._proposed_before()
+
+    def _proposed_before(self) -> list[dict[str, float]]:
+        """What this member proposed in earlier runs and was told of, in that order: a search that
+        is asked again goes the same way until it comes where it stopped."""
+        import optuna
+
+        done = (optuna.trial.TrialState.COMPLETE,)
+        return [
+            dict(trial.params)
+            for trial in self._study.get_trials(deepcopy=False, states=done)
+            if not trial.user_attrs.get(_TOLD)
+            and trial.user_attrs.get("member", 0) == self._seed[1]
+        ]
 
     def _end_what_was_left(self) -> None:
         """Trials of this member that were begun and never answered are nobody's any more."""
@@ -83,6 +98,11 @@ class Proposals:
         done = (optuna.trial.TrialState.COMPLETE,)
         return len(self._study.get_trials(deepcopy=False, states=done))
 
+    @property
+    def repeats(self) -> bool:
+        """Whether what is asked next is what was asked in earlier runs."""
+        return bool(self._before)
+
     def known(self, found: Sequence[Evaluated]) -> None:
         """Tell of designs that somebody else proposed, so that the sampler learns from them."""
         import optuna
@@ -94,15 +114,19 @@ class Proposals:
                     params=shares,
                     distributions={name: _distribution() for name in shares},
                     values=self._values(one),
-                    user_attrs={_EXCESS: self._excess(one)},
+                    user_attrs={_EXCESS: self._excess(one), _TOLD: True},
                 )
             )
 
     def ask(self, count: int, batch: int) -> list[tuple[Any, Design]]:
-        """So many designs, each with the trial that is to be told of."""
+        """So many designs, each with the trial that is to be told of: those of earlier runs first,
+        whose trials (None) were told of then."""
+        again, self._before = self._before[:count], self._before[count:]
+        found: list[tuple[Any, Design]] = [
+            (None, design_of(self._shape, self._space.at(shares))) for shares in again
+        ]
         self._study.sampler = self._sampler(batch)
-        found = []
-        for _ in range(count):
+        for _ in range(count - len(found)):
             trial = self._study.ask()
             shares = {one.name: trial.suggest_float(one.name, 0.0, 1.0) for one in self._space.free}
             if self._seed[1]:
@@ -113,6 +137,8 @@ class Proposals:
     def tell(self, answers: Sequence[tuple[Any, Evaluated]]) -> None:
         """What was found of proposals."""
         for trial, one in answers:
+            if trial is None:
+                continue
             trial.set_user_attr(_EXCESS, self._excess(one))
             self._study.tell(trial, self._values(one))
 

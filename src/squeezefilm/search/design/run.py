@@ -293,7 +293,7 @@ class SearchRun:
                 studies[shape].tell([(trial, found[design]) for trial, design in asked])
                 self._show("solving what lies beside the front")
             batch += 1
-            if len(solved) == before:
+            if len(solved) == before and not any(one.repeats for one in studies.values()):
                 return  # it proposes nothing new
         self._learn()
 
