@@ -193,9 +193,9 @@ def limits(found: DesignSearch) -> Figure:
             "No limit was asked for", "Every design that can be built keeps the requirements."
         )
     most, alone = found.limits[0], max(found.limits, key=lambda one: one.alone)
-    said = f"Most designs break the limit on {CRITERIA[most.key].said}"
+    said = f"The limit broken most often is that on {CRITERIA[most.key].said}"
     if alone.alone:
-        which = "it" if alone is most else f"that on {CRITERIA[alone.key].said}"
+        which = "it" if alone is most else f"the one on {CRITERIA[alone.key].said}"
         said += f"; {which} alone stands in the way of {alone.alone}"
     figure = style.new_figure(
         said, "the screening theory: beams, strips with shear, rings as solved",
@@ -357,6 +357,7 @@ FIGURES = (
         "Better is to the left and below. Grey points were screened only; rings were solved in "
         "three dimensions; the blue points are beaten by no other. Point at one for its numbers, "
         "follow it to its row in the table.",
+        has=lambda one: one.front or any(each.is_feasible for each in one.screened),
     ),
     FigureOf(
         "limits",
@@ -377,5 +378,6 @@ FIGURES = (
         "What was chosen along the front",
         settings,
         "A panel for each thing that could be chosen; the ring is the plate to build.",
+        has=lambda one: one.front,
     ),
 )

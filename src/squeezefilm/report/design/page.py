@@ -81,7 +81,10 @@ def front_csv(found: DesignSearch) -> str:
 def design_page(found: DesignSearch, *, fabrication: str = "") -> str:
     """The page of a search as text; it is complete but for the files that it links to."""
     requirements = found.requirements
-    drawn = {item.key: figure_section(item, item.heading, _svg(found, item)) for item in FIGURES}
+    drawn = {
+        item.key: figure_section(item, item.heading, _svg(found, item)) if item.has(found) else ""
+        for item in FIGURES
+    }
     parts = [
         section("To read first", verdict_list(first_sentences(found))),
         section("What was asked for", bullets(asked_sentences(requirements) + _note(found))),

@@ -140,7 +140,11 @@ def counts_sentence(found: DesignSearch) -> str:
         f"{_many(screened, 'design')} screened, of which {feasible} keep all limits"
         + (f" and {failed} cannot be built or computed" if failed else "")
         + f"; {_many(solved, 'plate')} solved in three dimensions, of which {kept} keep them; "
-        + f"{_many(len(found.front), 'plate')} that none other beats: the front."
+        + (
+            f"{_many(len(found.front), 'plate')} that none other beats: the front."
+            if found.front
+            else "the front is empty."
+        )
     )
 
 
