@@ -29,6 +29,7 @@ _NAMES = {
     "solve_plate": "analysis.plate.command",
     "solve_film": "analysis.film.command",
     "sweep": "search.sweep",
+    "search_designs": "search.design.run",
     # Textures, composed
     "Amplitude": "render.texture.levels",
     "RelativeFriction": "render.texture.levels",

@@ -73,6 +73,9 @@ if TYPE_CHECKING:
     from squeezefilm.report.subjects import plot as plot
     from squeezefilm.report.subjects import write_mode as write_mode
     from squeezefilm.report.subjects import write_report as write_report
+    from squeezefilm.search.design.found import DesignSearch
+    from squeezefilm.search.design.requirements import NamedRequirements
+    from squeezefilm.search.design.run import Glimpse
     from squeezefilm.search.swept import Sweep
     from squeezefilm.session.play.plan import PlayView
     from squeezefilm.session.record.trace import read_trace as read_trace
@@ -208,6 +211,20 @@ if TYPE_CHECKING:
         progress: SayProgress | None = ...,
     ) -> Sweep:
         """The numbers that verbs say of a display, at every point of a grid or of a file."""
+    def search_designs(
+        requirements: NamedRequirements | str | Path,
+        *,
+        screened: int = ...,
+        solved: int = ...,
+        seed: int = ...,
+        jobs: int = ...,
+        scheduler: str | None = ...,
+        out: str | Path | None = ...,
+        member: int = ...,
+        progress: SayProgress | None = ...,
+        watch: Callable[[Glimpse], None] | None = ...,
+    ) -> DesignSearch:
+        """The plates that meet requirements and that none other beats, solved in three dimensions."""
     class Amplitude(_Amplitude):
         """A vibration amplitude: `low` (m, zero-to-peak) where the pattern is 0, `high` where it is 1."""
         def __init__(

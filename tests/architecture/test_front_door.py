@@ -58,6 +58,7 @@ NAMES = (
     "run_study",
     "save_texture",
     "score_prediction",
+    "search_designs",
     "simulate_participants",
     "solve_film",
     "solve_plate",

@@ -12,6 +12,7 @@ import typer
 # In the order in which `--help` lists them.
 from squeezefilm.cli import describe  # noqa: F401 # isort: skip
 from squeezefilm.cli import sweep  # noqa: F401 # isort: skip
+from squeezefilm.cli import design  # noqa: F401 # isort: skip
 from squeezefilm.cli import fabrication  # noqa: F401 # isort: skip
 from squeezefilm.cli import textures  # noqa: F401 # isort: skip
 from squeezefilm.cli import claims  # noqa: F401 # isort: skip

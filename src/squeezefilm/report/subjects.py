@@ -27,6 +27,8 @@ from squeezefilm.measure.calibration.folder import FolderCalibration
 from squeezefilm.measure.planned.fabricate import Fabrication
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.report import film_map
+from squeezefilm.report.design.figures import FIGURES as FIGURES_OF_DESIGN
+from squeezefilm.report.design.page import write_design
 from squeezefilm.report.display.figures import FIGURES
 from squeezefilm.report.display.page import write_analysis
 from squeezefilm.report.fabrication.drawing_sheet import drawing_sheet
@@ -50,6 +52,7 @@ from squeezefilm.report.sweep.files import write_sweep
 from squeezefilm.report.textures import figures as textures
 from squeezefilm.report.textures import gallery
 from squeezefilm.report.textures.page import write_render
+from squeezefilm.search.design.found import DesignSearch
 from squeezefilm.search.swept import Sweep
 from squeezefilm.study.identification.analysis import IdentificationAnalysis
 from squeezefilm.study.psychometric.fit import PsychometricFit
@@ -96,6 +99,7 @@ SUBJECTS: Mapping[type, _Subject] = {
     RingAnalysis: _Subject(_by_key(ring.FIGURES), plate.write_plate),
     SensitivityTable: _Subject({"tornado": sensitivity_figures.tornado}),
     Sweep: _Subject({"sweep": sweep_figure}, write_sweep),
+    DesignSearch: _Subject(_by_key(FIGURES_OF_DESIGN), write_design),
     TextureFile: _Subject({"texture": gallery.picture}),
     Composable: _Subject({"texture": lambda one: gallery.picture(TextureFile.of(one))}),
     RenderAnalysis: _Subject(_by_key(textures.FIGURES), write_render),

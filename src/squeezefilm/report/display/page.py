@@ -42,12 +42,14 @@ from squeezefilm.report.kit.page_style import (
     FigureOf,
     as_html,
     bullets,
+    figure_section,
     html_table,
     page,
     part,
     section,
     stamped,
     text_table,
+    verdict_list,
 )
 from squeezefilm.report.kit.point_rows import electronics_rows
 from squeezefilm.results import to_json
@@ -60,7 +62,6 @@ if TYPE_CHECKING:
 
 # More samples of a trace than a reader can use would make megabytes of text.
 _MOST_SAMPLES = 4000
-_KINDS = {"good": "✓ Good", "limit": "△ Limit", "doubt": "? Doubt"}
 # What stands beside an analysis for comparison, each computed by itself.
 _BESIDE = (
     "film_models",
@@ -152,7 +153,7 @@ def report_page(
     def shown(figures: tuple[FigureOf, ...]) -> Iterator[str]:
         for item in figures:
             svg = ready.get(item.key) or drawing(analysis, item.key)
-            yield _figure(item, FIGURES.index(item) + 1, svg)
+            yield figure_section(item, f"{FIGURES.index(item) + 1}. {item.heading}", svg)
 
     parts = [
         part("decide", "To decide from", _INTRODUCTION),
@@ -209,12 +210,7 @@ def _aside(analysis: Analysis) -> str:
 
 
 def _findings(findings: tuple[Finding, ...]) -> str:
-    items = "\n".join(
-        f'<li class="{finding.kind}"><b>{_KINDS[finding.kind]}</b>'
-        f"<span>{as_html(finding.text)}</span></li>"
-        for finding in findings
-    )
-    return f'<ul class="verdict">\n{items}\n</ul>'
+    return verdict_list((finding.kind, finding.text) for finding in findings)
 
 
 def _key_numbers(analysis: Analysis) -> str:
@@ -273,16 +269,6 @@ def _how_sure(analysis: Analysis) -> str:
     if unsure.refused.count:
         parts.append(f"<p>{escape(unsure.refused.sentence)}.</p>")
     return "\n<br>\n".join(parts)
-
-
-def _figure(item: FigureOf, number: int, svg: str) -> str:
-    """A figure in its section, under its number."""
-    body = (
-        f'<figure id="figure-{item.key}">\n<div class="scroll" tabindex="0" role="region" '
-        f'aria-label="{escape(item.heading)}">{svg}</div>\n'
-        f"<figcaption>{escape(item.reading)}</figcaption>\n</figure>"
-    )
-    return section(f"{number}. {escape(item.heading)}", body, "figure")
 
 
 def _films(analysis: Analysis) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +27,24 @@ def require_folder(folder: str | Path) -> Path:
 def json_text(values: Any) -> str:
     """Values as the text of a JSON file; what JSON cannot carry is as in `to_json`."""
     return json.dumps(to_json(values), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table as the text of a CSV file; cells are empty where there is nothing (None)."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(head)
+    for row in rows:
+        writer.writerow([_cell(value) for value in row])
+    return stream.getvalue()
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    text = repr(value) if isinstance(value, float) else str(value)
+    # A spreadsheet must not take a text for a formula.
+    return f"'{text}" if isinstance(value, str) and text[:1] in "=+-@" and text else text
 
 
 def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:

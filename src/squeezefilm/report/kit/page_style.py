@@ -144,6 +144,9 @@ def section(heading: str, body: str, kind: str = "") -> str:
     return f"<section{attribute}>\n<h2>{heading}</h2>\n{body}\n</section>\n"
 
 
+_KINDS = {"good": "✓ Good", "limit": "△ Limit", "doubt": "? Doubt"}
+
+
 def _always(_: Any) -> bool:
     """Every result has the figure."""
     return True
@@ -179,6 +182,25 @@ def drawn_figures(
         for one in figures
         if one.has(result)
     }
+
+
+def verdict_list(findings: Iterable[tuple[str, str]]) -> str:
+    """Sentences, each behind what it is: "good", "limit" or "doubt"; plain texts."""
+    items = "\n".join(
+        f'<li class="{kind}"><b>{_KINDS[kind]}</b><span>{as_html(text)}</span></li>'
+        for kind, text in findings
+    )
+    return f'<ul class="verdict">\n{items}\n</ul>'
+
+
+def figure_section(item: FigureOf, heading: str, svg: str) -> str:
+    """A figure, drawn as an SVG element, in its section with how it is read."""
+    body = (
+        f'<figure id="figure-{item.key}">\n<div class="scroll" tabindex="0" role="region" '
+        f'aria-label="{escape(item.heading)}">{svg}</div>\n'
+        f"<figcaption>{escape(item.reading)}</figcaption>\n</figure>"
+    )
+    return section(escape(heading), body, "figure")
 
 
 def picture_files(figures: Mapping[str, tuple[str, Figure]]) -> dict[str, str | bytes]:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from pathlib import Path
 
 from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import parquet_of_columns
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.report.kit.folder import csv_text, json_text, require_folder, write_folder
 from squeezefilm.report.sweep.figures import sweep_figure
 from squeezefilm.report.sweep.page import sweep_page, wishes
 from squeezefilm.search.swept import Sweep
@@ -20,21 +18,8 @@ KINDS = ("csv", "parquet")
 
 def sweep_csv(found: Sweep) -> str:
     """The table as CSV: a header with units, a row for each point, empty where there is nothing."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
     columns = found.table()
-    writer.writerow(columns)
-    for row in zip(*columns.values(), strict=True):
-        writer.writerow([_cell(value) for value in row])
-    return stream.getvalue()
-
-
-def _cell(value: object) -> str:
-    if value is None:
-        return ""
-    text = repr(value) if isinstance(value, float) else str(value)
-    # A spreadsheet must not take a text for a formula.
-    return f"'{text}" if isinstance(value, str) and text[:1] in "=+-@" and text else text
+    return csv_text(list(columns), zip(*columns.values(), strict=True))
 
 
 def require_kind(table: str) -> None:

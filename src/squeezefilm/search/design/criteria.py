@@ -71,7 +71,7 @@ CRITERIA: Mapping[str, Criterion] = dict(
         _one("relative_friction", "1", "µ′/µ at the best place", "most_relative_friction"),
         _one("finest_period", "m", "finest grating felt", "most_finest_period"),
         _one("resonance_frequency", "Hz", "resonance", "least_frequency"),
-        _one("highest_frequency", "Hz", "resonance, at most", "most_frequency"),
+        _one("highest_frequency", "Hz", "resonance", "most_frequency"),
         _one("squeeze_number", "1", "squeeze number", "least_squeeze_number"),
         _one("vibration_amplitude", "m", "amplitude under the finger"),
         _one("half_wavelength", "m", "half wavelength"),

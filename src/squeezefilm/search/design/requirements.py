@@ -14,7 +14,7 @@ from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.display import Display, load_display
-from squeezefilm.errors import InputError
+from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.from_text import ReadBy
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.search.design.shapes import AnyShape, Body, Room
@@ -172,6 +172,12 @@ class Requirements:
                 "there is no front to choose from",
                 quantity="objectives",
             )
+        for key in ("start_from", "compare_with"):
+            name = getattr(self, key)
+            try:
+                _ = load_display(name) if name else None
+            except ConfigError as error:
+                raise InputError(f"{key} = '{name}': {error}", quantity=key) from error
         base = self.base
         if not isinstance(base.actuator, RectangularPlate | DiscPlate):
             raise InputError(

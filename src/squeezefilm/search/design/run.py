@@ -352,15 +352,19 @@ class SearchRun:
                 found[design] = known
         parts = list(_parts(list(missing), _TOGETHER[level]))
         tasks = {number: (self.requirements, part, level) for number, part in enumerate(parts)}
-        for number, answers in pool.answers(evaluate_all, tasks):
-            if isinstance(answers, Lost):
-                answers = [
-                    Evaluated(one, level, {}, reason=answers.reason) for one in parts[number]
-                ]
-            self._store.add(answers)
-            found.update((one.design, one) for one in answers)
-            self._show_meanwhile(level, found)
-        self._seen[level].update((design, found[design]) for design in designs)
+        try:
+            for number, answers in pool.answers(evaluate_all, tasks):
+                if isinstance(answers, Lost):
+                    answers = [
+                        Evaluated(one, level, {}, reason=answers.reason) for one in parts[number]
+                    ]
+                self._store.add(answers)
+                found.update((one.design, one) for one in answers)
+                self._show_meanwhile(level, found)
+        finally:
+            # What came before Ctrl-C is shown, too.
+            came = [design for design in designs if design in found]
+            self._seen[level].update((design, found[design]) for design in came)
         return found
 
     def _front(self) -> list[Evaluated]:

@@ -1,0 +1,96 @@
+"""The verb that searches for plates which meet requirements."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from squeezefilm.arguments import called_with
+from squeezefilm.cli.app import AsJson, answer, app, print_json, working, written_to
+
+
+@dataclass(frozen=True)
+class DesignOptions:
+    """What `design` is asked for."""
+
+    requirements: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="REQUIREMENTS|FILE",
+            help="Preset requirements or a TOML file; the presets are listed without one.",
+        ),
+    ] = None
+    out: Annotated[
+        Path | None,
+        written_to("Folder for page, numbers and plates; what it has is not computed again."),
+    ] = None
+    screened: Annotated[
+        int, typer.Option(help="Designs that are looked at by the screening theory.")
+    ] = 2000
+    solved: Annotated[
+        int, typer.Option(help="Plates that are solved in three dimensions, at most.")
+    ] = 120
+    seed: Annotated[int, typer.Option(help="Of everything that is drawn.")] = 1
+    jobs: Annotated[
+        int | None, typer.Option(help="Processes; as many as there are cores if not given.")
+    ] = None
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help='A Dask cluster that computes in place of processes, like "tcp://host:8786".',
+        ),
+    ] = None
+    member: Annotated[
+        int, typer.Option(help="Tells hosts apart that search in one folder: 0, 1, …")
+    ] = 0
+    as_json: AsJson = False
+
+
+@app.command()
+@called_with(DesignOptions)
+def design(asked: DesignOptions) -> None:
+    """Plates that meet requirements: say what a finger should feel, get those that can do it.
+
+    Ctrl-C stops it and shows what it has; with --out the same command goes on from there. Exit code
+    1 where no plate was found.
+    """
+    import os
+
+    from squeezefilm import presets
+    from squeezefilm.report.design.page import write_design
+    from squeezefilm.report.design.terminal import show_design, show_requirements
+    from squeezefilm.report.kit.folder import require_folder
+    from squeezefilm.search.design.requirements import load_requirements
+    from squeezefilm.search.design.run import SearchRequest, search_until_stopped
+
+    if asked.requirements is None:
+        if asked.as_json:
+            print_json({"requirements": list(presets.requirement_names())})
+        else:
+            show_requirements()
+        return
+    if asked.out is not None:
+        require_folder(asked.out)
+    with working(asked.as_json) as step:
+        request = SearchRequest(
+            load_requirements(asked.requirements),
+            screened=asked.screened,
+            solved=asked.solved,
+            seed=asked.seed,
+            jobs=asked.jobs or os.cpu_count() or 1,
+            scheduler=asked.scheduler,
+            out=asked.out,
+            member=asked.member,
+            progress=step,
+        )
+        found = search_until_stopped(request)
+        page = None if asked.out is None else write_design(found, asked.out)
+    answer(asked.as_json, found, show_design, page=page)
+    if found.stopped:
+        again = "the same command goes on" if asked.out else "add --out DIR to keep what is done"
+        typer.echo(f"stopped; {again}", err=True)
+        raise typer.Exit(130)
+    if not found.front:
+        raise typer.Exit(1)

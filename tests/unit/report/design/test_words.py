@@ -1,0 +1,134 @@
+"""A search in words: what is not known is said so, and what is compared is compared rightly."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from tests.unit.report.design.made_search import made_search, requirements_of
+
+from squeezefilm.report.design import words
+from squeezefilm.search.design.candidate import design_of
+from squeezefilm.search.design.found import DesignSearch
+
+
+@pytest.fixture(scope="module")
+def found() -> DesignSearch:
+    return made_search()
+
+
+def test_values_that_are_none_are_said_in_words() -> None:
+    assert words.criterion_words("finest_period", math.inf) == "none is felt"
+    assert words.criterion_words("neighbour", math.inf) == "none is near"
+    assert words.criterion_words("power", None) == "not known"
+    assert words.criterion_words("deflection", math.nan) == "not known"
+    assert words.criterion_words("area", 0.984) == "98 %"
+    assert words.criterion_words("resonance_frequency", 21325.1) == "21.3 kHz"
+    assert words.limit_words("squeeze_number", 10.0) == "squeeze number at least 10"
+    assert words.limit_words("temperature_rise", 75.0) == "temperature rise at most 75 K"
+
+
+def test_what_was_chosen_has_every_free_setting_with_its_unit(found: DesignSearch) -> None:
+    requirements = found.requirements
+    for member in found.front:
+        said = words.chosen_words(requirements, member.evaluated.design)
+        for variable in requirements.spaces[0].free:
+            value = words.setting_words(variable, member.evaluated.design, requirements)
+            assert value in said, variable.name
+    assert "as described" not in said or "P1-91 (as described)" in said
+
+
+def test_a_share_of_the_pitch_is_told_only_where_it_may_be_chosen() -> None:
+    own = requirements_of()
+    free = replace(own, shapes=(replace(own.shapes[0], least_cover=0.5),))
+    shares = dict.fromkeys((one.name for one in free.spaces[0]), 0.5)
+    design = design_of(0, free.spaces[0].at(shares))
+    assert "ceramics cover 75 %" in words.chosen_words(free, design)
+    assert "cover" not in words.chosen_words(own, design_of(0, own.spaces[0].at(shares)))
+
+
+def test_several_shapes_are_told_apart() -> None:
+    found = made_search(shapes=2, screened=80, solved=20)
+    for one in found.solved:
+        shape = found.requirements.spaces[one.design.shape].shape
+        assert words.chosen_words(found.requirements, one.design).startswith(f"{shape}: ")
+
+
+def test_what_the_reference_left_is_the_best_of_the_plates_no_worse_elsewhere(
+    found: DesignSearch,
+) -> None:
+    said = words.reference_sentences(found)
+    assert found.reference is not None
+    own = found.reference.objectives(found.requirements.objectives)
+    rows = found.objectives
+    best = rows[rows[:, 1] <= own[1], 0].min()
+    assert any(f"can be {best:.3g} in place of {own[0]:.3g}" in one for one in said), said
+    count = len(found.beats_reference)
+    assert said[-1].startswith(f"Of {len(found.front)} plates of the front {count} beat it")
+
+
+def test_a_reference_that_nothing_beats_that_breaks_a_limit_or_is_not_there(
+    found: DesignSearch,
+) -> None:
+    assert found.reference is not None
+    numbers = {**found.reference.numbers, "relative_friction": 0.01, "finest_period": 1e-5}
+    perfect = replace(found, reference=replace(found.reference, numbers=numbers))
+    said = words.reference_sentences(perfect)
+    assert any("no plate was found whose µ′/µ at the best place is below 0.01" in o for o in said)
+    assert said[-1] == "No plate of the front is better than it in an objective and worse in none."
+    strict = made_search(screened=60, solved=20, limits={"most_temperature_rise": 60.0})
+    assert any(
+        one.startswith("It breaks a limit: temperature rise is 73.8 K")
+        for one in words.reference_sentences(strict)
+    )
+    stopped = made_search(screened=0, solved=0, stopped=True)
+    assert "the search was stopped before" in words.reference_sentences(stopped)[0]
+    alone = replace(found, requirements=replace(found.requirements, compare_with=""))
+    assert words.reference_sentences(alone) == []
+
+
+def test_the_chosen_plate_is_told_with_its_nearest_limits_and_its_yield(
+    found: DesignSearch,
+) -> None:
+    said = " ".join(words.chosen_sentences(found))
+    assert said.startswith(found.chosen_name)
+    assert "Its nearest limits: " in said
+    assert "53 % keep all limits; broken are temperature rise by 30" in said
+    member = replace(found.front[0], made=None)
+    assert words.made_sentences(member) == ["What is made of its drawing was not drawn."]
+    assert words.front_row(found.requirements, member)[-1] == "not drawn"
+
+
+def test_effects_of_tolerances_have_their_size_and_sign(found: DesignSearch) -> None:
+    rows = words.effect_rows(found.requirements, found.front[0])
+    assert rows[0][0] == "thickness of the sheet +20 µm"
+    assert rows[0][1:] == ("+160 Hz", "+0.001", "not known")
+    assert rows[1][1:] == ("none", "−0.022", "not known")
+    assert len(rows[0]) == 1 + len(words.effect_head(found.requirements))
+
+
+def test_limits_that_nothing_breaks_share_a_sentence_and_the_dear_one_is_named(
+    found: DesignSearch,
+) -> None:
+    said = words.limit_sentences(found)
+    broken = [one for one in found.limits if one.broken]
+    assert len(said) == len(broken) + (len(broken) < len(found.limits))
+    gain = words.limit_gain(found)
+    first = next((one for one in found.limits if one.best_without), None)
+    assert bool(gain) == (first is not None)
+    assert "screened, not solved" in gain or first is None
+
+
+def test_too_few_solved_plates_say_so() -> None:
+    assert "Too few plates" in words.rank_sentences(made_search(screened=40, solved=4))[0]
+
+
+def test_a_voltage_that_may_be_chosen_and_a_larger_plate_are_told() -> None:
+    own = requirements_of()
+    wide = replace(
+        own,
+        drive=replace(own.drive, least_voltage=5.0),
+        workspace=replace(own.workspace, largest_length=0.1),
+    )
+    first = words.asked_sentences(wide)[0]
+    assert "at least 83 mm × 49 mm and at most 100 mm × 49 mm" in first
+    assert "driven with 5 V to 15 V" in first
