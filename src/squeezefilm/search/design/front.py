@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.search.tradeoffs import non_dominated
 
 
 @si.checked_numbers
@@ -16,15 +17,9 @@ def dominates(a: si.FloatArray, b: si.FloatArray) -> bool:
 def front_of(objectives: si.FloatArray) -> si.IntArray:
     """The numbers of the rows (designs, objectives) that no other dominates, of equal ones the
     first; rows that are not finite are never among them."""
-    finite = np.flatnonzero(np.isfinite(objectives).all(axis=1))
-    # By the first objective, then the next: what comes later dominates nothing before it.
-    order = finite[np.lexsort(objectives[finite].T[::-1])]
-    kept: list[int] = []
-    for row in order:
-        known = objectives[kept]
-        if not kept or not np.any(np.all(known <= objectives[row], axis=1)):
-            kept.append(int(row))
-    return np.array(sorted(kept), dtype=np.intp)
+    rows = np.flatnonzero(non_dominated(objectives))
+    _, first = np.unique(objectives[rows], axis=0, return_index=True)
+    return np.sort(rows[first])
 
 
 def layers_of(objectives: si.FloatArray, count: int) -> si.IntArray:

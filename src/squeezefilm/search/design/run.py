@@ -6,7 +6,7 @@ import contextlib
 import itertools
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import KW_ONLY, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +14,6 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
@@ -29,26 +27,21 @@ from squeezefilm.search.design.candidate import (
     evaluate_all,
 )
 from squeezefilm.search.design.correction import Correction, learned
-from squeezefilm.search.design.criteria import (
-    breaches,
-    numbers_of_prediction,
-    numbers_of_solved,
-)
 from squeezefilm.search.design.evolution import POPULATION, Proposals
 from squeezefilm.search.design.found import DesignSearch, FrontMember
-from squeezefilm.search.design.front import front_of, layers_of
+from squeezefilm.search.design.front import front_of
 from squeezefilm.search.design.reasons import empty_corners, limit_reasons
+from squeezefilm.search.design.reference import reference_of
 from squeezefilm.search.design.requirements import NamedRequirements, Requirements
 from squeezefilm.search.design.store import DesignStore
 from squeezefilm.search.design.tolerance import Made, made_of
+from squeezefilm.search.design.worth_solving import objectives_of, worth_solving
 from squeezefilm.search.tasks import Lost, Workers
 from squeezefilm.search.workers import workers
 
 # Designs to a task: a screened one takes some ten milliseconds, a solved one up to seconds.
 _TOGETHER: Mapping[Level, int] = {"screened": 8, "solved": 1}
 _BATCH = 16
-# A design is solved though the screening says that it breaks a limit by up to this share.
-_DOUBT, _CORRECTED_DOUBT = 0.25, 0.08
 # The share of the solved designs that the Bayesian sampler proposes.
 _DEAR = 0.25
 # Designs near each of so many of the front that are screened before the next are solved.
@@ -151,27 +144,9 @@ class SearchRun:
 
     def _compare(self) -> None:
         """The display of `compare_with`, by the same questions."""
-        requirements = self.requirements
-        if not requirements.compare_with:
-            return
-        self._tell(f"{requirements.compare_with}, to compare with")
-        display = load_display(requirements.compare_with)
-        base = requirements.base
-        display = replace(
-            display,
-            finger=base.finger,
-            surfaces=base.surfaces,
-            gas=base.gas,
-            thermal=base.thermal,
-            active_area=None,
-        )
-        found = predict(display, voltage=requirements.drive.voltage)
-        numbers = numbers_of_prediction(requirements, display, found)
-        numbers |= numbers_of_solved(requirements, display, found)
-        numbers.pop("cost")
-        self._reference = Evaluated(
-            Design(0, ()), "solved", numbers, breaches(numbers, requirements.limits)
-        )
+        if self.requirements.compare_with:
+            self._tell(f"{self.requirements.compare_with}, to compare with")
+            self._reference = reference_of(self.requirements)
 
     def _screen(self, pool: Workers) -> None:
         spaces = self.requirements.spaces
@@ -215,7 +190,9 @@ class SearchRun:
         while (left := most - len(self._seen["solved"])) > 0:
             self._learn()
             self._screen_beside_the_front(pool)
-            chosen = self._worth_solving(min(_BATCH, left))
+            chosen = worth_solving(
+                self.requirements, self._seen, self._corrections, min(_BATCH, left)
+            )
             if not chosen:
                 return
             self._say_solving("the best that were screened")
@@ -234,53 +211,6 @@ class SearchRun:
                 places = space.moved(space.places(one.design.settings), draw)
                 beside.append(design_of(one.design.shape, space.at(places)))
         self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
-
-    def _worth_solving(self, count: int) -> list[Design]:
-        """Designs not solved yet, of all shapes together, by what is expected of them."""
-        pool: list[tuple[Design, tuple[float, ...]]] = []
-        names, limits = self.requirements.objectives, self.requirements.limits
-        for shape, correction in enumerate(self._corrections):
-            here = [
-                one
-                for one in self._seen["screened"].values()
-                if one.design.shape == shape
-                and not one.reason
-                and one.design not in self._seen["solved"]
-            ]
-            numbers: list[Mapping[str, float]] = [one.numbers for one in here]
-            slack = _DOUBT
-            if correction is not None:
-                numbers, slack = list(correction.of_all(here)), _CORRECTED_DOUBT
-            for one, expected in zip(here, numbers, strict=True):
-                if breaches(expected, limits, slack=slack):
-                    continue
-                pool.append((one.design, replace(one, numbers=expected).objectives(names)))
-        if not pool:
-            return []
-        rows = np.array([row for _, row in pool])
-        known = np.array(
-            [one.objectives(names) for one in self._seen["solved"].values() if one.is_feasible]
-        ).reshape(-1, len(names))
-        # What the front beats by more than the correction errs has no chance.
-        might = np.array(
-            [not np.any(np.all(known <= row * (1 - self._error), axis=1)) for row in rows]
-        )
-        at = np.flatnonzero(might)
-        taken = at[layers_of(rows[at], count)]
-        if taken.size > count:
-            taken = _spread(rows, taken, count)
-        return [pool[k][0] for k in taken]
-
-    @property
-    def _error(self) -> float:
-        """By what share a corrected objective may be off."""
-        errors = [
-            one.errors.get(name, 0.0)
-            for one in self._corrections
-            if one is not None
-            for name in self.requirements.objectives
-        ]
-        return min(max(errors, default=0.1), 0.2)
 
     def _learn(self) -> None:
         solved = list(self._seen["solved"].values())
@@ -375,11 +305,8 @@ class SearchRun:
             for one in self._seen["solved"].values()
             if one.is_feasible and (one.design not in made or made[one.design].kept >= wanted)
         ]
-        if not feasible:
-            return []
-        rows = np.array([one.objectives(self.requirements.objectives) for one in feasible])
-        at = front_of(rows)
-        return [feasible[k] for k in sorted(at, key=lambda k: tuple(rows[k]))]
+        rows = objectives_of(self.requirements, feasible)
+        return [feasible[k] for k in sorted(front_of(rows), key=lambda k: tuple(rows[k]))]
 
     def _show_meanwhile(self, level: Level, found: Mapping[Design, Evaluated]) -> None:
         """Show what came in the middle of a batch, of which the order does not depend on it; so
@@ -396,10 +323,9 @@ class SearchRun:
     def _show(self) -> None:
         if self._asked.watch is None:
             return
-        names = self.requirements.objectives
-        feasible = [o.objectives(names) for o in self._seen["screened"].values() if o.is_feasible]
-        rows = np.array(feasible).reshape(len(feasible), len(names))
-        screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows)) if feasible else ()
+        feasible = [one for one in self._seen["screened"].values() if one.is_feasible]
+        rows = objectives_of(self.requirements, feasible)
+        screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows))
         counts = len(self._seen["screened"]), len(self._seen["solved"])
         front = tuple(self._front())
         self._asked.watch(Glimpse(self._stage, *counts, screened, front, self._reference))
@@ -427,8 +353,6 @@ class SearchRun:
 
 
 def _hash(requirements: Requirements) -> str:
-    from dataclasses import fields
-
     values: dict[str, Any] = {f.name: getattr(requirements, f.name) for f in fields(requirements)}
     return config_hash(values)
 
@@ -437,18 +361,3 @@ def _parts(designs: list[Design], size: int) -> Iterator[tuple[Design, ...]]:
     each = iter(designs)
     while part := tuple(itertools.islice(each, size)):
         yield part
-
-
-def _spread(rows: si.FloatArray, taken: si.IntArray, count: int) -> si.IntArray:
-    """So many of the rows taken, far from each other: the ends, then always the farthest from all
-    chosen, each objective over its spread."""
-    here = rows[taken]
-    span = np.ptp(here, axis=0)
-    here = (here - here.min(axis=0)) / np.where(span > 0, span, 1.0)
-    chosen = [int(np.argmin(here[:, 0]))]
-    distance = np.linalg.norm(here - here[chosen[0]], axis=1)
-    while len(chosen) < count:
-        far = int(np.argmax(distance))
-        chosen.append(far)
-        distance = np.minimum(distance, np.linalg.norm(here - here[far], axis=1))
-    return taken[chosen]

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,19 +19,17 @@ from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.kept_arrays import KeptArrays
-from squeezefilm.perception.free_hand import free_exploration
 from squeezefilm.perception.observer import FingerClass, Observer
-from squeezefilm.perception.path_percepts import path_percept
 from squeezefilm.perception.percepts import Apparatus, grating_percept, percept
 from squeezefilm.perception.senses import Candidates, line_periods
 from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.plate.layout import AnnularStator
 from squeezefilm.progress import SayProgress
-from squeezefilm.render.motion.finger_path import FingerPath
 from squeezefilm.results import config_hash
 from squeezefilm.second_process import is_present, later, second_process, values
 from squeezefilm.study.simulated.causes import Causes, causes, free_causes
-from squeezefilm.texture_file import TextureFile
+
+if TYPE_CHECKING:
+    from squeezefilm.render.motion.finger_path import FingerPath
 
 _AT_ONCE = 3
 """Fingers that each of two processes has between two words of progress."""
@@ -176,6 +174,9 @@ def felt_freely(
     asked = _name(felt_freely, stimulus, (display, observer, finger, run))
     if (known := _known(asked, observer.candidates, ways=2)) is not None:
         return known
+    from squeezefilm.perception.path_percepts import path_percept
+    from squeezefilm.texture_file import TextureFile
+
     path = free_path(display, observer, finger)
     surface = TextureFile(stimulus.surface(), stimulus.name)
     found = path_percept(display, surface, observer, finger, [path], run)
@@ -205,6 +206,9 @@ def felt_really(grating: Grating, observer: Observer, finger: FingerClass) -> Fe
 
 def free_path(display: Display, observer: Observer, finger: FingerClass) -> FingerPath:
     """How a finger explores a display freely. Raises `InputError` for a ring: it has no plane."""
+    from squeezefilm.perception.free_hand import free_exploration
+    from squeezefilm.plate.layout import AnnularStator
+
     plate = display.actuator
     if isinstance(plate, AnnularStator):
         raise InputError(

@@ -69,5 +69,5 @@ def test_figures_say_their_message(found: TaskAnalysis) -> None:
 
 def test_the_terminal_reads_the_same(found: TaskAnalysis) -> None:
     lines = " ".join(printed(lambda: show_analyses({"plate": found})))
-    assert "plate: answers of made up" in lines
+    assert "plate: made up answers" in lines
     assert "Participant Estimate Interval Trials Remark" in lines

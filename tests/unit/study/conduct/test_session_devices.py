@@ -14,6 +14,7 @@ from squeezefilm import display as display_module
 from squeezefilm.errors import InputError
 from squeezefilm.progress import SayProgress
 from squeezefilm.study.conduct import played_device, rehearsal_device, terminal_run
+from squeezefilm.twin.hand import EXPLORING
 from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
 from squeezefilm.study.design.trials import expected_duration
 from squeezefilm.study.record.store import StudyStore
@@ -131,7 +132,7 @@ def test_a_port_is_given_the_studys_traces_and_closed_in_the_end(
         (port,) = room.ports
         assert port.made_of == (
             ("biet2008-plate", drive, store.traces),
-            {"amplitude_per_pickup": 2e-6},
+            {"amplitude_per_pickup": 2e-6, "stroke": EXPLORING},
         )
         assert port.closed == 1
         moments = [one["moment"] for one in store.rows("SELECT moment FROM verification")]

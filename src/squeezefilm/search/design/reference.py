@@ -1,0 +1,37 @@
+"""The display that a front is set beside, by the same questions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from squeezefilm.chain.prediction import predict
+from squeezefilm.display import load_display
+from squeezefilm.search.design.candidate import Design, Evaluated
+from squeezefilm.search.design.criteria import (
+    breaches,
+    numbers_of_prediction,
+    numbers_of_solved,
+)
+from squeezefilm.search.design.requirements import Requirements
+
+
+def reference_of(requirements: Requirements) -> Evaluated:
+    """What the display of `compare_with` does at the requirements' voltage, under their finger, on
+    their surface, cooled as theirs are; solved in three dimensions.
+
+    It has no class of cost, since nobody says what it is built from. Raises what `predict` raises.
+    """
+    base = requirements.base
+    display = replace(
+        load_display(requirements.compare_with),
+        finger=base.finger,
+        surfaces=base.surfaces,
+        gas=base.gas,
+        thermal=base.thermal,
+        active_area=None,
+    )
+    found = predict(display, voltage=requirements.drive.voltage)
+    numbers = numbers_of_prediction(requirements, display, found)
+    numbers |= numbers_of_solved(requirements, display, found)
+    del numbers["cost"]
+    return Evaluated(Design(0, ()), "solved", numbers, breaches(numbers, requirements.limits))

@@ -1,0 +1,63 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from tests.unit.search.design.made_up import formula, random_designs, requirements
+
+from squeezefilm.search.design.candidate import Design, Evaluated, Level
+from squeezefilm.search.design.correction import learned
+from squeezefilm.search.design.front import front_of
+from squeezefilm.search.design.worth_solving import objectives_of, worth_solving
+
+WANTED = requirements()
+SCREENED = {one: formula(WANTED, one, "screened") for one in random_designs(WANTED, 300)}
+
+
+def seen(solved: list[Design]) -> dict[Level, dict[Design, Evaluated]]:
+    """What a search knows that has solved these."""
+    return {
+        "screened": SCREENED,
+        "solved": {one: formula(WANTED, one, "solved") for one in solved},
+    }
+
+
+def test_the_screened_front_comes_first() -> None:
+    """Of those that may keep the limits, a quarter beyond them included: a screening errs."""
+    chosen = worth_solving(WANTED, seen([]), [None], 16)
+    assert len(chosen) == len(set(chosen)) == 16
+    feasible = [one for one in SCREENED.values() if one.is_feasible]
+    front = {feasible[k].design for k in front_of(objectives_of(WANTED, feasible))}
+    found = [SCREENED[one] for one in chosen]
+    assert all(breach.excess <= 0.25 for one in found for breach in one.broken)
+    # None of those chosen is beaten by a feasible one that was not.
+    rest = [one for one in feasible if one.design not in set(chosen) and one.design not in front]
+    rows = objectives_of(WANTED, found)
+    for row in objectives_of(WANTED, rest):
+        assert not np.any(np.all(row < rows, axis=1) & np.all(rows > 1.3 * row, axis=1))
+
+
+def test_what_was_solved_is_not_chosen_again_and_in_the_end_nothing_is() -> None:
+    solved: list[Design] = []
+    for _ in range(60):
+        correction = learned(WANTED.spaces[0], SCREENED, list(seen(solved)["solved"].values()))
+        chosen = worth_solving(WANTED, seen(solved), [correction], 8)
+        assert set(chosen).isdisjoint(solved)
+        if not chosen:
+            break
+        solved += chosen
+    assert not chosen
+    assert len(solved) < len(SCREENED)
+    # What was left unsolved beats nothing of the front that was found.
+    front = [one for one in seen(solved)["solved"].values() if one.is_feasible]
+    best = objectives_of(WANTED, front)
+    left = [formula(WANTED, one, "solved") for one in SCREENED if one not in set(solved)]
+    rows = objectives_of(WANTED, [one for one in left if one.is_feasible])
+    better = [not np.any(np.all(best <= row * 1.001, axis=1)) for row in rows]
+    assert np.mean(better) < 0.02
+
+
+def test_what_cannot_be_built_is_never_chosen() -> None:
+    broken = {one: replace(SCREENED[one], reason="does not fit") for one in list(SCREENED)[:50]}
+    known: dict[Level, dict[Design, Evaluated]] = {"screened": broken, "solved": {}}
+    assert worth_solving(WANTED, known, [None], 5) == []
