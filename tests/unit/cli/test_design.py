@@ -43,7 +43,7 @@ def nothing_computed(monkeypatch: pytest.MonkeyPatch) -> None:
     def computed(*_: object, **__: object) -> object:
         raise AssertionError("something was computed before the mistake was told")
 
-    monkeypatch.setattr(searches, "predict", computed)
+    monkeypatch.setattr(searches, "reference_of", computed)
     monkeypatch.setattr(searches, "workers", computed)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from squeezefilm.report.kit import style
 from squeezefilm.report.study.figures import data_of, named_ticks
+from squeezefilm.report.study.words import key_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,17 +81,8 @@ def exploration(analysis: StudyAnalysis) -> Figure:
         names = [style.plain(item.name, 13) for item in rows]
         axes.set_xticks(range(len(rows)), names, rotation=30, ha="right")
         axes.set_ylim(0, 1.08 * axes.get_ylim()[1])
-        axes.set_title(key_words(key))
+        axes.set_title(style.plain(key_words(key)))
     return figure
-
-
-def key_words(key: str) -> str:
-    """A key with its unit as a person reads it: mean_speed_m_per_s → mean speed (m/s)."""
-    for unit in ("m/s", "mm/s", "m", "mm", "N", "s"):
-        suffix = "_" + unit.replace("/", "_per_")
-        if key.endswith(suffix):
-            return f"{style.plain(key.removesuffix(suffix).replace('_', ' '))} ({unit})"
-    return style.plain(key.replace("_", " "))
 
 
 @style.drawn

@@ -318,8 +318,6 @@ def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
 
 def exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:
     """Of `exploration_rows`; empty where no path was kept."""
-    from squeezefilm.report.study.time_figures import key_words
-
     known = [key for key, rows in analysis.exploration.items() if rows]
     return ("Stimulus", *map(key_words, known)) if known else ()
 
@@ -341,3 +339,12 @@ def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
             cells.append(f"{one.mean:.3g}{bounds}")
         found.append((name, *cells))
     return found
+
+
+def key_words(key: str) -> str:
+    """A key with its unit as a person reads it: mean_speed_m_per_s → mean speed (m/s)."""
+    for unit in ("m/s", "mm/s", "m", "mm", "N", "s"):
+        suffix = "_" + unit.replace("/", "_per_")
+        if key.endswith(suffix):
+            return f"{key.removesuffix(suffix).replace('_', ' ')} ({unit})"
+    return key.replace("_", " ")

@@ -39,11 +39,13 @@ def test_what_was_chosen_has_every_free_setting_with_its_unit(found: DesignSearc
 
 def test_a_share_of_the_pitch_is_told_only_where_it_may_be_chosen() -> None:
     own = requirements_of()
-    free = replace(own, shapes=(replace(own.shapes[0], least_cover=0.5),))
+    free, fixed = (
+        replace(own, shapes=(replace(own.shapes[0], least_cover=least),)) for least in (0.5, 1.0)
+    )
     shares = dict.fromkeys((one.name for one in free.spaces[0]), 0.5)
     design = design_of(0, free.spaces[0].at(shares))
     assert "ceramics cover 75 %" in words.chosen_words(free, design)
-    assert "cover" not in words.chosen_words(own, design_of(0, own.spaces[0].at(shares)))
+    assert "cover" not in words.chosen_words(fixed, design_of(0, fixed.spaces[0].at(shares)))
 
 
 def test_several_shapes_are_told_apart() -> None:

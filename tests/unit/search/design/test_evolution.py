@@ -67,7 +67,8 @@ def test_hosts_that_share_a_folder_propose_different_designs_and_learn_from_each
     one, two = Proposals(wanted, 0, tmp_path, 1), Proposals(wanted, 0, tmp_path, 1, member=1)
     first = _run(one, range(2))
     second = _run(two, range(2))
-    assert set(first).isdisjoint(second)
+    # It breeds from what the first found, and so meets some of its designs again.
+    assert len(set(second) - set(first)) > 0.7 * len(set(second))
     assert len(_published(tmp_path)) == len(first) + len(second)
     alone = _run(Proposals(wanted, 0, None, 1, member=1), range(2))
     assert second != alone

@@ -48,8 +48,9 @@ def test_the_front_is_feasible_and_nobody_beats_it() -> None:
 
 @pytest.mark.usefixtures("by_formula")
 def test_seeds_agree() -> None:
-    volumes = [_search(seed=seed).hypervolume for seed in range(1, 6)]
-    assert np.ptp(volumes) < 0.03 * np.mean(volumes)
+    """The campaign in tests/recovery asks it of real plates."""
+    volumes = [_search(seed=seed, screened=800, solved=240).hypervolume for seed in range(1, 6)]
+    assert np.ptp(volumes) < 0.05 * np.mean(volumes)
 
 
 @pytest.mark.usefixtures("by_formula")
