@@ -23,7 +23,10 @@ class DesignOptions:
     ] = None
     out: Annotated[
         Path | None,
-        written_to("Folder for page, numbers and plates; what it has is not computed again."),
+        written_to(
+            "Folder for page, numbers, plates, and drawings of the one to build; what it has is not "
+            "computed again."
+        ),
     ] = None
     screened: Annotated[
         int, typer.Option(help="Designs that are looked at by the screening theory.")
@@ -45,6 +48,14 @@ class DesignOptions:
     member: Annotated[
         int, typer.Option(help="Tells hosts apart that search in one folder: 0, 1, …")
     ] = 0
+    quick: Annotated[
+        bool,
+        typer.Option(
+            "--quick",
+            help="Drawings and test plan of the plate to build without intervals, which take a "
+            "minute or two of solving.",
+        ),
+    ] = False
     as_json: AsJson = False
 
 
@@ -59,6 +70,8 @@ def design(asked: DesignOptions) -> None:
     import os
 
     from squeezefilm import presets
+    from squeezefilm.cli.fabrication import written_for
+    from squeezefilm.display import load_display
     from squeezefilm.report.design.page import write_design
     from squeezefilm.report.design.terminal import show_design, show_requirements
     from squeezefilm.report.kit.folder import require_folder
@@ -86,7 +99,14 @@ def design(asked: DesignOptions) -> None:
             progress=step,
         )
         found = search_until_stopped(request)
-        page = None if asked.out is None else write_design(found, asked.out)
+        page = None
+        if asked.out is not None:
+            chosen = None if found.stopped else found.chosen
+            built = "" if chosen is None else f"made/{chosen.name}"
+            page = write_design(found, asked.out, fabrication=built and f"{built}/index.html")
+            if chosen is not None:
+                plate = load_display(asked.out / "plates" / f"{chosen.name}.toml")
+                written_for(plate, asked.out / built, quick=asked.quick, step=step)
     answer(asked.as_json, found, show_design, page=page)
     if found.stopped:
         again = "the same command goes on" if asked.out else "add --out DIR to keep what is done"

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from squeezefilm.cli.app import AsJson, Target, answer, app, to_be_solved, working, written_to
 from squeezefilm.errors import InputError
+
+if TYPE_CHECKING:
+    from squeezefilm.display import Display
+    from squeezefilm.measure.planned.fabricate import Fabrication
+    from squeezefilm.progress import SayProgress
 
 
 @app.command()
@@ -35,19 +40,24 @@ def fabricate(
             "squeezefilm presets lists those that come with the package"
         )
     with loading():
-        from squeezefilm.measure.planned.fabricate import fabricate as run
-        from squeezefilm.measure.planned.fabricate import sealed_already
-        from squeezefilm.report.fabrication.page import (
-            PREDICTION,
-            show_fabrication,
-            write_fabrication,
-        )
+        from squeezefilm.report.fabrication.page import show_fabrication
         from squeezefilm.report.kit.folder import require_folder
     folder = require_folder(out)
     display = to_be_solved(target, quiet=as_json)
-    blind = None if quick else sealed_already(folder / PREDICTION, display)
     with working(as_json) as step:
-        made = run(display, intervals=not quick, blind=blind, progress=step)
-        step("drawing and files")
-        written = write_fabrication(made, folder)
+        made, written = written_for(display, folder, quick=quick, step=step)
     answer(as_json, made, show_fabrication, page=written)
+
+
+def written_for(
+    display: Display, folder: Path, *, quick: bool, step: SayProgress
+) -> tuple[Fabrication, Path]:
+    """What it takes to build a display, and the page of it in a folder."""
+    from squeezefilm.measure.planned.fabricate import fabricate as run
+    from squeezefilm.measure.planned.fabricate import sealed_already
+    from squeezefilm.report.fabrication.page import PREDICTION, write_fabrication
+
+    blind = None if quick else sealed_already(folder / PREDICTION, display)
+    made = run(display, intervals=not quick, blind=blind, progress=step)
+    step("drawing and files")
+    return made, write_fabrication(made, folder)

@@ -30,6 +30,7 @@ from squeezefilm.plate.electronics import load_of_mode
 from squeezefilm.plate.heat.thermal import driven_thickness
 from squeezefilm.plate.laminate import Laminate, plate_laminate
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.plate.parts import parts_of
 from squeezefilm.plate.press import bending_stress, pressed_deflection, pressed_disc_deflection
 from squeezefilm.search.design.requirements import Limits, Requirements
 
@@ -161,7 +162,7 @@ def numbers_of_prediction(
         "squeeze_number": p.squeeze_number,
         "vibration_amplitude": p.vibration_amplitude,
         "half_wavelength": p.mode.half_wavelength,
-        "mass": mass_of(actuator),
+        "mass": math.fsum(part.mass for part in parts_of(actuator)),
         "total_thickness": sum(layer.thickness for layer in section.layers),
         "deflection": _deflection(requirements, display, p, section),
         "stress": _stress(actuator, p, section, free),
@@ -238,22 +239,6 @@ def finest_period_felt(display: Display, p: Prediction) -> si.Metre:
     rise = np.log(d_prime[at] / d_prime[at - 1])
     part = np.log(senses.detection_criterion / d_prime[at - 1]) / rise
     return float(period[at - 1] * (period[at] / period[at - 1]) ** part)
-
-
-def mass_of(body: RectangularPlate | DiscPlate) -> si.Kilogram:
-    """The mass of sheet, ceramics and glue (kg)."""
-    metal, piezo = body.substrate.density, body.ceramic.density
-    if isinstance(body, DiscPlate):
-        disc = math.pi / 4 * (body.diameter**2 - body.inner_diameter**2)
-        under = math.pi / 4 * (body.ceramic_outer_diameter**2 - body.ceramic_inner_diameter**2)
-        volume = under * body.ceramic_thickness
-        sheet = disc * body.thickness
-    else:
-        under = sum(one.length * one.width for one in body.patches)
-        volume = sum(one.length * one.width * one.thickness for one in body.patches)
-        sheet = body.area * body.thickness
-    glue = 0.0 if body.glue is None else under * body.glue.thickness * body.glue.density
-    return metal * sheet + piezo * volume + glue
 
 
 def _capacitance(body: RectangularPlate | DiscPlate) -> si.Farad:
