@@ -24,8 +24,8 @@ class DesignOptions:
     out: Annotated[
         Path | None,
         written_to(
-            "Folder for page, numbers, plates, and drawings of the one to build; what it has is not "
-            "computed again."
+            "Folder for page, numbers, plates, and drawings of the one to build; what it has is "
+            "not computed again."
         ),
     ] = None
     screened: Annotated[

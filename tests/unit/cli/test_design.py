@@ -73,7 +73,7 @@ def test_an_unknown_preset_is_told_with_those_there_are() -> None:
         ('type = "strips"', 'type = "stripes"', r"line \d+.*type"),
         ('compare_with = "biet2008-plate"', 'compare_with = "biet2008-plat"', r"biet2008-plat'"),
         ('start_from = "biet2008-plate"', 'start_from = "biet2008-stator"', "a measured ring"),
-        ('voltage = "15 V"', 'voltage = "15 V"\nleast_voltage = "20 V"', "more than the highest"),
+        ('least_voltage = "5 V"', 'least_voltage = "20 V"', "more than the highest"),
     ],
 )
 def test_a_mistake_in_the_file_is_told_with_its_line(

@@ -17,6 +17,7 @@ from squeezefilm.results import config_hash, to_json
 from squeezefilm.search.design.candidate import Design, Evaluated, Level
 from squeezefilm.search.design.criteria import breaches
 from squeezefilm.search.design.requirements import Requirements
+from squeezefilm.search.design.tolerance import DRAWS, Made
 
 FILE = "designs.jsonl"
 """Its name in the folder of a search: a line for every evaluated design."""
@@ -45,6 +46,18 @@ def asked_hash(requirements: Requirements) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
+def _made_hash(requirements: Requirements) -> str:
+    """A hash of all that plates as made depend on beside the design and its solved numbers."""
+    also = [
+        to_json(requirements.limits),
+        to_json(requirements.tolerances),
+        requirements.objectives,
+        DRAWS,
+    ]
+    text = json.dumps([asked_hash(requirements), also], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
 class DesignStore:
     """Evaluated designs by design and level; without a folder in memory only.
 
@@ -55,6 +68,8 @@ class DesignStore:
         self._requirements, self._hash = requirements, asked_hash(requirements)
         self._file = None if folder is None else folder / FILE
         self._known: dict[tuple[Design, Level], Evaluated] = {}
+        self._made: dict[Design, Made] = {}
+        self._made_hash = _made_hash(requirements)
         self.computed, self.read = 0, 0
         if self._file is not None:
             self._load(self._file)
@@ -69,7 +84,11 @@ class DesignStore:
             ) from error
         for line in lines:
             try:
-                known = self._evaluated(json.loads(line))
+                read = json.loads(line)
+                if "kept" in read:
+                    self._read_made(read)
+                    continue
+                known = self._evaluated(read)
             except (ValueError, KeyError, TypeError, AttributeError):
                 continue  # the last line of a search that was killed: computed again
             if known is not None:
@@ -95,6 +114,30 @@ class DesignStore:
             self.computed += 1
             if not one.reason.startswith("not foreseen"):
                 lines.append(json.dumps(self._line(one), separators=(",", ":"), allow_nan=False))
+        self._append(lines)
+
+    def made(self, design: Design) -> Made | None:
+        """What is made of a design's drawing; None where it was not drawn."""
+        return self._made.get(design)
+
+    def add_made(self, design: Design, made: Made) -> None:
+        """Keep what is made of a design's drawing."""
+        self._made[design] = made
+        head = {"asked": self._made_hash, "shape": design.shape, "values": design.settings}
+        self._append([json.dumps(head | to_json(made), separators=(",", ":"), allow_nan=False)])
+
+    def _read_made(self, read: Mapping[str, Any]) -> None:
+        if read["asked"] != self._made_hash:
+            return
+        design = Design(int(read["shape"]), tuple(read["values"].items()))
+        intervals = {
+            key: (float(low), float(high)) for key, (low, high) in read["intervals"].items()
+        }
+        self._made[design] = Made(
+            read["draws"], read["kept"], read["broken"], intervals, read["effects"]
+        )
+
+    def _append(self, lines: list[str]) -> None:
         if self._file is None or not lines:
             return
         try:
