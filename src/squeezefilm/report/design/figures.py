@@ -199,7 +199,7 @@ def limits(found: DesignSearch) -> Figure:
         said += f"; {which} alone stands in the way of {alone.alone}"
     figure = style.new_figure(
         said, "the screening theory: beams, strips with shear, rings as solved",
-        1.5 + 0.42 * len(reasons),
+        max(1.5 + 0.42 * len(reasons), 2.8),
     )  # fmt: skip
     axes = figure.subplots()
     at = np.arange(len(reasons))

@@ -28,6 +28,7 @@ NAME = "biet2008-plate"
 def requirements_of(*, shapes: int = 1, objectives: int = 2) -> Requirements:
     """Those of the preset, with a second shape or a third objective."""
     own = load_requirements(NAME)
+    own = replace(own, objectives=("relative_friction", "finest_period"))
     strips = own.shapes[0]
     more = (EdgeStrips(strips.sheets, strips.ceramics, 5, 9),) if shapes == 2 else ()
     third = ("mass",) if objectives == 3 else ()

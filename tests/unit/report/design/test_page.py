@@ -103,6 +103,7 @@ def test_a_stopped_search_and_one_without_limits_are_written(tmp_path: Path) -> 
     bare = dict.fromkeys(
         (
             "most_relative_friction",
+            "most_finest_period",
             "least_squeeze_number",
             "least_frequency",
             "most_temperature_rise",
