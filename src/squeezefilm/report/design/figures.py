@@ -213,7 +213,7 @@ def limits(found: DesignSearch) -> Figure:
     axes.set_yticks(at, [limit_words(one.key, one.limit) for one in reasons])
     axes.set(xlabel=f"designs, of {every} screened", xlim=(0, 1.22 * max(most.broken, 1)))
     axes.grid(visible=False, axis="y")
-    style.legend_below(axes, gap=0.9 / len(reasons) + 0.1)
+    style.legend_below(axes, gap=0.9 / max(len(reasons), 3) + 0.1)
     return figure
 
 
