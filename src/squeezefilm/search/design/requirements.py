@@ -17,8 +17,9 @@ from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.from_text import ReadBy
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
-from squeezefilm.search.design.shapes import AnyShape, Body, Room
-from squeezefilm.search.design.space import Number, Space
+from squeezefilm.search.design.shape import Body, Room
+from squeezefilm.search.design.shapes import AnyShape
+from squeezefilm.search.design.space import Space, number
 from squeezefilm.search.design.stock import OWN
 
 Objective = Literal[
@@ -230,7 +231,7 @@ class Requirements:
     def spaces(self) -> tuple[Space, ...]:
         """What may be chosen, shape by shape. Raises `InputError` for ranges that are none."""
         least = self.drive.least_voltage or self.drive.voltage
-        volts = Number("voltage", least, self.drive.voltage, si.Unit("V"))
+        volts = number("voltage", least, self.drive.voltage, "V")
         names = [one.type for one in self.shapes]
         return tuple(
             Space(

@@ -10,43 +10,28 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from squeezefilm import hard_limits as hard
 from squeezefilm import quantities as si
-from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.plate.layout import (
-    CeramicPatch,
-    DiscPlate,
-    FoamSupport,
-    GlueLayer,
-    RectangularPlate,
-)
-from squeezefilm.search.design.space import Choice, Setting, Variable, number, step
+from squeezefilm.errors import GeometryError
+from squeezefilm.plate.layout import CeramicPatch, FoamSupport, GlueLayer, RectangularPlate
+from squeezefilm.search.design.round_shapes import Disc, Ring
+from squeezefilm.search.design.shape import CUT, Body, Room, Shape, counts
+from squeezefilm.search.design.space import Setting, Variable, number, step
 from squeezefilm.search.design.stock import (
-    CeramicStock,
-    Sheet,
+    CeramicStock,  # noqa: F401 - of the inherited fields, whose annotations are read here
+    Sheet,  # noqa: F401
     ceramic_named,
-    require_known,
     substrate_named,
 )
 
-Body = RectangularPlate | DiscPlate
 Lines = Annotated[int, si.AtLeast(2), si.AtMost(60)]
 
 # Nothing thinner than this is sawn: below it ceramics would touch.
 _LEAST_PIECE: si.Metre = 1e-3
-
-
-@dataclass(frozen=True)
-class Room:
-    """What a plate must give and may take, along its length and across (m)."""
-
-    least: tuple[si.Metre, si.Metre]
-    most: tuple[si.Metre, si.Metre]
 
 
 @si.checked_numbers
@@ -58,73 +43,6 @@ class Gasket:
     thickness: Annotated[si.Metre, hard.LAYER]
     young_modulus: Annotated[si.Pascal, hard.MODULUS]
     quality_factor: Annotated[si.Dimensionless, hard.QUALITY] = 3.0
-
-
-@dataclass(frozen=True)
-class Shape:
-    """What all shapes have: sheets and ceramics to build from, and a glue where one is counted."""
-
-    sheets: tuple[Sheet, ...]
-    ceramics: tuple[CeramicStock, ...]
-
-    def _require_stock(self) -> None:
-        for name, stock in (("sheets", self.sheets), ("ceramics", self.ceramics)):
-            if not stock:
-                raise InputError(f"{name} is empty; give at least one to build from", quantity=name)
-            names = [one.material for one in stock]
-            if len(set(names)) < len(names):
-                raise InputError(
-                    f"{name} names a material twice ({', '.join(names)}); give all its "
-                    "thicknesses in one table",
-                    quantity=name,
-                )
-        for sheet in self.sheets:
-            require_known(sheet.material, "substrate")
-        for ceramic in self.ceramics:
-            require_known(ceramic.material, "ceramic")
-
-    def _stock(self) -> tuple[Variable, ...]:
-        """Material and thickness of the sheet and of the ceramic."""
-        sheets = {one.material: one.thicknesses for one in self.sheets}
-        ceramics = {one.material: one.thicknesses for one in self.ceramics}
-        return (
-            Choice("substrate", tuple(sheets)),
-            step("thickness", sheets, "m", "substrate"),
-            Choice("ceramic", tuple(ceramics)),
-            step("ceramic_thickness", ceramics, "m", "ceramic"),
-        )
-
-    @property
-    def _catalogue(self) -> Mapping[str, tuple[si.Metre, ...]] | None:
-        """The lengths that ceramics are sold in; None where pieces are cut to size.
-
-        Raises `InputError` where some have lengths and others have none.
-        """
-        lengths = {one.material: one.lengths for one in self.ceramics}
-        if not any(lengths.values()):
-            return None
-        if not all(lengths.values()):
-            raise InputError(
-                "some ceramics have lengths and others have none; give lengths for all of a shape, "
-                "or for none to cut them to size",
-                quantity="lengths",
-            )
-        return lengths
-
-    def cost_class(self, values: Mapping[str, Setting]) -> int:
-        """The highest class of cost of what a design is built from."""
-        sheet = next(one for one in self.sheets if one.material == values["substrate"])
-        ceramic = next(one for one in self.ceramics if one.material == values["ceramic"])
-        return max(sheet.cost_class, ceramic.cost_class)
-
-
-def _counts(name: str, least: int, most: int) -> Variable:
-    if most < least:
-        raise InputError(
-            f"{name} may be from {least} to {most}, which is no range; make most at least least",
-            quantity=f"most_{name}",
-        )
-    return step(name, {"": tuple(float(one) for one in range(least, most + 1))}, "1")
 
 
 @si.checked_numbers
@@ -144,15 +62,15 @@ class Strips(Shape):
     type: Literal["strips"] = "strips"
 
     def __post_init__(self) -> None:
-        self._require_stock()
+        self.require_stock()
 
     def variables(self, room: Room) -> tuple[Variable, ...]:
         """What is chosen. A catalogue's ceramics make the length, which is chosen otherwise."""
         (length, width), (longest, widest) = room.least, room.most
-        own = self._catalogue
+        own = self.catalogue
         return (
-            *self._stock(),
-            _counts("nodal_lines", self.least_lines, self.most_lines),
+            *self.stock(),
+            counts("nodal_lines", self.least_lines, self.most_lines),
             number("width", width, widest, "m"),
             *(
                 (
@@ -178,7 +96,10 @@ class Strips(Shape):
                 )
         else:
             length = float(values["length"])
-            piece = ((length + self.gap) / count - self.gap) * float(values["cover"])
+            full = (length + self.gap) / count - self.gap
+            cover = float(values["cover"])
+            # Cut to a tenth of a millimetre, but for pieces that fill their pitch.
+            piece = full if cover == 1 else round(full * cover / CUT) * CUT
         pitch = (length + self.gap) / count
         if not _LEAST_PIECE <= piece <= pitch - self.gap + 1e-9:
             raise GeometryError(
@@ -242,15 +163,15 @@ class EdgeStrips(Shape):
     type: Literal["edge_strips"] = "edge_strips"
 
     def __post_init__(self) -> None:
-        self._require_stock()
+        self.require_stock()
 
     def variables(self, room: Room) -> tuple[Variable, ...]:
         """What is chosen; the strips' width from a catalogue where ceramics have lengths."""
         (length, width), (longest, widest) = room.least, room.most
-        own = self._catalogue
+        own = self.catalogue
         return (
-            *self._stock(),
-            _counts("nodal_lines", self.least_lines, self.most_lines),
+            *self.stock(),
+            counts("nodal_lines", self.least_lines, self.most_lines),
             number("length", length, longest, "m"),
             number("width", width, widest, "m"),
             number("strip", self.least_strip, self.most_strip, "m")
@@ -299,102 +220,6 @@ def _rim(gasket: Gasket, length: si.Metre, width: si.Metre) -> tuple[FoamSupport
     )
     foam = gasket.thickness, gasket.young_modulus, gasket.quality_factor
     return tuple(FoamSupport(*place, *foam, face="top") for place in places)
-
-
-@si.checked_numbers
-@dataclass(frozen=True)
-class Disc(Shape):
-    """A disc on a ceramic disc of `least_cover` to all of its diameter, in a mode of
-    `least_circles` to `most_circles` nodal circles. The workspace's longer side is its least
-    diameter."""
-
-    least_circles: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 1
-    most_circles: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 1
-    least_cover: Annotated[si.Dimensionless, si.AtLeast(0.2), si.AtMost(1.0)] = 0.6
-    glue: GlueLayer | None = None
-    type: Literal["disc"] = "disc"
-
-    def __post_init__(self) -> None:
-        self._require_stock()
-
-    def variables(self, room: Room) -> tuple[Variable, ...]:
-        """What is chosen; the ceramic's diameter from a catalogue where ceramics have lengths."""
-        own = self._catalogue
-        return (
-            *self._stock(),
-            _counts("nodal_circles", self.least_circles, self.most_circles),
-            number("diameter", max(room.least), min(room.most), "m"),
-            number("cover", self.least_cover, 1.0, "1")
-            if own is None
-            else step("ceramic_diameter", own, "m", "ceramic"),
-        )
-
-    def body(self, values: Mapping[str, Setting], own: Body, quality: float, room: Room) -> Body:
-        """The disc of a choice. Raises `GeometryError` for a ceramic that overhangs."""
-        diameter = float(values["diameter"])
-        return DiscPlate(
-            diameter=diameter,
-            thickness=float(values["thickness"]),
-            quality_factor=quality,
-            substrate=substrate_named(str(values["substrate"]), own),
-            ceramic=ceramic_named(str(values["ceramic"]), own),
-            ceramic_outer_diameter=float(values["ceramic_diameter"])
-            if "ceramic_diameter" in values
-            else diameter * float(values["cover"]),
-            ceramic_thickness=float(values["ceramic_thickness"]),
-            nodal_circles=int(values["nodal_circles"]),
-            glue=self.glue,
-        )
-
-
-@si.checked_numbers
-@dataclass(frozen=True)
-class Ring(Shape):
-    """A ring on a ceramic ring of sectors poled in turn, in a mode of `least_diameters` to
-    `most_diameters` nodal diameters. The workspace's length goes once round its mean circumference,
-    its width across the track."""
-
-    least_diameters: Annotated[int, si.AtLeast(2), si.AtMost(40)] = 3
-    most_diameters: Annotated[int, si.AtLeast(2), si.AtMost(40)] = 12
-    glue: GlueLayer | None = None
-    type: Literal["ring"] = "ring"
-
-    def __post_init__(self) -> None:
-        self._require_stock()
-
-    def variables(self, room: Room) -> tuple[Variable, ...]:
-        """What is chosen."""
-        (around, track), (longest, widest) = room.least, room.most
-        return (
-            *self._stock(),
-            _counts("nodal_diameters", self.least_diameters, self.most_diameters),
-            number("mean_diameter", around / math.pi, longest / math.pi, "m"),
-            number("radial_width", track, widest, "m"),
-        )
-
-    def body(self, values: Mapping[str, Setting], own: Body, quality: float, room: Room) -> Body:
-        """The ring of a choice. Raises `GeometryError` for a track that closes the hole."""
-        mean, track = float(values["mean_diameter"]), float(values["radial_width"])
-        if track >= mean:
-            raise GeometryError(
-                f"a track of {1e3 * track:.3g} mm closes a ring of {1e3 * mean:.3g} mm in the mean"
-            )
-        m = int(values["nodal_diameters"])
-        return DiscPlate(
-            diameter=mean + track,
-            thickness=float(values["thickness"]),
-            quality_factor=quality,
-            substrate=substrate_named(str(values["substrate"]), own),
-            ceramic=ceramic_named(str(values["ceramic"]), own),
-            ceramic_outer_diameter=mean + track,
-            ceramic_thickness=float(values["ceramic_thickness"]),
-            inner_diameter=mean - track,
-            ceramic_inner_diameter=mean - track,
-            nodal_circles=0,
-            nodal_diameters=m,
-            sectors=2 * m,
-            glue=self.glue,
-        )
 
 
 AnyShape = Strips | EdgeStrips | Disc | Ring

@@ -19,12 +19,14 @@ Values = Mapping[str, Setting]
 
 @dataclass(frozen=True)
 class Number:
-    """A length or a voltage between `low` and `high` (SI), equal ends where it is fixed."""
+    """A length or a voltage between `low` and `high` (SI), equal ends where it is fixed; in whole
+    multiples of a `grain`, as one builds and sets it, but for the ends."""
 
     name: str
     low: float
     high: float
     unit: si.Unit
+    grain: float
 
     @property
     def is_fixed(self) -> bool:
@@ -33,7 +35,8 @@ class Number:
 
     def at(self, share: float, chosen: Values) -> float:
         """The value at a share of the way from `low` to `high`, from 0 to 1."""
-        return self.low + share * (self.high - self.low)
+        value = round((self.low + share * (self.high - self.low)) / self.grain) * self.grain
+        return min(max(value, self.low), self.high)
 
     def share(self, values: Values) -> float:
         """How far along the value of a design lies, from 0 to 1: what distances are measured in."""
@@ -151,8 +154,15 @@ class Space:
         return [one.share(values) for one in self.free]
 
 
+# What a workshop, and whoever sets a voltage, does not go below.
+_GRAINS = {"m": 1e-4, "V": 0.1, "1": 0.01}
+
+
 def number(name: str, low: float, high: float, unit: str) -> Number:
-    """A number that may be chosen. Raises `InputError` where its range ends before it begins."""
+    """A number that may be chosen: lengths to 0.1 mm, voltages to 0.1 V, shares to 1 %.
+
+    Raises `InputError` where its range ends before it begins.
+    """
     if high < low:
         symbol = si.Unit(unit)
         first, last = (si.format_quantity(one, symbol) for one in (low, high))
@@ -161,7 +171,7 @@ def number(name: str, low: float, high: float, unit: str) -> Number:
             "the least",
             quantity=name,
         )
-    return Number(name, low, high, si.Unit(unit))
+    return Number(name, low, high, si.Unit(unit), _GRAINS[unit])
 
 
 def step(name: str, lists: Mapping[str, tuple[float, ...]], unit: str, by: str = "") -> Step:

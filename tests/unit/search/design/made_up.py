@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import config
-from squeezefilm.search.design.candidate import Design, Evaluated, Level
+from squeezefilm.errors import GeometryError
+from squeezefilm.search.design.candidate import Design, Evaluated, Level, design_of, display_of
 from squeezefilm.search.design.criteria import breaches
 from squeezefilm.search.design.requirements import Requirements
 
@@ -77,8 +78,18 @@ def evaluated_by_formula(
 
 def random_designs(wanted: Requirements, count: int, seed: int = 1) -> list[Design]:
     """Designs of the first shape, drawn evenly."""
-    from squeezefilm.search.design.candidate import design_of
-
     space, draw = wanted.spaces[0], np.random.default_rng(seed)
     shares: Any = ({one.name: draw.random() for one in space.free} for _ in range(count))
     return [design_of(0, space.at(one)) for one in shares]
+
+
+def drawn(wanted: Requirements, shape: int, count: int = 30) -> list[Any]:
+    """Bodies of random designs of a shape, those that can be built."""
+    draw, space, found = np.random.default_rng(5), wanted.spaces[shape], []
+    for _ in range(count):
+        values = space.at({one.name: draw.random() for one in space.free})
+        try:
+            found.append(display_of(wanted, design_of(shape, values)).actuator)
+        except GeometryError:
+            continue
+    return found

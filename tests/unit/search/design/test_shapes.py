@@ -1,46 +1,20 @@
 from __future__ import annotations
 
-import numpy as np
 import pytest
-from tests.unit.search.design.made_up import TEXT, requirements
+from tests.unit.search.design.made_up import TEXT, drawn, requirements
 
 from squeezefilm import config
 from squeezefilm.display import load_display
 from squeezefilm.errors import GeometryError, InputError
-from squeezefilm.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.search.design.candidate import design_of, display_of
 from squeezefilm.search.design.requirements import Requirements, load_requirements
-
-RING = """
-[[shapes]]
-type = "ring"
-least_diameters = 6
-most_diameters = 9
-[[shapes.sheets]]
-material = "as described"
-thicknesses = ["2 mm"]
-[[shapes.ceramics]]
-material = "PZT-5A"
-thicknesses = ["0.5 mm"]
-"""
-
 
 _STOCK = 'thicknesses = ["0.5 mm", "1 mm"]'
 
 
-def _drawn(wanted: Requirements, shape: int, count: int = 30) -> list[object]:
-    draw, space, found = np.random.default_rng(5), wanted.spaces[shape], []
-    for _ in range(count):
-        values = space.at({one.name: draw.random() for one in space.free})
-        try:
-            found.append(display_of(wanted, design_of(shape, values)).actuator)
-        except GeometryError:
-            continue
-    return found
-
-
 def test_strips_are_one_fewer_than_the_lines_and_fill_the_plate() -> None:
-    for plate in _drawn(requirements(), 0):
+    for plate in drawn(requirements(), 0):
         assert isinstance(plate, RectangularPlate)
         assert len(plate.patches) == plate.nodal_lines - 1
         assert plate.patches[0].x == pytest.approx(0, abs=1e-12)
@@ -75,7 +49,7 @@ def test_the_papers_own_plate_is_in_its_space() -> None:
 
 def test_a_bimorphs_upper_ceramics_are_driven_against_the_lower_ones() -> None:
     wanted = requirements(**{'type = "strips"': 'type = "strips"\nboth_faces = true'})
-    for plate in _drawn(wanted, 0, 5):
+    for plate in drawn(wanted, 0, 5):
         assert isinstance(plate, RectangularPlate)
         half = len(plate.patches) // 2
         for below, above in zip(plate.patches[:half], plate.patches[half:], strict=True):
@@ -84,7 +58,7 @@ def test_a_bimorphs_upper_ceramics_are_driven_against_the_lower_ones() -> None:
 
 def test_edge_strips_go_with_the_number_of_lines() -> None:
     wanted = load_requirements("touchpad-glass")
-    plates = _drawn(wanted, 0, 12)
+    plates = drawn(wanted, 0, 12)
     assert plates
     for plate in plates:
         assert isinstance(plate, RectangularPlate)
@@ -97,21 +71,9 @@ def test_edge_strips_go_with_the_number_of_lines() -> None:
         assert rim == pytest.approx(2 * w * (plate.length + plate.width - 2 * w))
 
 
-def test_discs_and_rings_give_the_workspace() -> None:
-    for disc in _drawn(load_requirements("winfield2007-tpad"), 0, 10):
-        assert isinstance(disc, DiscPlate)
-        assert disc.diameter >= 0.025
-    wanted = config.load_text(Requirements, TEXT[: TEXT.index("[[shapes]]")] + RING.replace(
-        '"as described"', '"aluminium 6061"').replace('"30 mm"', '"5 mm"'))  # fmt: skip
-    rings = _drawn(wanted, 0, 10)
-    for ring in rings:
-        assert isinstance(ring, DiscPlate)
-        assert ring.sectors == 2 * ring.nodal_diameters
-
-
 def test_a_catalogue_makes_the_length() -> None:
     wanted = requirements(**{_STOCK: 'thicknesses = ["1 mm"]\nlengths = ["9 mm", "11 mm"]'})
-    plates = _drawn(wanted, 0)
+    plates = drawn(wanted, 0)
     assert plates
     for plate in plates:
         assert isinstance(plate, RectangularPlate)
