@@ -25,6 +25,7 @@ from squeezefilm.report.design.words import (
     front_row,
     limit_gain,
     limit_sentences,
+    made_sentences,
     margin_words,
     rank_sentences,
     reference_sentences,
@@ -48,6 +49,9 @@ from squeezefilm.report.kit.page_style import (
 from squeezefilm.search.design.criteria import CRITERIA, bounded
 from squeezefilm.search.design.found import DesignSearch, FrontMember
 from squeezefilm.search.design.reasons import margins
+
+_SURE: si.Dimensionless = 0.95
+"""The share of the plates made that must keep all limits for a plate to be called good."""
 
 PAGE, DATA, TABLE, PLATES = "index.html", "result.json", "front.csv", "plates"
 
@@ -126,8 +130,11 @@ def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
         yield "limit", f"No plate meets the requirements. {counts_sentence(found)}"
     else:
         yield "good", counts_sentence(found)
+        # What a tolerance may push across a limit is not called good.
+        kept = 0.0 if chosen.made is None else chosen.made.kept
+        sure = "good" if kept >= _SURE else "limit"
         for sentence in chosen_sentences(found)[:1]:
-            yield "good", f"The plate to build: {sentence}"
+            yield sure, f"The plate to build: {sentence} {made_sentences(chosen)[0]}"
     if found.reference is not None and not found.reference.reason and found.front:
         better = bool(found.beats_reference)
         kind = "good" if better else "limit"

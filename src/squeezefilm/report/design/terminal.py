@@ -47,7 +47,8 @@ def show_design(found: DesignSearch) -> None:
             "most designs break, or give the shapes more room."
         )
         for reason, count in counted(o.reason for o in found.screened if o.reason)[:3]:
-            console.print(f"! {count} designs cannot be: {printable(reason)}")
+            designs = "design" if count == 1 else "designs"
+            console.print(f"! {count} {designs} cannot be: {printable(reason)}")
     if compared := reference_sentences(found):
         heading(console, f"Beside {requirements.compare_with}")
         _say(console, compared)
