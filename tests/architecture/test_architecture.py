@@ -129,5 +129,5 @@ def test_constraints_pin_and_hold_no_address() -> None:
     assert all(re.fullmatch(r"[A-Za-z0-9._-]+==[A-Za-z0-9.+!-]+", pin) for pin in pins)
     names = {re.sub(r"[-_.]+", "-", pin.split("==")[0]).lower() for pin in pins}
     # Asked for on other platforms, or by Pythons before ours, only.
-    elsewhere = {"tzdata", "colorama", "exceptiongroup", "importlib-metadata"}
+    elsewhere = {"tzdata", "colorama", "exceptiongroup", "importlib-metadata", "tomli"}
     assert _runtime_closure() - names <= elsewhere

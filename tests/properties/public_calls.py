@@ -60,7 +60,8 @@ NOT_CALLED = {
     plate.heat.thermal.ThermalBody plate.heat.warming.Warming plate.heat.warming.WarmState
     plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
     plate.ring.response.RingResponse
-    plate.shear.modes.ShearMode plate.solid.working.SolidMode plate.exposure.ExposureGuidance
+    plate.shear.modes.ShearMode plate.shear.working.ShearWorking
+    plate.solid.working.SolidMode plate.exposure.ExposureGuidance
     plate.sound.SoundField plate.working_mode.ModeLine plate.working_mode.WorkingMode
     plate.surface_shape.BeamSurface plate.surface_shape.DiscSurface
     plate.surface_shape.SolvedSurface plate.surface_shape.SurfaceShape

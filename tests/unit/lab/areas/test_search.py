@@ -81,8 +81,9 @@ def test_presets_are_listed_with_what_was_searched_here(lab: Talk) -> None:
     lab.say("start search", text=TEXT)
     (saved,) = lab.say("requirements")["saved"]
     assert saved.startswith("biet2008-plate-")
-    for how in ({"preset": "biet2008-plate"}, {"file": saved}):
-        assert lab.say("requirements text", **how) == {"type": "requirements text", "text": TEXT}
+    preset = presets.resolve_requirements("biet2008-plate").read_text(encoding="utf-8")
+    for how, text in (({"preset": "biet2008-plate"}, preset), ({"file": saved}, TEXT)):
+        assert lab.say("requirements text", **how) == {"type": "requirements text", "text": text}
     for wrong in ({}, {"preset": "biet2008-plate", "file": saved}):
         assert "one of them" in lab.refused("requirements text", **wrong)
     assert "is no preset" in lab.refused("requirements text", preset="../biet2008-plate")

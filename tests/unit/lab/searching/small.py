@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from squeezefilm import presets
 from squeezefilm.lab.searching.asked import requirements_of
 from squeezefilm.search.design.candidate import Evaluated, Level, design_of
 from squeezefilm.search.design.criteria import breaches
 from squeezefilm.search.design.requirements import Requirements
 
-TEXT = presets.resolve_requirements("biet2008-plate").read_text(encoding="utf-8")
+TEXT = Path(__file__).with_name("small.toml").read_text(encoding="utf-8")
 
 
 def requirements(text: str = TEXT) -> Requirements:
-    """The preset's."""
+    """Those of `TEXT`."""
     return requirements_of(text, Path())
 
 
