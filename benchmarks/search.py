@@ -133,7 +133,7 @@ def screening() -> None:
     found = search_designs("biet2008-plate", screened=10_000, solved=0, jobs=2)
     busy_for = sum(one.seconds for one in found.screened)
     print(
-        f"\n10 000 designs asked for, {len(found.screened)} of them different: {found.seconds:.0f} s "
+        f"\n10 000 designs, {len(found.screened)} of them different: {found.seconds:.0f} s "
         f"on two cores; {1e3 * busy_for / len(found.screened):.1f} ms of one core each, which "
         f"takes {100 * busy_for / 2 / found.seconds:.0f} % of the time of both"
     )
