@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from tests.unit.lab.searching.small import TEXT
 
 from squeezefilm import presets
 
@@ -22,7 +23,7 @@ pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
 PRESET = presets.resolve_requirements("biet2008-plate").read_text(encoding="utf-8")
 # As hot as they like, so that a few designs have a front.
-SMALL = PRESET.replace('"75 K"', '"200 K"').replace("most_lines = 16", "most_lines = 8")
+SMALL = TEXT.replace('"75 K"', '"200 K"').replace("most_lines = 16", "most_lines = 8")
 STAGE, PLATE = ".search .stage", "circle[data-plate]"
 
 
@@ -140,7 +141,7 @@ def test_what_is_wrong_is_said_with_its_line_before_anything_is_computed(
     page, complaints = opened(chromium, running_lab, "search")
     page.locator(".asked li").first.wait_for(state="attached", timeout=SOLVED)
     text = page.locator("#requirements")
-    text.fill(PRESET.replace('length = "83 mm"', 'length = "83"'))
+    text.fill(TEXT.replace('length = "83 mm"', 'length = "83"'))
     page.locator("#requirements-error", has_text="line 11: workspace.length").wait_for()
     page.get_by_role("button", name="Go to line 11").click()
     picked = "e => e.value.slice(e.selectionStart, e.selectionEnd)"
@@ -151,7 +152,7 @@ def test_what_is_wrong_is_said_with_its_line_before_anything_is_computed(
     page.locator(".error:visible", has_text="line 11").nth(1).wait_for()
     text.fill('<img src=x onerror="window.bad = 1">')
     page.locator("#requirements-error", has_text="line 1").wait_for()
-    text.fill(PRESET)
+    text.fill(TEXT)
     page.locator("#requirements-error").wait_for(state="hidden")
     for wrong in ("", "0", "1.5", "2000000"):
         page.locator("#screened").fill(wrong)
@@ -159,7 +160,7 @@ def test_what_is_wrong_is_said_with_its_line_before_anything_is_computed(
         page.locator(".error", has_text="designs screened: a whole number from 1").wait_for()
     # What nobody can build is an answer of the search itself.
     page.locator("#screened").fill("3")
-    impossible = PRESET.replace("least_lines = 5", "least_lines = 60")
+    impossible = TEXT.replace("least_lines = 5", "least_lines = 60")
     ask_for(page, impossible.replace("most_lines = 16", "most_lines = 60"), screened=3)
     page.locator(".search .results .error", has_text="none of the screened designs").wait_for(
         timeout=SOLVED
