@@ -11,7 +11,6 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.report.design.words import (
-    criterion_of,
     criterion_words,
     limit_words,
     setting_words,
@@ -19,7 +18,7 @@ from squeezefilm.report.design.words import (
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.page_style import FigureOf
 from squeezefilm.report.sweep.words import labelled, scaled
-from squeezefilm.search.design.criteria import CRITERIA
+from squeezefilm.search.design.criteria import CRITERIA, criterion_of
 from squeezefilm.search.design.space import Choice, Variable
 
 if TYPE_CHECKING:

@@ -10,17 +10,15 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import changed, shown, signed
 from squeezefilm.search.design.candidate import Design, Evaluated
-from squeezefilm.search.design.criteria import CRITERIA, Criterion, bounded
+from squeezefilm.search.design.criteria import CRITERIA, bounded, criterion_of
 from squeezefilm.search.design.found import DesignSearch, FrontMember
-from squeezefilm.search.design.reasons import limit_in_words, margins
+from squeezefilm.search.design.reasons import gains_in_words, limit_in_words, margins
 from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.space import Choice, Variable
 from squeezefilm.search.design.stock import OWN
 
 ALWAYS = ("resonance_frequency", "vibration_amplitude", "temperature_rise")
 """What is told of every plate beside its objectives."""
-_KEYS = {"thickness": "total_thickness"}
-_SHARES = ("area",)
 _LEAST = 0.001  # smaller changes of a friction are said to be so
 _TOLERANCES = {
     "thickness": "thickness of the sheet",
@@ -34,28 +32,18 @@ _TOLERANCES = {
 _LENGTHS = ("thickness", "ceramic_thickness", "sides")
 
 
-def criterion_of(objective: str) -> Criterion:
-    """The criterion that an objective is."""
-    return CRITERIA[_KEYS.get(objective, objective)]
-
-
 def criterion_words(key: str, value: float | None) -> str:
     """The value of a criterion (SI) in words."""
     if value is None or math.isnan(value):
         return "not known"
     if math.isinf(value):
         return {"finest_period": "none is felt", "neighbour": "none is near"}.get(key, "no limit")
-    return si.percent(value) if key in _SHARES else CRITERIA[key].shown(value)
+    return CRITERIA[key].shown(value)
 
 
 def limit_words(key: str, bound: float) -> str:
     """A criterion with its limit (SI) in words."""
-    return f"{CRITERIA[key].said} {bound_words(key, bound)}"
-
-
-def bound_words(key: str, bound: float) -> str:
-    """A limit (SI) in words."""
-    return f"at {'least' if CRITERIA[key].is_floor else 'most'} {criterion_words(key, bound)}"
+    return f"{CRITERIA[key].said} {CRITERIA[key].bound_said(bound)}"
 
 
 def setting_words(variable: Variable, design: Design, requirements: Requirements) -> str:
@@ -357,13 +345,8 @@ def limit_gain(found: DesignSearch) -> str:
     """The limit without which the objectives could be better, in a sentence; "" for none."""
     for one in found.limits:
         if one.best_without:
-            gains = " and ".join(
-                f"{criterion_of(key).said} of {criterion_words(criterion_of(key).key, value)}"
-                for key, value in one.best_without.items()
-            )
-            criterion = CRITERIA[one.key]
             return (
-                f"The limit on {criterion.said} costs: without it there would be {gains} "
-                "(screened, not solved)."
+                f"The limit on {CRITERIA[one.key].said} costs: without it there would be "
+                f"{gains_in_words(one)} (screened, not solved)."
             )
     return ""

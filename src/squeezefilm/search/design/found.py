@@ -16,7 +16,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.results import Result, to_json
 from squeezefilm.search.design.candidate import Evaluated, display_of
 from squeezefilm.search.design.correction import Correction
-from squeezefilm.search.design.criteria import CRITERIA
+from squeezefilm.search.design.criteria import CRITERIA, criterion_of
 from squeezefilm.search.design.front import dominates, hypervolume, knee_of
 from squeezefilm.search.design.reasons import EmptyCorner, LimitReason
 from squeezefilm.search.design.requirements import Requirements
@@ -88,7 +88,7 @@ class DesignSearch(Result):
         limits = self.requirements.limits
         found = []
         for number, name in enumerate(self.requirements.objectives):
-            own = CRITERIA["total_thickness" if name == "thickness" else name].limit
+            own = criterion_of(name).limit
             bound = getattr(limits, own) if own else None
             natural = _NATURAL_WORST.get(name)
             if bound is None and natural is None:
