@@ -283,7 +283,7 @@ def _reference_section(found: DesignSearch) -> Iterator[str]:
             if key in reference.numbers and key != "highest_frequency"
         ]
         head = ("criterion", found.requirements.compare_with, f"{chosen.name}, to build")
-        table = text_table("By the same questions", head, rows)
+        table = text_table("Both, judged in the same way", head, rows)
     yield section(f"Beside {as_html(found.requirements.compare_with)}", bullets(said) + table)
 
 

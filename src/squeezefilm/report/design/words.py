@@ -97,9 +97,7 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     surface = requirements.base.surfaces[0].name
     least, most = (" × ".join(shown(side, si.Unit("m")) for side in one) for one in
                    (room.least, room.most))  # fmt: skip
-    size = f"at least {least}" if least == most else f"at least {least} and at most {most}"
-    if least == most:
-        size = f"{least}"
+    size = least if least == most else f"at least {least} and at most {most}"
     volts = shown(drive.voltage, si.Unit("V"))
     if drive.least_voltage not in (None, drive.voltage):
         volts = f"{shown(float(drive.least_voltage or 0), si.Unit('V'))} to {volts}"
@@ -125,18 +123,19 @@ def counts_sentence(found: DesignSearch) -> str:
     kept = sum(one.is_feasible for one in found.solved)
     failed = sum(bool(one.reason) for one in found.screened)
     return (
-        f"{_many(screened, 'design')} screened, of which {feasible} keep all limits"
+        f"{many(screened, 'design')} screened, of which {feasible} keep all limits"
         + (f" and {failed} cannot be built or computed" if failed else "")
-        + f"; {_many(solved, 'plate')} solved in three dimensions, of which {kept} keep them; "
+        + f"; {many(solved, 'plate')} solved in three dimensions, of which {kept} keep them; "
         + (
-            f"{_many(len(found.front), 'plate')} that none other beats: the front."
+            f"{many(len(found.front), 'plate')} that none other beats: the front."
             if found.front
             else "the front is empty."
         )
     )
 
 
-def _many(count: int, word: str) -> str:
+def many(count: int, word: str) -> str:
+    """A count of things, in the plural unless there is one."""
     return f"{count} {word}{'' if count == 1 else 's'}"
 
 
@@ -159,7 +158,7 @@ def _told(requirements: Requirements) -> list[str]:
 def front_row(requirements: Requirements, member: FrontMember) -> list[str]:
     """Objectives, frequency, amplitude, temperature and yield of a plate of the front."""
     values = row_of(requirements, member.evaluated)
-    return [*values, "not drawn" if member.made is None else si.percent(member.made.kept)]
+    return [*values, "not known" if member.made is None else si.percent(member.made.kept)]
 
 
 def row_of(requirements: Requirements, one: Evaluated) -> list[str]:
@@ -206,7 +205,7 @@ def made_sentences(member: FrontMember) -> list[str]:
     """How many of the plates that are made of a drawing keep the limits, and what they break."""
     made = member.made
     if made is None:
-        return ["What is made of its drawing was not drawn."]
+        return ["How many plates made of its drawing keep the limits was not computed."]
     breaks = sorted(made.broken.items(), key=lambda one: -one[1])
     told = ", ".join(f"{CRITERIA[key].said} by {count}" for key, count in breaks)
     return [
@@ -270,7 +269,7 @@ def reference_sentences(found: DesignSearch) -> list[str]:
         f"{one.said} {criterion_words(one.key, value)}"
         for one, value in zip(goals, own, strict=True)
     )
-    said = [f"By the same questions {name} has {has}."]
+    said = [f"Judged in the same way, {name} has {has}."]
     said += [f"It breaks a limit: {one.sentence}." for one in reference.broken]
     if not reference.broken:
         said.append("It keeps every limit that could be asked of it.")
@@ -279,7 +278,7 @@ def reference_sentences(found: DesignSearch) -> list[str]:
     said += [_left(found, k, own) for k in range(len(goals))]
     better = len(found.beats_reference)
     said.append(
-        f"Of {_many(len(found.front), 'plate')} of the front {better} beat it: better in an "
+        f"Of {many(len(found.front), 'plate')} of the front {better} beat it: better in an "
         "objective and worse in none."
         if better
         else "No plate of the front is better than it in an objective and worse in none."
