@@ -45,6 +45,19 @@ Strict = Annotated[
     bool, typer.Option("--strict", help="Refuse contradicting data and models out of range.")
 ]
 
+# Who computes what is asked by the hundred.
+Jobs = Annotated[
+    int | None, typer.Option(help="Processes; as many as there are cores if not given.")
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS",
+        help="A Dask cluster's scheduler, tcp://HOST:8786: its workers answer, not this "
+        "machine. Who reaches it can run any code there.",
+    ),
+]
+
 # A texture on a display, and the device that plays it.
 Texture = Annotated[
     str, typer.Argument(metavar="TEXTURE|FILE", help="A preset texture or a TOML file.")

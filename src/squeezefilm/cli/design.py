@@ -7,7 +7,16 @@ from typing import Annotated
 import typer
 
 from squeezefilm.arguments import called_with
-from squeezefilm.cli.app import AsJson, answer, app, print_json, working, written_to
+from squeezefilm.cli.app import (
+    AsJson,
+    Jobs,
+    Scheduler,
+    answer,
+    app,
+    print_json,
+    working,
+    written_to,
+)
 
 
 @dataclass(frozen=True)
@@ -35,16 +44,8 @@ class DesignOptions:
         int, typer.Option(help="Plates that are solved in three dimensions, at most.")
     ] = 120
     seed: Annotated[int, typer.Option(help="Of everything that is drawn.")] = 1
-    jobs: Annotated[
-        int | None, typer.Option(help="Processes; as many as there are cores if not given.")
-    ] = None
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help='A Dask cluster that computes in place of processes, like "tcp://host:8786".',
-        ),
-    ] = None
+    jobs: Jobs = None
+    scheduler: Scheduler = None
     member: Annotated[
         int, typer.Option(help="Tells hosts apart that search in one folder: 0, 1, …")
     ] = 0

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from squeezefilm.arguments import called_with
-from squeezefilm.cli.app import AsJson, answer, app, working, written_to
+from squeezefilm.cli.app import AsJson, Jobs, Scheduler, answer, app, working, written_to
 from squeezefilm.errors import InputError
 
 
@@ -51,16 +51,8 @@ class SweepOptions:
         ),
     ] = None
     seed: Annotated[int, typer.Option(help="Of the samples.")] = 0
-    jobs: Annotated[
-        int | None, typer.Option(help="Processes; as many as there are cores if not given.")
-    ] = None
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            help="A Dask cluster's scheduler, tcp://HOST:8786: its workers answer, not this "
-            "machine. Who reaches it can run any code there."
-        ),
-    ] = None
+    jobs: Jobs = None
+    scheduler: Scheduler = None
     out: Annotated[
         Path | None,
         written_to("Folder for page, table and JSON; what it has is not computed again."),

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import collections
 import contextlib
+import functools
 import itertools
 import logging
 import pickle
@@ -23,7 +24,7 @@ from squeezefilm import __version__
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, WorkersError
 from squeezefilm.progress import SayProgress
-from squeezefilm.search.tasks import A, K, Lost, Shares, computed, grouped
+from squeezefilm.search.tasks import A, K, Lost, Shares, computed, grouped, tried_again
 
 _AHEAD, _AHEAD_OF_QUICK = 2, 32
 _QUICK: si.Second = 0.1
@@ -97,14 +98,9 @@ class Cluster:
         """As `Workers.answers`. Workers come and go; a task is tried again as often as the
         scheduler's `allowed-failures` says, and then once alone. Where the iteration is closed
         early, workers end the task they are at."""
-        alone: list[K] = []
-        for key, answer in self._asked(function, tasks, grouped(tasks, alike)):
-            if isinstance(answer, Lost):
-                alone.append(key)
-            else:
-                yield key, answer
-        for key in alone:
-            yield from self._asked(function, tasks, [[key]])
+        yield from tried_again(
+            functools.partial(self._asked, function, tasks), grouped(tasks, alike)
+        )
 
     def _asked(
         self,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import multiprocessing
 import os
 import signal
@@ -13,7 +14,7 @@ from concurrent.futures.process import BrokenProcessPool
 from types import TracebackType
 from typing import Any
 
-from squeezefilm.search.tasks import A, K, Lost, Shares, computed, grouped
+from squeezefilm.search.tasks import A, K, Lost, Shares, computed, grouped, tried_again
 
 
 class Processes:
@@ -45,24 +46,17 @@ class Processes:
         alike: Mapping[K, Hashable] | None = None,
     ) -> Iterator[tuple[K, A | Lost]]:
         """As `Workers.answers`."""
-        alone: list[K] = []
-        for key, answer in self._asked(function, tasks, grouped(tasks, alike), self._jobs):
-            if isinstance(answer, Lost):
-                alone.append(key)
-            else:
-                yield key, answer
-        # When no other runs: what it needs is all there is.
-        for key in alone:
-            yield from self._asked(function, tasks, [[key]], 1)
+        yield from tried_again(
+            functools.partial(self._asked, function, tasks), grouped(tasks, alike)
+        )
 
     def _asked(
         self,
         function: Callable[..., A],
         tasks: Mapping[K, tuple[Any, ...]],
         groups: Sequence[Sequence[K]],
-        jobs: int,
     ) -> Iterator[tuple[K, A | Lost]]:
-        """Answers of so many of the processes; `Lost` for one that a process died of."""
+        """Answers of the processes; `Lost` for one that a process died of."""
         shares = Shares(groups)
         running: dict[Future[A], tuple[int, K]] = {}
 
@@ -75,7 +69,7 @@ class Processes:
             running[self._executors[process].submit(computed, function, tasks[key])] = process, key
 
         try:
-            for process in range(min(jobs, sum(map(len, groups)))):
+            for process in range(min(self._jobs, sum(map(len, groups)))):
                 begin(process)
             while running:
                 done, _ = wait(running, return_when=FIRST_COMPLETED)

@@ -119,7 +119,7 @@ def _axis(ranges: Sequence[_Range], count: int, seed: int) -> Axis:
 def _range(name: str, found: re.Match[str], display: Display) -> _Range:
     option, unit, whole = what_is_varied(name, display)
     if unit is None:
-        raise InputError(f"{name} takes words, that no range; name them with commas between")
+        raise InputError(f"{name} takes words, which have no range; name them with commas between")
     ends = (found[end].strip() for end in ("first", "last"))
     low, high = sorted(quantity_of_text(name, end, unit) for end in ends)
     if low == high or (found["log"] and low <= 0):

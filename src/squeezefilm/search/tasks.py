@@ -84,6 +84,22 @@ def grouped(
     return list(groups.values())
 
 
+def tried_again(
+    ask: Callable[[Sequence[Sequence[K]]], Iterator[tuple[K, A | Lost]]],
+    groups: Sequence[Sequence[K]],
+) -> Iterator[tuple[K, A | Lost]]:
+    """What is asked in groups; tasks that were lost are asked again at last, each alone, since what
+    it needs may be all there is."""
+    alone: list[K] = []
+    for key, answer in ask(groups):
+        if isinstance(answer, Lost):
+            alone.append(key)
+        else:
+            yield key, answer
+    for key in alone:
+        yield from ask([[key]])
+
+
 class Shares(Generic[K]):
     """Which task a worker takes next: one that is like those it did; then of a group that nobody
     has begun; then half of what another worker has most left of, which solves that plate twice."""

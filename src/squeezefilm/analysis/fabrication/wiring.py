@@ -31,16 +31,6 @@ class Electrode:
     thickness: si.Metre
     shunt_resistance: si.Ohm | None = None
 
-    @property
-    def is_driven(self) -> bool:
-        """Whether the amplifier drives it."""
-        return self.connection in (IN_PHASE, ANTIPHASE)
-
-    @property
-    def poling_said(self) -> str:
-        """The direction of poling in words."""
-        return "away from the plate" if self.poling > 0 else "towards the plate"
-
 
 def electrodes_of(actuator: Actuator, parts: Sequence[Part] | None = None) -> tuple[Electrode, ...]:
     """The outer electrodes of an actuator, as the solver has them; `parts` spares computing these.

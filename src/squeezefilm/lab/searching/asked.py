@@ -17,7 +17,7 @@ from squeezefilm.config.write import text_of
 from squeezefilm.errors import ConfigError
 from squeezefilm.lab.files import existing
 from squeezefilm.search.design.candidate import Design, display_of
-from squeezefilm.search.design.criteria import CRITERIA, Criterion, bounded
+from squeezefilm.search.design.criteria import bounded, criterion_of
 from squeezefilm.search.design.requirements import Requirements
 
 _DISPLAYS = ("start_from", "compare_with")
@@ -70,10 +70,7 @@ def asked_of(text: str, folder: Path) -> dict[str, Any]:
             }
             for one in map(criterion_of, asked.objectives)
         ],
-        "limits": [
-            f"{one.said}: {'at least' if one.is_floor else 'at most'} {one.shown(bound)}"
-            for one, bound in bounded(asked.limits)
-        ],
+        "limits": [f"{one.said}: {one.bound_said(bound)}" for one, bound in bounded(asked.limits)],
         "shapes": [
             {"name": space.shape, "chosen": [one.name.replace("_", " ") for one in space.free]}
             for space in asked.spaces
@@ -82,11 +79,6 @@ def asked_of(text: str, folder: Path) -> dict[str, Any]:
         "compare_with": Path(asked.compare_with).stem if asked.compare_with else "",
         "assumed": list(asked.assumed),
     }
-
-
-def criterion_of(objective: str) -> Criterion:
-    """The number that an objective makes small."""
-    return CRITERIA["total_thickness" if objective == "thickness" else objective]
 
 
 def display_text(text: str, folder: Path, shape: int, values: Mapping[str, Any]) -> str:

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm import quantities as si
-from squeezefilm.lab.searching.asked import criterion_of
 from squeezefilm.search.design.candidate import Evaluated
-from squeezefilm.search.design.criteria import CRITERIA
+from squeezefilm.search.design.criteria import CRITERIA, criterion_of
 from squeezefilm.search.design.found import DesignSearch
 from squeezefilm.search.design.reasons import EmptyCorner, limit_in_words
 from squeezefilm.search.design.requirements import Requirements

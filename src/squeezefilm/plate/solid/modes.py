@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import ClassVar
@@ -148,11 +147,6 @@ class PlateModes(SolvedAgain):
         """The mean distance of nodal lines along the side that more of them cross (m), see
         `line_distance`."""
         return line_distance(self.nodal_positions(mode))
-
-    @functools.cached_property
-    def half_wavelengths(self) -> si.MetreArray:
-        """`half_wavelength` of every mode."""
-        return np.array([self.half_wavelength(i) for i in range(self.count)])
 
 
 def profiles(shape: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, float]:

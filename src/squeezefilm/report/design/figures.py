@@ -11,7 +11,6 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.report.design.words import (
-    criterion_of,
     criterion_words,
     limit_words,
     setting_words,
@@ -19,8 +18,9 @@ from squeezefilm.report.design.words import (
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.page_style import FigureOf
 from squeezefilm.report.sweep.words import labelled, scaled
-from squeezefilm.search.design.criteria import CRITERIA
+from squeezefilm.search.design.criteria import CRITERIA, criterion_of
 from squeezefilm.search.design.space import Choice, Variable
+from squeezefilm.search.design.worth_solving import objectives_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -173,8 +173,7 @@ def _axis(axes: Axes, which: str, values: si.FloatArray, label: str) -> None:
 
 def _rows(found: DesignSearch, designs: Sequence[Evaluated]) -> si.FloatArray:
     """The finite objectives of designs (SI), shape (designs, objectives)."""
-    names = found.requirements.objectives
-    rows = np.array([one.objectives(names) for one in designs]).reshape(len(designs), len(names))
+    rows = objectives_of(found.requirements, designs)
     finite: si.FloatArray = rows[np.isfinite(rows).all(axis=1)]
     return finite
 
@@ -220,12 +219,7 @@ def limits(found: DesignSearch) -> Figure:
 @style.drawn
 def screening(found: DesignSearch) -> Figure:
     """What the screening said of the solved plates, against what solving them said."""
-    before = {one.design: one for one in found.screened}
-    pairs = [
-        (before[one.design], one)
-        for one in found.solved
-        if not one.reason and one.design in before and not before[one.design].reason
-    ]
+    pairs = found.screened_and_solved
     names = dict.fromkeys((*found.requirements.objectives, "resonance_frequency"))
     if not pairs:
         return style.message_figure("How good the screening was", "No screened plate was solved.")

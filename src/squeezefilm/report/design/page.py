@@ -13,11 +13,9 @@ from squeezefilm.report.design.figures import FIGURES, MARKED
 from squeezefilm.report.design.plates import plate_file
 from squeezefilm.report.design.words import (
     asked_sentences,
-    bound_words,
     chosen_sentences,
     chosen_words,
     counts_sentence,
-    criterion_of,
     criterion_words,
     effect_head,
     effect_rows,
@@ -46,7 +44,7 @@ from squeezefilm.report.kit.page_style import (
     text_table,
     verdict_list,
 )
-from squeezefilm.search.design.criteria import CRITERIA, bounded
+from squeezefilm.search.design.criteria import CRITERIA, bounded, criterion_of
 from squeezefilm.search.design.found import DesignSearch, FrontMember
 from squeezefilm.search.design.reasons import margins
 
@@ -259,7 +257,7 @@ def _criteria_rows(found: DesignSearch, member: FrontMember) -> Iterator[tuple[s
         value = member.evaluated.numbers.get(key)
         if value is None or math.isnan(value) or (key == "highest_frequency" and key not in bounds):
             continue
-        limit = bound_words(key, bounds[key]) if key in bounds else ""
+        limit = one.bound_said(bounds[key]) if key in bounds else ""
         yield (
             one.said,
             criterion_words(key, value),
@@ -285,7 +283,7 @@ def _reference_section(found: DesignSearch) -> Iterator[str]:
             if key in reference.numbers and key != "highest_frequency"
         ]
         head = ("criterion", found.requirements.compare_with, f"{chosen.name}, to build")
-        table = text_table("By the same questions", head, rows)
+        table = text_table("Both, judged in the same way", head, rows)
     yield section(f"Beside {as_html(found.requirements.compare_with)}", bullets(said) + table)
 
 

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Iterator, Mapping
 
 from squeezefilm import presets
-from squeezefilm import quantities as si
+from squeezefilm.analysis.parameters import value_at
 from squeezefilm.config.provenance import Provenance, distribution_of, split_provenance
 from squeezefilm.config.write import text_of
 from squeezefilm.display import Display, load_display
@@ -122,17 +122,7 @@ def _of_material(
     for path, source in split.sources.items():
         spread = split.spreads.get(path)
         if spread is not None:
-            value, unit = _value(display, f"{at}{path}")
+            value, unit = value_at(display, f"{at}{path}")
             source = dataclasses.replace(source, distribution=distribution_of(value, unit, spread))
         found[at + path] = source
     return found
-
-
-def _value(display: Display, path: str) -> tuple[float, si.Unit]:
-    """A number of a display at a dotted path, and its unit."""
-    for leaf in leaves(display):
-        if ".".join(map(str, leaf.path)) == path:
-            unit = si.unit_of(leaf.hint)
-            assert unit is not None, "a range is of a quantity"
-            return float(leaf.value), unit
-    raise AssertionError(f"the library has {path} and the display has not")

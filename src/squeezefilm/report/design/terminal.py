@@ -15,6 +15,7 @@ from squeezefilm.report.design.words import (
     front_head,
     front_row,
     limit_sentences,
+    many,
     rank_sentences,
     reference_sentences,
     row_of,
@@ -47,8 +48,7 @@ def show_design(found: DesignSearch) -> None:
             "most designs break, or give the shapes more room."
         )
         for reason, count in counted(o.reason for o in found.screened if o.reason)[:3]:
-            designs = "design" if count == 1 else "designs"
-            console.print(f"! {count} {designs} cannot be: {printable(reason)}")
+            console.print(f"! {many(count, 'design')} cannot be built: {printable(reason)}")
     if compared := reference_sentences(found):
         heading(console, f"Beside {requirements.compare_with}")
         _say(console, compared)

@@ -10,17 +10,15 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import changed, shown, signed
 from squeezefilm.search.design.candidate import Design, Evaluated
-from squeezefilm.search.design.criteria import CRITERIA, Criterion, bounded
+from squeezefilm.search.design.criteria import CRITERIA, bounded, criterion_of
 from squeezefilm.search.design.found import DesignSearch, FrontMember
-from squeezefilm.search.design.reasons import limit_in_words, margins
+from squeezefilm.search.design.reasons import gains_in_words, limit_in_words, margins
 from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.space import Choice, Variable
 from squeezefilm.search.design.stock import OWN
 
 ALWAYS = ("resonance_frequency", "vibration_amplitude", "temperature_rise")
 """What is told of every plate beside its objectives."""
-_KEYS = {"thickness": "total_thickness"}
-_SHARES = ("area",)
 _LEAST = 0.001  # smaller changes of a friction are said to be so
 _TOLERANCES = {
     "thickness": "thickness of the sheet",
@@ -34,28 +32,18 @@ _TOLERANCES = {
 _LENGTHS = ("thickness", "ceramic_thickness", "sides")
 
 
-def criterion_of(objective: str) -> Criterion:
-    """The criterion that an objective is."""
-    return CRITERIA[_KEYS.get(objective, objective)]
-
-
 def criterion_words(key: str, value: float | None) -> str:
     """The value of a criterion (SI) in words."""
     if value is None or math.isnan(value):
         return "not known"
     if math.isinf(value):
         return {"finest_period": "none is felt", "neighbour": "none is near"}.get(key, "no limit")
-    return si.percent(value) if key in _SHARES else CRITERIA[key].shown(value)
+    return CRITERIA[key].shown(value)
 
 
 def limit_words(key: str, bound: float) -> str:
     """A criterion with its limit (SI) in words."""
-    return f"{CRITERIA[key].said} {bound_words(key, bound)}"
-
-
-def bound_words(key: str, bound: float) -> str:
-    """A limit (SI) in words."""
-    return f"at {'least' if CRITERIA[key].is_floor else 'most'} {criterion_words(key, bound)}"
+    return f"{CRITERIA[key].said} {CRITERIA[key].bound_said(bound)}"
 
 
 def setting_words(variable: Variable, design: Design, requirements: Requirements) -> str:
@@ -109,9 +97,7 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     surface = requirements.base.surfaces[0].name
     least, most = (" × ".join(shown(side, si.Unit("m")) for side in one) for one in
                    (room.least, room.most))  # fmt: skip
-    size = f"at least {least}" if least == most else f"at least {least} and at most {most}"
-    if least == most:
-        size = f"{least}"
+    size = least if least == most else f"at least {least} and at most {most}"
     volts = shown(drive.voltage, si.Unit("V"))
     if drive.least_voltage not in (None, drive.voltage):
         volts = f"{shown(float(drive.least_voltage or 0), si.Unit('V'))} to {volts}"
@@ -137,18 +123,19 @@ def counts_sentence(found: DesignSearch) -> str:
     kept = sum(one.is_feasible for one in found.solved)
     failed = sum(bool(one.reason) for one in found.screened)
     return (
-        f"{_many(screened, 'design')} screened, of which {feasible} keep all limits"
+        f"{many(screened, 'design')} screened, of which {feasible} keep all limits"
         + (f" and {failed} cannot be built or computed" if failed else "")
-        + f"; {_many(solved, 'plate')} solved in three dimensions, of which {kept} keep them; "
+        + f"; {many(solved, 'plate')} solved in three dimensions, of which {kept} keep them; "
         + (
-            f"{_many(len(found.front), 'plate')} that none other beats: the front."
+            f"{many(len(found.front), 'plate')} that none other beats: the front."
             if found.front
             else "the front is empty."
         )
     )
 
 
-def _many(count: int, word: str) -> str:
+def many(count: int, word: str) -> str:
+    """A count of things, in the plural unless there is one."""
     return f"{count} {word}{'' if count == 1 else 's'}"
 
 
@@ -171,7 +158,7 @@ def _told(requirements: Requirements) -> list[str]:
 def front_row(requirements: Requirements, member: FrontMember) -> list[str]:
     """Objectives, frequency, amplitude, temperature and yield of a plate of the front."""
     values = row_of(requirements, member.evaluated)
-    return [*values, "not drawn" if member.made is None else si.percent(member.made.kept)]
+    return [*values, "not known" if member.made is None else si.percent(member.made.kept)]
 
 
 def row_of(requirements: Requirements, one: Evaluated) -> list[str]:
@@ -218,7 +205,7 @@ def made_sentences(member: FrontMember) -> list[str]:
     """How many of the plates that are made of a drawing keep the limits, and what they break."""
     made = member.made
     if made is None:
-        return ["What is made of its drawing was not drawn."]
+        return ["How many plates made of its drawing keep the limits was not computed."]
     breaks = sorted(made.broken.items(), key=lambda one: -one[1])
     told = ", ".join(f"{CRITERIA[key].said} by {count}" for key, count in breaks)
     return [
@@ -282,7 +269,7 @@ def reference_sentences(found: DesignSearch) -> list[str]:
         f"{one.said} {criterion_words(one.key, value)}"
         for one, value in zip(goals, own, strict=True)
     )
-    said = [f"By the same questions {name} has {has}."]
+    said = [f"Judged in the same way, {name} has {has}."]
     said += [f"It breaks a limit: {one.sentence}." for one in reference.broken]
     if not reference.broken:
         said.append("It keeps every limit that could be asked of it.")
@@ -291,7 +278,7 @@ def reference_sentences(found: DesignSearch) -> list[str]:
     said += [_left(found, k, own) for k in range(len(goals))]
     better = len(found.beats_reference)
     said.append(
-        f"Of {_many(len(found.front), 'plate')} of the front {better} beat it: better in an "
+        f"Of {many(len(found.front), 'plate')} of the front {better} beat it: better in an "
         "objective and worse in none."
         if better
         else "No plate of the front is better than it in an objective and worse in none."
@@ -357,13 +344,8 @@ def limit_gain(found: DesignSearch) -> str:
     """The limit without which the objectives could be better, in a sentence; "" for none."""
     for one in found.limits:
         if one.best_without:
-            gains = " and ".join(
-                f"{criterion_of(key).said} of {criterion_words(criterion_of(key).key, value)}"
-                for key, value in one.best_without.items()
-            )
-            criterion = CRITERIA[one.key]
             return (
-                f"The limit on {criterion.said} costs: without it there would be {gains} "
-                "(screened, not solved)."
+                f"The limit on {CRITERIA[one.key].said} costs: without it there would be "
+                f"{gains_in_words(one)} (screened, not solved)."
             )
     return ""

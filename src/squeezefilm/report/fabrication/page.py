@@ -25,7 +25,6 @@ from squeezefilm.report.fabrication.rows import (
     STEP,
     bill_csv,
     bill_rows,
-    csv_text,
     expected_rows,
     layout_rows,
     lead_rows,
@@ -33,7 +32,7 @@ from squeezefilm.report.fabrication.rows import (
     step_rows,
 )
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.report.kit.folder import csv_text, json_text, require_folder, write_folder
 from squeezefilm.report.kit.numbers import HZ, display_values, printable, shown
 from squeezefilm.report.kit.page_style import (
     as_html,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -15,6 +13,7 @@ from squeezefilm.report.fabrication.rectangular_sheet import HEAD as CERAMICS
 from squeezefilm.report.fabrication.rectangular_sheet import electrode_rows
 from squeezefilm.report.fabrication.round_sheet import HEAD as SECTORS
 from squeezefilm.report.fabrication.round_sheet import sector_rows
+from squeezefilm.report.kit.folder import csv_text
 from squeezefilm.report.kit.numbers import shown
 
 if TYPE_CHECKING:
@@ -43,15 +42,6 @@ _PLAN = (
 )
 _BILL = ("item", "what", "count", "material", "size", "made", "mass_kg", "in_mass", "remark")
 _KEY = ("resonance_frequency", "amplitude_per_volt", "quality_factor", "mass", FRICTION)
-
-
-def csv_text(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
-    """Rows under their head as CSV."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(rows)
-    return stream.getvalue()
 
 
 def said(value: float | None, unit: str, digits: int = 4) -> str:
@@ -121,7 +111,7 @@ def bill_csv(bill: Sequence[BillRow]) -> str:
             one.material,
             one.size,
             one.made,
-            "" if one.mass is None else repr(one.mass),
+            one.mass,
             "yes" if one.in_mass else "no",
             one.remark,
         )

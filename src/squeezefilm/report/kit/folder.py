@@ -5,12 +5,15 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from squeezefilm.errors import InputError
 from squeezefilm.results import to_json, write_whole
+
+_NUMBER = re.compile(r"[-+]?[0-9.]+(e[-+]?[0-9]+)?")
 
 
 def require_folder(folder: str | Path) -> Path:
@@ -43,8 +46,9 @@ def _cell(value: object) -> str:
     if value is None:
         return ""
     text = repr(value) if isinstance(value, float) else str(value)
-    # A spreadsheet must not take a text for a formula.
-    return f"'{text}" if isinstance(value, str) and text[:1] in "=+-@" and text else text
+    # A spreadsheet must not take a text for a formula; a negative number is none.
+    risky = isinstance(value, str) and text[:1] in ("=", "+", "-", "@")
+    return f"'{text}" if risky and not _NUMBER.fullmatch(text) else text
 
 
 def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:

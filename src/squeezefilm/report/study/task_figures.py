@@ -23,7 +23,6 @@ _SCALE = {
     "spatial_period": (1e3, "spatial period (mm)"),
     "friction_depth": (1e2, "friction change (%)"),
 }
-_HOLLOW: dict[str, Any] = {"mfc": style.PAPER, "mec": style.BLUE}
 _FAINT: dict[str, Any] = {"color": style.METAL, "lw": 0.8, "alpha": 0.7}
 _MOST_LINES = 60
 

@@ -19,6 +19,7 @@ from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.search.design.criteria import (
     Breach,
     breaches,
+    criterion_of,
     numbers_of_prediction,
     numbers_of_solved,
 )
@@ -91,11 +92,8 @@ class Evaluated:
 
     def objectives(self, names: tuple[str, ...]) -> tuple[float, ...]:
         """What is made small, in the order of names; infinite where it is not known."""
-        found = (self.numbers.get(_KEYS.get(name, name), float("inf")) for name in names)
+        found = (self.numbers.get(criterion_of(name).key, float("inf")) for name in names)
         return tuple(float("inf") if value != value else value for value in found)
-
-
-_KEYS = {"thickness": "total_thickness"}
 
 
 def display_of(requirements: Requirements, design: Design) -> Display:

@@ -53,10 +53,6 @@ class Correction:
     raw: Mapping[str, si.Dimensionless]
     pairs: int
 
-    def of(self, screened: Evaluated) -> dict[str, float]:
-        """The numbers of a screened design, corrected (SI)."""
-        return self.of_all([screened])[0]
-
     def of_all(self, screened: Sequence[Evaluated]) -> list[dict[str, float]]:
         """The numbers of screened designs, corrected (SI)."""
         found = [dict(one.numbers) for one in screened]

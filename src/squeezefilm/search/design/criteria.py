@@ -47,7 +47,6 @@ class Criterion:
     unit: si.Unit
     said: str
     limit: str = ""
-    solved_only: bool = False
 
     @property
     def is_floor(self) -> bool:
@@ -58,13 +57,17 @@ class Criterion:
         """A value of it, for people."""
         if not math.isfinite(value):
             return "none" if value > 0 or math.isnan(value) else "-"
+        if self.key == "area":
+            return si.percent(value)
         return si.format_quantity(value, self.unit, 3)
 
+    def bound_said(self, bound: float) -> str:
+        """A limit on it, for people."""
+        return f"at {'least' if self.is_floor else 'most'} {self.shown(bound)}"
 
-def _one(
-    key: str, unit: str, said: str, limit: str = "", solved_only: bool = False
-) -> tuple[str, Criterion]:
-    return key, Criterion(key, si.Unit(unit), said, limit, solved_only)
+
+def _one(key: str, unit: str, said: str, limit: str = "") -> tuple[str, Criterion]:
+    return key, Criterion(key, si.Unit(unit), said, limit)
 
 
 CRITERIA: Mapping[str, Criterion] = dict(
@@ -85,13 +88,18 @@ CRITERIA: Mapping[str, Criterion] = dict(
         _one("stress", "Pa", "stress in the ceramic", "most_stress"),
         _one("deflection", "m", "deflection when pressed", "most_deflection"),
         _one("cost", "1", "class of cost", "most_cost"),
-        _one("neighbour", "1", "half-bandwidths to a neighbour", "least_neighbour", True),
-        _one("area", "1", "share of the area that reaches µ′/µ", "least_area", True),
-        _one("sound_level", "dB", "sound level at 0.5 m", "most_sound_level", True),
-        _one("surest_friction", "1", "µ′/µ with 95 % confidence", "", True),
+        _one("neighbour", "1", "half-bandwidths to a neighbour", "least_neighbour"),
+        _one("area", "1", "share of the area that reaches µ′/µ", "least_area"),
+        _one("sound_level", "dB", "sound level at 0.5 m", "most_sound_level"),
+        _one("surest_friction", "1", "µ′/µ with 95 % confidence"),
     )
 )
-"""By key, in the order in which they are told. `solved_only` are known of solved plates alone."""
+"""By key, in the order in which they are told. The last four are known of solved plates alone."""
+
+
+def criterion_of(objective: str) -> Criterion:
+    """The criterion that an objective is."""
+    return CRITERIA["total_thickness" if objective == "thickness" else objective]
 
 
 @dataclass(frozen=True)
@@ -108,8 +116,7 @@ class Breach:
     def sentence(self) -> str:
         """The breach for people."""
         one = CRITERIA[self.key]
-        bound = "at least" if one.is_floor else "at most"
-        return f"{one.said} is {one.shown(self.value)}, {bound} {one.shown(self.limit)} is wanted"
+        return f"{one.said} is {one.shown(self.value)}, {one.bound_said(self.limit)} is wanted"
 
 
 def bounded(limits: Limits) -> Iterator[tuple[Criterion, float]]:

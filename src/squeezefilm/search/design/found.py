@@ -16,11 +16,12 @@ from squeezefilm.errors import InputError
 from squeezefilm.results import Result, to_json
 from squeezefilm.search.design.candidate import Evaluated, display_of
 from squeezefilm.search.design.correction import Correction
-from squeezefilm.search.design.criteria import CRITERIA
+from squeezefilm.search.design.criteria import CRITERIA, criterion_of
 from squeezefilm.search.design.front import dominates, hypervolume, knee_of
 from squeezefilm.search.design.reasons import EmptyCorner, LimitReason
 from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.tolerance import Made
+from squeezefilm.search.design.worth_solving import objectives_of
 
 _NATURAL_WORST: Mapping[str, float] = {"relative_friction": 1.0, "finest_period": 5e-3}
 
@@ -67,9 +68,7 @@ class DesignSearch(Result):
     @functools.cached_property
     def objectives(self) -> si.FloatArray:
         """The objectives of the front (SI), shape (plates, objectives)."""
-        names = self.requirements.objectives
-        rows = [one.evaluated.objectives(names) for one in self.front]
-        return np.array(rows).reshape(len(rows), len(names))
+        return objectives_of(self.requirements, [one.evaluated for one in self.front])
 
     @property
     def chosen(self) -> FrontMember | None:
@@ -88,7 +87,7 @@ class DesignSearch(Result):
         limits = self.requirements.limits
         found = []
         for number, name in enumerate(self.requirements.objectives):
-            own = CRITERIA["total_thickness" if name == "thickness" else name].limit
+            own = criterion_of(name).limit
             bound = getattr(limits, own) if own else None
             natural = _NATURAL_WORST.get(name)
             if bound is None and natural is None:
@@ -113,20 +112,24 @@ class DesignSearch(Result):
         )
 
     @functools.cached_property
+    def screened_and_solved(self) -> tuple[tuple[Evaluated, Evaluated], ...]:
+        """The designs that were solved, each as it was screened and as solved."""
+        before = {one.design: one for one in self.screened if not one.reason}
+        return tuple(
+            (before[one.design], one)
+            for one in self.solved
+            if not one.reason and one.design in before
+        )
+
+    @functools.cached_property
     def ranks(self) -> dict[str, si.Dimensionless]:
         """Spearman's rank correlation of screened and solved numbers over the solved designs, by
         objective, where there are ten or more."""
-        before = {one.design: one for one in self.screened}
-        pairs = [
-            (before[one.design], one)
-            for one in self.solved
-            if not one.reason and one.design in before and not before[one.design].reason
-        ]
+        pairs = self.screened_and_solved
         if len(pairs) < 10:
             return {}
         names = self.requirements.objectives
-        first = np.array([one.objectives(names) for one, _ in pairs])
-        second = np.array([one.objectives(names) for _, one in pairs])
+        first, second = (objectives_of(self.requirements, one) for one in zip(*pairs, strict=True))
         return {
             name: float(spearmanr(first[:, k], second[:, k]).statistic)
             for k, name in enumerate(names)

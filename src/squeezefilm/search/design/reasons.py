@@ -10,7 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.search.design.candidate import Evaluated
-from squeezefilm.search.design.criteria import CRITERIA, bounded
+from squeezefilm.search.design.criteria import CRITERIA, bounded, criterion_of, excess_of
 from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.space import Choice, Number, Space, Step
 
@@ -119,8 +119,6 @@ def _part(variable: Number | Step | Choice, settings: Mapping[str, float | int |
 
 def margins(requirements: Requirements, one: Evaluated) -> dict[str, si.Dimensionless]:
     """How far a design stays from each limit, as a share of it, the nearest first."""
-    from squeezefilm.search.design.criteria import excess_of
-
     found = {
         criterion.key: -excess_of(criterion, one.numbers[criterion.key], bound)
         for criterion, bound in bounded(requirements.limits)
@@ -132,16 +130,16 @@ def margins(requirements: Requirements, one: Evaluated) -> dict[str, si.Dimensio
 def limit_in_words(reason: LimitReason, screened: int) -> str:
     """What a limit does, in a sentence."""
     one = CRITERIA[reason.key]
-    bound = "at least" if one.is_floor else "at most"
     said = (
-        f"{one.said} {bound} {one.shown(reason.limit)}: broken by {reason.broken} of {screened} "
+        f"{one.said} {one.bound_said(reason.limit)}: broken by {reason.broken} of {screened} "
         f"screened designs, by {reason.alone} as the only limit"
     )
     if reason.best_without:
-        gains = " and ".join(
-            f"{CRITERIA[key].said} of {CRITERIA[key].shown(value)}"
-            for key, value in reason.best_without.items()
-            if key in CRITERIA
-        )
-        said += f"; without it {gains} would be there"
+        said += f"; without it {gains_in_words(reason)} would be there"
     return said + "."
+
+
+def gains_in_words(reason: LimitReason) -> str:
+    """The objectives that would be there without a limit."""
+    gained = ((criterion_of(name), value) for name, value in reason.best_without.items())
+    return " and ".join(f"{one.said} of {one.shown(value)}" for one, value in gained)

@@ -33,9 +33,6 @@ class Disc(Shape):
     glue: GlueLayer | None = None
     type: Literal["disc"] = "disc"
 
-    def __post_init__(self) -> None:
-        self.require_stock()
-
     def variables(self, room: Room) -> tuple[Variable, ...]:
         """What is chosen; the ceramic's diameter from a catalogue where ceramics have lengths."""
         own = self.catalogue
@@ -77,9 +74,6 @@ class Ring(Shape):
     most_diameters: Annotated[int, si.AtLeast(2), si.AtMost(40)] = 12
     glue: GlueLayer | None = None
     type: Literal["ring"] = "ring"
-
-    def __post_init__(self) -> None:
-        self.require_stock()
 
     def variables(self, room: Room) -> tuple[Variable, ...]:
         """What is chosen."""

@@ -260,16 +260,18 @@ class SearchRun:
 
     def _make(self, pool: Workers) -> None:
         """Draw what is made of the front's drawings; where a yield is asked for, leave out what
-        misses it."""
-        front = self._front()
-        kept = ((one.design, self._store.made(one.design)) for one in front)
-        self._made.update((design, made) for design, made in kept if made is not None)
-        tasks = {o.design: (self.requirements, o) for o in front if o.design not in self._made}
-        for done, (design, made) in enumerate(pool.answers(made_of, tasks)):
-            if not isinstance(made, Lost):
-                self._made[design] = made
-                self._store.add_made(design, made)
-            self._tell(f"plates made with the tolerances: {done + 1} of {len(tasks)} drawings")
+        misses it, and draw what comes to the front in its place."""
+        asked: set[Design] = set()
+        while front := [one for one in self._front() if one.design not in asked]:
+            asked.update(one.design for one in front)
+            kept = ((one.design, self._store.made(one.design)) for one in front)
+            self._made.update((design, made) for design, made in kept if made is not None)
+            tasks = {o.design: (self.requirements, o) for o in front if o.design not in self._made}
+            for done, (design, made) in enumerate(pool.answers(made_of, tasks)):
+                if not isinstance(made, Lost):
+                    self._made[design] = made
+                    self._store.add_made(design, made)
+                self._tell(f"plates made with the tolerances: {done + 1} of {len(tasks)} drawings")
 
     def _evaluated(
         self, pool: Workers, designs: Sequence[Design], level: Level

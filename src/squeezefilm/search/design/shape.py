@@ -28,13 +28,15 @@ class Room:
 
 @dataclass(frozen=True)
 class Shape:
-    """What all shapes have: sheets and ceramics to build from, and a glue where one is counted."""
+    """What all shapes have: sheets and ceramics to build from.
+
+    Raises `InputError` for stock that is not there, named twice, or not in the library.
+    """
 
     sheets: tuple[Sheet, ...]
     ceramics: tuple[CeramicStock, ...]
 
-    def require_stock(self) -> None:
-        """Refuse stock that is not there, named twice, or not in the library (`InputError`)."""
+    def __post_init__(self) -> None:
         for name, stock in (("sheets", self.sheets), ("ceramics", self.ceramics)):
             if not stock:
                 raise InputError(f"{name} is empty; give at least one to build from", quantity=name)

@@ -61,9 +61,6 @@ class Strips(Shape):
     glue: GlueLayer | None = None
     type: Literal["strips"] = "strips"
 
-    def __post_init__(self) -> None:
-        self.require_stock()
-
     def variables(self, room: Room) -> tuple[Variable, ...]:
         """What is chosen. A catalogue's ceramics make the length, which is chosen otherwise."""
         (length, width), (longest, widest) = room.least, room.most
@@ -161,9 +158,6 @@ class EdgeStrips(Shape):
     glue: GlueLayer | None = None
     gasket: Gasket | None = None
     type: Literal["edge_strips"] = "edge_strips"
-
-    def __post_init__(self) -> None:
-        self.require_stock()
 
     def variables(self, room: Room) -> tuple[Variable, ...]:
         """What is chosen; the strips' width from a catalogue where ceramics have lengths."""

@@ -70,7 +70,7 @@ class DesignStore:
         self._known: dict[tuple[Design, Level], Evaluated] = {}
         self._made: dict[Design, Made] = {}
         self._made_hash = _made_hash(requirements)
-        self.computed, self.read = 0, 0
+        self.computed = 0
         if self._file is not None:
             self._load(self._file)
 
@@ -93,7 +93,6 @@ class DesignStore:
                 continue  # the last line of a search that was killed: computed again
             if known is not None:
                 self._known[known.design, known.level] = known
-        self.read = len(self._known)
 
     def __len__(self) -> int:
         return len(self._known)
@@ -101,10 +100,6 @@ class DesignStore:
     def get(self, design: Design, level: Level) -> Evaluated | None:
         """What is known of a design at a level; None where nothing is."""
         return self._known.get((design, level))
-
-    def all(self, level: Level) -> list[Evaluated]:
-        """All designs evaluated at a level, in the order in which they came."""
-        return [one for (_, at), one in self._known.items() if at == level]
 
     def add(self, found: Iterable[Evaluated]) -> None:
         """Keep evaluated designs, together on the disk. A fault of ours is kept in memory only."""

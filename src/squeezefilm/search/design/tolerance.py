@@ -22,7 +22,7 @@ from squeezefilm.search.design.candidate import (
     screening_theory,
 )
 from squeezefilm.search.design.correction import CORRECTED
-from squeezefilm.search.design.criteria import breaches
+from squeezefilm.search.design.criteria import breaches, criterion_of
 from squeezefilm.search.design.requirements import Requirements, Tolerances
 
 DRAWS = 64
@@ -85,8 +85,13 @@ def _effects(
             row[number] = sign
             ends.append(_scaled(_numbers(requirements, solved.design, row), nominal, solved))
         if all(ends):
-            keys = ("resonance_frequency", *requirements.objectives)
-            found[name] = {key: (ends[1][key] - ends[0][key]) / 2 for key in keys if key in ends[0]}
+            told = ("resonance_frequency", *requirements.objectives)
+            keys = {one: criterion_of(one).key for one in told}
+            found[name] = {
+                one: (ends[1][key] - ends[0][key]) / 2
+                for one, key in keys.items()
+                if key in ends[0]
+            }
     return found
 
 

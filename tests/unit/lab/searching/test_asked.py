@@ -14,12 +14,12 @@ from squeezefilm.lab.designing.form import preset_text
 from squeezefilm.lab.designing.numbers import opened
 from squeezefilm.lab.searching.asked import (
     asked_of,
-    criterion_of,
     display_text,
     folder_of,
     requirements_of,
 )
 from squeezefilm.search.design.candidate import display_of
+from squeezefilm.search.design.criteria import criterion_of
 
 from .small import TEXT, evaluated, requirements
 

@@ -96,8 +96,10 @@ def test_the_chosen_plate_is_told_with_its_nearest_limits_and_its_yield(
     assert "Its nearest limits: " in said
     assert "53 % keep all limits; broken are temperature rise by 30" in said
     member = replace(found.front[0], made=None)
-    assert words.made_sentences(member) == ["What is made of its drawing was not drawn."]
-    assert words.front_row(found.requirements, member)[-1] == "not drawn"
+    assert words.made_sentences(member) == [
+        "How many plates made of its drawing keep the limits was not computed."
+    ]
+    assert words.front_row(found.requirements, member)[-1] == "not known"
 
 
 def test_effects_of_tolerances_have_their_size_and_sign(found: DesignSearch) -> None:

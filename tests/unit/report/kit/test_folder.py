@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.report.kit.folder import csv_text, json_text, require_folder, write_folder
 
 
 def test_all_files_are_written_texts_and_bytes(tmp_path: Path) -> None:
@@ -40,3 +40,8 @@ def test_json_has_no_number_that_json_cannot_carry() -> None:
     assert json.loads(text) == {"µ": [1.0, None], "n": 2}
     assert text.startswith('{\n "µ": [')
     assert text.endswith("}\n")
+
+
+def test_a_spreadsheet_takes_no_text_for_a_formula_and_a_number_for_no_text() -> None:
+    rows = [("=1+1", "-2.5e-3", -0.1), ("-2+cmd", None, "")]
+    assert csv_text(("a", "b", "c"), rows) == "a,b,c\n'=1+1,-2.5e-3,-0.1\n'-2+cmd,,\n"

@@ -16,6 +16,7 @@ from squeezefilm.search.design.criteria import (
     finest_period_felt,
     numbers_of_prediction,
 )
+from squeezefilm.search.design.reasons import LimitReason, limit_in_words
 from squeezefilm.search.design.requirements import Limits
 
 LIMITS = Limits(most_relative_friction=0.5, least_frequency=20e3, most_power=2.0)
@@ -34,6 +35,18 @@ def test_breaches_are_told_the_worst_first_with_what_is_wanted() -> None:
     assert found[0].sentence == "resonance is 10 kHz, at least 20 kHz is wanted"
     assert found[0].excess == pytest.approx(0.5)
     assert not breaches(numbers, LIMITS, slack=0.6)
+
+
+def test_a_share_of_the_area_is_told_in_percent_as_is_its_limit() -> None:
+    (one,) = breaches({"area": 0.25}, Limits(least_area=0.6))
+    assert one.sentence.endswith("is 25 %, at least 60 % is wanted")
+
+
+def test_an_objective_of_thickness_is_told_of_what_is_gained() -> None:
+    reason = LimitReason("power", 2.0, 9, 4, {"thickness": 2e-3, "relative_friction": 0.5})
+    said = limit_in_words(reason, 20)
+    assert "power at most 2 W: broken by 9 of 20 screened designs" in said
+    assert "thickness with ceramics of 2 mm and µ′/µ at the best place of 0.5 would be" in said
 
 
 def test_nothing_is_said_of_what_is_not_known() -> None:

@@ -88,6 +88,23 @@ def test_a_search_that_was_stopped_goes_on(
     assert [one.evaluated for one in found.front] == [one.evaluated for one in whole.front]
 
 
+def _made_of_low_voltages(wanted: object, one: Evaluated) -> Made:
+    kept = 0.95 if float(one.design.settings["voltage"]) < 12 else 0.5
+    return Made(64, kept, {"power": 6}, {}, {})
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_what_comes_to_the_front_for_a_plate_of_a_low_yield_is_asked_for_its_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(run, "made_of", _made_of_low_voltages)
+    heat = 'most_temperature_rise = "60 K"'
+    wanted = requirements(**{heat: f"{heat}\nleast_yield = 0.9"})
+    found = run.search_designs(wanted, screened=400, solved=60)
+    assert found.front
+    assert [one.made.kept if one.made else 0.0 for one in found.front] == [0.95] * len(found.front)
+
+
 @pytest.mark.usefixtures("by_formula")
 def test_whoever_watches_sees_the_front_grow() -> None:
     seen: list[run.Glimpse] = []

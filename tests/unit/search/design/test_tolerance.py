@@ -80,3 +80,12 @@ def test_what_cannot_be_made_is_not_kept(wanted: Requirements) -> None:
     impossible = Design(0, tuple({**design.settings, "cover": 0.01}.items()))
     made = made_of(wanted, Evaluated(impossible, "solved", {}), draws=4)
     assert made.kept == 0
+
+
+def test_an_effect_on_the_thickness_is_that_of_the_sheet(
+    wanted: Requirements, solved: Evaluated
+) -> None:
+    thin = replace(wanted, objectives=("relative_friction", "thickness"))
+    alike = evaluate(thin, solved.design, "screened")
+    found = made_of(thin, replace(alike, level="solved"), draws=4)
+    assert found.effects["thickness"]["thickness"] == pytest.approx(20e-6)
