@@ -194,8 +194,9 @@ _PRESENT: ContextVar[SecondProcess | None] = ContextVar("second process", defaul
 
 @contextmanager
 def second_process(*prepare: Callable[[], object]) -> Iterator[SecondProcess | None]:
-    """A `SecondProcess` for the block; None unless there is a second processor for it."""
-    if _processors() < 2:
+    """A `SecondProcess` for the block; None unless there is a second processor for it, and in a
+    process that must not have children, as the lab's workers are."""
+    if _processors() < 2 or multiprocessing.current_process().daemon:
         yield None
         return
     process = SecondProcess(*prepare)

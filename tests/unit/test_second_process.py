@@ -171,6 +171,15 @@ def test_one_processor_has_none_to_spare(monkeypatch: pytest.MonkeyPatch) -> Non
         assert values(later(ADD, 1, 2)) == [3]
 
 
+def test_a_process_that_must_not_have_children_has_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the lab's workers are."""
+    monkeypatch.setattr(room, "_processors", lambda: 2)
+    monkeypatch.setattr(multiprocessing, "current_process", lambda: SimpleNamespace(daemon=True))
+    with second_process(nothing) as process:
+        assert process is None
+        assert values(later(ADD, 1, 2)) == [3]
+
+
 def test_it_is_there_for_the_block_only() -> None:
     assert not is_present()
     with second_process(time.time) as process:
