@@ -63,8 +63,9 @@ def read_regular(path: str | Path, limit: HardLimit, what: str) -> bytes:
     with opened(path, limit, what) as handle:
         try:
             with os.fdopen(handle, "rb", closefd=False) as stream:
-                # No more than was looked at: a file may grow while it is read.
-                return stream.read(int(limit.most))
+                # No more than was looked at, since a file may grow while it is read; and no more
+                # memory than it needs, which a read of the limit would set aside whole.
+                return stream.read(min(os.fstat(handle).st_size, int(limit.most)))
         except OSError as error:
             raise _refused(path, what, error) from error
 

@@ -1,6 +1,7 @@
 """Files are regular and of a limited size, or refused at once: no pipe is waited for."""
 
 import os
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -55,3 +56,15 @@ def test_size_and_text(tmp_path: Path) -> None:
     file.write_bytes(b"\xff")
     with pytest.raises(ConfigError, match="not UTF-8"):
         read_regular_text(file, TEN, "a test")
+
+
+def test_a_small_file_takes_no_more_memory_than_it_has(tmp_path: Path) -> None:
+    """Though the limit is of gigabytes: the lab's workers may have two."""
+    file = tmp_path / "small.csv"
+    file.write_text("x\n1\n")
+    tracemalloc.start()
+    try:
+        assert read_regular(file, HardLimit("bytes of a table", 0, 2e9, "memory"), "a table")
+        assert tracemalloc.get_traced_memory()[1] < 1_000_000
+    finally:
+        tracemalloc.stop()
