@@ -42,42 +42,44 @@ def pressed_deflection(
         along = np.sinc(k * side / (2 * math.pi))
     # Amplitude of the line load over the sines; at the middle every odd sine is ±1 twice.
     load = 2 * force / span * along
-    middle = [_middle(one * width / 2, poisson_ratio) for one in k]
-    return float(np.sum(load * np.array(middle) / (bending_stiffness * k**3)))
+    middle = _middle(k * width / 2, poisson_ratio)
+    return float(np.sum(load * middle / (bending_stiffness * k**3)))
 
 
-def _middle(half: float, nu: float) -> float:
-    """D k³ W(0) / q of one sine: W = a e⁻ᵗ + b t e⁻ᵗ + c e^{t−h} + d (h − t) e^{t−h}, t = k y.
+def _middle(half: si.FloatArray, nu: float) -> si.FloatArray:
+    """D k³ W(0) / q of each sine: W = a e⁻ᵗ + b t e⁻ᵗ + c e^{t−h} + d (h − t) e^{t−h}, t = k y.
 
     W′ = 0 and W‴ = q/2 at the middle (half of the force goes to either side); no moment and no
     edge force at t = h. Written so that no exponential grows.
     """
-    e = math.exp(-half)
+    e, none = np.exp(-half), np.zeros(half.shape)
 
-    def derivatives(t: float) -> np.ndarray:
-        """W, W′, W″, W‴ of the four functions at t, rows by order."""
-        left, right = math.exp(-t), math.exp(t - half)
+    def derivatives(t: si.FloatArray) -> si.FloatArray:
+        """W, W′, W″, W‴ of the four functions at t: sines, order, function."""
+        left, right = np.exp(-t), np.exp(t - half)
         s = half - t
-        return np.array(
-            [
-                [left, t * left, right, s * right],
-                [-left, (1 - t) * left, right, (s - 1) * right],
-                [left, (t - 2) * left, right, (s - 2) * right],
-                [-left, (3 - t) * left, right, (s - 3) * right],
-            ]
+        rows = (
+            (left, t * left, right, s * right),
+            (-left, (1 - t) * left, right, (s - 1) * right),
+            (left, (t - 2) * left, right, (s - 2) * right),
+            (-left, (3 - t) * left, right, (s - 3) * right),
         )
+        return np.moveaxis(np.array(rows), -1, 0)
 
-    at_middle, at_edge = derivatives(0.0), derivatives(half)
-    rows = np.array(
-        [
-            at_middle[1],
-            at_middle[3],
-            at_edge[2] - nu * at_edge[0],
-            at_edge[3] - (2 - nu) * at_edge[1],
-        ]
+    middle, edge = derivatives(none), derivatives(half)
+    rows = np.stack(
+        (
+            middle[:, 1],
+            middle[:, 3],
+            edge[:, 2] - nu * edge[:, 0],
+            edge[:, 3] - (2 - nu) * edge[:, 1],
+        ),
+        axis=1,
     )
-    found = np.linalg.solve(rows, np.array([0.0, 0.5, 0.0, 0.0]))
-    return float(found @ np.array([1.0, 0.0, e, half * e]))
+    push = np.array([0.0, 0.5, 0.0, 0.0])
+    found = np.linalg.solve(rows, np.broadcast_to(push[:, None], (half.size, 4, 1)))[..., 0]
+    at_middle: si.FloatArray = found[:, 0] + e * found[:, 2] + half * e * found[:, 3]
+    return at_middle
 
 
 @si.closed_form(positive="radius bending_stiffness", nonnegative="force")

@@ -100,11 +100,15 @@ class WorkingMode:
         beside = self.neighbour
         if beside is None or beside.share < TAKES_PART:
             return None
+        adds = (
+            f"adds {100 * beside.share:.0f} % of the amplitude at resonance"
+            if beside.share <= 1
+            else "moves more at resonance than this mode, which the drive hardly moves"
+        )
         return (
             f"{self.label} is crowded: the mode {beside.name} at "
             f"{si.format_quantity(beside.frequency, si.Unit('Hz'))} lies {beside.distance:.2g} "
-            f"half-bandwidths away and adds {100 * beside.share:.0f} % of the amplitude at "
-            "resonance. Where two modes cross they share the motion, so that the amplitude has a "
+            f"half-bandwidths away and {adds}. Where two modes cross they share the motion, so that the amplitude has a "
             "dip there; small changes of the plate move it, and nodal lines and amplitude then "
             "differ from what is computed"
         )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from squeezefilm import quantities as si
+from squeezefilm.report.design.words import setting_words
 from squeezefilm.search.design.candidate import Evaluated
 from squeezefilm.search.design.criteria import CRITERIA, criterion_of
 from squeezefilm.search.design.found import DesignSearch
@@ -27,11 +27,8 @@ def plate(requirements: Requirements, one: Evaluated, made: Made | None = None) 
     design, space = one.design, requirements.spaces[one.design.shape]
     chosen = []
     for variable in space:
-        value = design.settings[variable.name]
-        if isinstance(value, int | float):
-            unit = getattr(variable, "unit", si.Unit("1"))
-            value = si.format_quantity(float(value), unit, 4)
-        chosen.append([variable.name.replace("_", " "), str(value)])
+        words = setting_words(variable, design, requirements)
+        chosen.append([variable.name.replace("_", " "), words])
     objectives = one.objectives(requirements.objectives)
     return {
         "name": design.address,
@@ -97,7 +94,7 @@ def result(found: DesignSearch) -> dict[str, Any]:
         "reference": reference(asked, found.reference),
         "chosen": None if chosen is None else chosen.name,
         "beats": [one.name for one in found.beats_reference],
-        "limits": [limit_in_words(one, len(found.screened)) for one in found.limits],
+        "limits": [limit_in_words(one, len(found.screened)) for one in found.limits if one.broken],
         "corners": [corner_in_words(one) for one in found.corners[:_ALL_WORDS]],
         "hypervolume": found.hypervolume,
         "ranks": {criterion_of(key).said: value for key, value in found.ranks.items()},

@@ -117,6 +117,14 @@ def beam_response(
         )
     if plate.lines_across == "width":
         plate = turned(plate)
+    return _driven(plate, theory, cross_section)
+
+
+# Asked of one plate by the check of what is plausible, and again by the chain.
+@functools.lru_cache(maxsize=8)
+def _driven(
+    plate: RectangularPlate, theory: BeamTheory, cross_section: CrossSection
+) -> BeamResponse:
     section = plate_laminate(plate, cross_section)
     working = free_beam_mode(section, plate.length, plate.nodal_lines, theory)
     modes: list[BeamMode] = []
@@ -136,19 +144,16 @@ def beam_response(
         face: moment_per_volt(plate, section, cross_section, face)
         for face in {patch.face for patch in plate.patches}
     }
-    forces = []
-    for mode in modes:
-        # Work of the piezo moment on the section's rotation at both ends of each ceramic; a
-        # ceramic narrower than the plate drives in proportion to its width.
-        forces.append(
-            sum(
-                moment[patch.face]
-                * patch.drive_sign
-                * (patch.width / plate.width)
-                * float(mode.rotation_at(patch.x + patch.length) - mode.rotation_at(patch.x))
-                for patch in plate.patches
-            )
-        )
+    # Work of the piezo moment on the section's rotation at both ends of each ceramic; a ceramic
+    # narrower than the plate drives in proportion to its width.
+    pushed = np.array(
+        [moment[one.face] * one.drive_sign * (one.width / plate.width) for one in plate.patches]
+    )
+    begin = np.array([one.x for one in plate.patches])
+    end = begin + np.array([one.length for one in plate.patches])
+    forces = [
+        float(pushed @ (mode.rotation_at(end) - mode.rotation_at(begin))) for mode in modes
+    ]
     return BeamResponse(
         plate,
         section,

@@ -131,8 +131,9 @@ def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
         # What a tolerance may push across a limit is not called good.
         kept = 0.0 if chosen.made is None else chosen.made.kept
         sure = "good" if kept >= _SURE else "limit"
+        made = made_sentences(requirements, chosen)[0]
         for sentence in chosen_sentences(found)[:1]:
-            yield sure, f"The plate to build: {sentence} {made_sentences(chosen)[0]}"
+            yield sure, f"The plate to build: {sentence} {made}"
     if found.reference is not None and not found.reference.reason and found.front:
         better = bool(found.beats_reference)
         kind = "good" if better else "limit"

@@ -191,7 +191,7 @@ def chosen_sentences(found: DesignSearch) -> list[str]:
     if near:
         told = " and ".join(f"{CRITERIA[key].said} ({margin_words(by)})" for key, by in near)
         said.append(f"Its nearest limits: {told}.")
-    return [*said, *made_sentences(chosen)]
+    return [*said, *made_sentences(found.requirements, chosen)]
 
 
 def margin_words(margin: float) -> str:
@@ -201,15 +201,17 @@ def margin_words(margin: float) -> str:
     return f"{si.percent(margin, 1)} of it left" if margin >= 0 else f"{changed(-margin)} beyond it"
 
 
-def made_sentences(member: FrontMember) -> list[str]:
+def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]:
     """How many of the plates that are made of a drawing keep the limits, and what they break."""
     made = member.made
     if made is None:
         return ["How many plates made of its drawing keep the limits was not computed."]
     breaks = sorted(made.broken.items(), key=lambda one: -one[1])
     told = ", ".join(f"{CRITERIA[key].said} by {count}" for key, count in breaks)
+    unasked = " and ".join(requirements.limits.unasked_of_made)
     return [
         f"Of {made.draws} plates made with the tolerances {si.percent(made.kept)} keep all limits"
+        + (f" but {unasked}, which cannot be asked of them" if unasked else "")
         + (f"; broken are {told}." if told else ".")
     ]
 

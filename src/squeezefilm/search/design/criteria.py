@@ -32,6 +32,7 @@ from squeezefilm.plate.laminate import Laminate, plate_laminate
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.plate.parts import parts_of
 from squeezefilm.plate.press import bending_stress, pressed_deflection, pressed_disc_deflection
+from squeezefilm.plate.working_mode import TAKES_PART
 from squeezefilm.search.design.requirements import Limits, Requirements
 
 # Periods tried over the 0.25 to 20 mm of the observer: steps of 1.8 %, and between them a line.
@@ -198,7 +199,7 @@ def numbers_of_solved(
     if load is not None:
         found["current"] = load.current
     beside = p.mode.neighbour
-    found["neighbour"] = math.inf if beside is None or beside.share < 0.02 else abs(beside.distance)
+    found["neighbour"] = math.inf if beside is None or beside.share < TAKES_PART else abs(beside.distance)
     if limits.least_area is not None or limits.most_relative_friction is not None:
         area = active_area(display, p)
         wanted = limits.most_relative_friction or 0.7
@@ -229,8 +230,9 @@ def finest_period_felt(display: Display, p: Prediction) -> si.Metre:
     senses, period = _observer(), tried_periods(_PERIODS)
     tau = p.envelope_time_constant
     rubbed = Rubbed(p.friction_coefficient * p.normal_force, display.finger.fingerpad, p.speed)
-    knots = np.linspace(0, p.vibration_amplitude, 33)
-    values = np.asarray(p.friction(knots, np.full(knots.shape, p.speed)))
+    # Denser at small amplitudes, where the law bends; `p.friction` would ask it at 48 more speeds.
+    knots = p.vibration_amplitude * np.linspace(0, 1, 65) ** 2
+    values = p.law.over_speeds(knots, np.array([p.speed]))[0]
 
     def friction(amplitude: si.MetreArray) -> si.DimensionlessArray:
         return np.interp(amplitude, knots, values)

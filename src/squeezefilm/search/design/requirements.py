@@ -113,6 +113,15 @@ class Limits:
     most_cost: Annotated[int, si.AtLeast(1), si.AtMost(9)] | None = None
     least_yield: Annotated[si.Dimensionless, *_SHARE] | None = None
 
+    @property
+    def unasked_of_made(self) -> tuple[str, ...]:
+        """The limits given that plates made of a drawing are not judged by: only plates solved in
+        three dimensions have what they bound."""
+        alone = ("least_area", "least_neighbour", "most_sound_level")
+        found = tuple(name for name in alone if getattr(self, name) is not None)
+        sure = self.confidence == "95 %" and self.most_relative_friction is not None
+        return (*found, *(("most_relative_friction",) if sure else ()))
+
 
 @si.checked_numbers
 @dataclass(frozen=True)
@@ -251,6 +260,10 @@ class Requirements:
             f"finger, surface and cooling of {self.start_from}; {own}",
             "the contact's constants (asperities and plateaus), which decide the friction",
             "tolerances as the file has them, normal and independent",
+            *(
+                f"the yield asks nothing of {one}, which only a plate solved in three dimensions has"
+                for one in self.limits.unasked_of_made
+            ),
         )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import GeometryError
+from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.plate.layout import DiscPlate, GlueLayer
 from squeezefilm.search.design.shape import CUT, Body, Room, Shape, counts
 from squeezefilm.search.design.space import Setting, Variable, number, step
@@ -74,6 +74,15 @@ class Ring(Shape):
     most_diameters: Annotated[int, si.AtLeast(2), si.AtMost(40)] = 12
     glue: GlueLayer | None = None
     type: Literal["ring"] = "ring"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.catalogue is not None:
+            raise InputError(
+                "the ceramics of a ring have lengths, but they are rings made to its track; leave "
+                "lengths out",
+                quantity="lengths",
+            )
 
     def variables(self, room: Room) -> tuple[Variable, ...]:
         """What is chosen."""
