@@ -20,7 +20,7 @@ from squeezefilm.errors import RecordError
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
-from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
+from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record.store import StudyStore
 
@@ -41,9 +41,9 @@ class Device:
     def present(self, stimulus: Stimulus, seed: int) -> None:
         """Nothing."""
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         """The trace."""
-        return Exploration(0.1, 0.1, 0.5, TRACE)
+        return TrialMotion(0.1, 0.1, 0.5, TRACE)
 
 
 class Script:

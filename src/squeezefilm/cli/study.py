@@ -117,7 +117,6 @@ def simulate(
 ) -> None:
     """Let simulated participants do a study; every number is simulated."""
     from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report.study.simulated_page import write_simulated
     from squeezefilm.report.study.terminal_analysis import show_simulated
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.simulated.answers import simulate_participants
@@ -131,7 +130,11 @@ def simulate(
     with drawing_by_two(out), working(as_json) as step:
         tables = chain_tables(planned, people, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables, step)
-        written = None if out is None else write_simulated(found, out, step)
+        written = None
+        if out is not None:
+            from squeezefilm.report.study.simulated_page import write_simulated
+
+            written = write_simulated(found, out, step)
     answer(as_json, found, show_simulated, page=written)
 
 

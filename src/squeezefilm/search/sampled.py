@@ -28,7 +28,7 @@ _RANGE = re.compile(r"(?P<first>[^:]+?)\.\.(?P<last>[^:]+?)\s*(?::\s*(?P<log>log
 
 
 @dataclass(frozen=True)
-class Varied:
+class SampledAxes:
     """What is varied: the samples' axis, if there are ranges, and what is left as it was given."""
 
     axes: tuple[Axis, ...]
@@ -64,14 +64,14 @@ class _Range:
 
 def axes_of_ranges(
     display: Display, vary: Mapping[str, Any] | Sequence[str], count: int | None, seed: int
-) -> Varied:
+) -> SampledAxes:
     """The axis of `count` samples in those of `vary` that are ranges without steps.
 
     Raises `InputError` for samples without a range, a count or a seed that is none, and for ends
     that are no range.
     """
     if count is None:
-        return Varied((), vary)
+        return SampledAxes((), vary)
     require_within(SWEEP_POINTS, count, "samples")
     si.require("seed", seed, at_least=0)
     if isinstance(vary, str):
@@ -97,7 +97,7 @@ def axes_of_ranges(
         others = {name: values for k, (name, values) in enumerate(pairs) if k not in ranges}
     else:
         others = [text for k, text in enumerate(vary) if k not in ranges]
-    return Varied((_axis(list(ranges.values()), count, seed),), others)
+    return SampledAxes((_axis(list(ranges.values()), count, seed),), others)
 
 
 def _axis(ranges: Sequence[_Range], count: int, seed: int) -> Axis:

@@ -10,7 +10,7 @@ from squeezefilm.study.conduct.sessions import Exposure, SessionConditions, begi
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
-    Exploration,
+    TrialMotion,
     NoDevice,
     StudyDevice,
 )
@@ -119,10 +119,10 @@ class Bench:
         self.playing.append(stimulus.name)
         self.silent = False
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         """Silent; a finger of which all is known."""
         self.silent = True
-        return Exploration(0.08, 0.086, 0.49, self.trace)
+        return TrialMotion(0.08, 0.086, 0.49, self.trace)
 
 
 def session(store: StudyStore, participant: str, device: StudyDevice | None = None) -> StudyRun:

@@ -19,7 +19,7 @@ from squeezefilm.session.play.plan import PlayPlan
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
-from squeezefilm.study.conduct.study_device import Exploration, NoDevice
+from squeezefilm.study.conduct.study_device import TrialMotion, NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record.store import StudyStore
 
@@ -81,13 +81,13 @@ def refuses(connection: Connection) -> None:
     connection.send(("failed", "the port cannot be opened"))
 
 
-GOOD = ("ended", "", Exploration(0.1, 0.08))
+GOOD = ("ended", "", TrialMotion(0.1, 0.08))
 
 
 @pytest.mark.parametrize(
     ("fault", "says"),
     [
-        (plays("ended", "the device faulted: the amplifier tripped", Exploration()), "tripped"),
+        (plays("ended", "the device faulted: the amplifier tripped", TrialMotion()), "tripped"),
         (plays("failed", "the disk is full"), "the disk is full"),
         (dies, "ended without a word"),
         (refuses, "cannot be opened"),
@@ -133,7 +133,7 @@ def test_a_surface_that_is_halted_before_it_plays_is_not_presented(
     def halted(connection: Connection) -> None:
         connection.recv()
         device.halt()
-        connection.send(("ended", "", Exploration()))
+        connection.send(("ended", "", TrialMotion()))
         connection.poll(10)
 
     device = scripted_device(tmp_path, monkeypatch, halted)

@@ -22,7 +22,7 @@ from squeezefilm.study.conduct.sessions import Exposure, exposure
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
-    Exploration,
+    TrialMotion,
     NoDevice,
     StudyDevice,
 )
@@ -361,7 +361,7 @@ class StudyArea:
         return {"type": "silent"}
 
     async def _respond(self, asked: Respond) -> Answer:
-        felt: tuple[Exploration, ...] = ()
+        felt: tuple[TrialMotion, ...] = ()
         if await self.thread.do(Studies.needs_device, asked.sitting, asked.token):
             felt = await self._devices.felt(asked.sitting, asked.token)
         told = asked.model_dump(exclude={"id", "type", "sitting", "token"})

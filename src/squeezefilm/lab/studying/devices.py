@@ -20,7 +20,7 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
-    Exploration,
+    TrialMotion,
     NoDevice,
     StudyDevice,
 )
@@ -66,9 +66,9 @@ class Measured:
         """Refused: this is only what was measured."""
         raise InputError("a measurement presents nothing")
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         """Nothing plays."""
-        return Exploration()
+        return TrialMotion()
 
 
 @dataclass
@@ -81,7 +81,7 @@ class _Held:
     thread: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "device"))
     token: str = ""
     playing: int | None = None
-    felt: dict[int, Exploration] = field(default_factory=dict)
+    felt: dict[int, TrialMotion] = field(default_factory=dict)
     halted: bool = False
 
     def forget(self) -> None:
@@ -156,7 +156,7 @@ class StudyDevices:
                 raise
             held.playing = place
 
-    async def felt(self, sitting: str, token: str) -> tuple[Exploration, ...]:
+    async def felt(self, sitting: str, token: str) -> tuple[TrialMotion, ...]:
         """Silence the device and say how the trial's surfaces were explored.
 
         Asked again before `answered` it says the same again.

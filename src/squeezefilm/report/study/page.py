@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
-    from squeezefilm.study.identification.power import PowerCurve
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
@@ -77,14 +76,12 @@ TASK_FIGURES = (
     _EXPLORATION,
 )
 """The figures of two-interval, same-different and magnitude studies."""
-_POWER = FigureOf("power", "How many people a study needs", times.power)
 
 
 def write_study(
     analysis: StudyAnalysis,
     folder: Path,
     *,
-    power: PowerCurve | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Path:
     """Write numbers, figures and the page of a study's display into `folder`; the path of
@@ -99,12 +96,8 @@ def write_study(
     folder = require_folder(folder)
     tell("figures")
     found = pictures(drawing, _figures_of(analysis), analysis, "study-")
-    if power is not None:
-        found |= pictures(_power, (_POWER,), power, "study-")
     files = png_files(found)
     summary = analysis.summary()
-    if power is not None:
-        summary["power"] = power
     files[_numbers_file(analysis)] = json_text(summary)
     files["index.html"] = study_page(analysis, found, summary["provenance"])
     tell("writing the report")
@@ -146,14 +139,9 @@ def _folder_of(display: str) -> str:
     return Path(display).stem if display.endswith(".toml") else display
 
 
-def study_figures(
-    analysis: StudyAnalysis, power: PowerCurve | None = None
-) -> dict[str, tuple[str, Figure]]:
+def study_figures(analysis: StudyAnalysis) -> dict[str, tuple[str, Figure]]:
     """The figures by key: heading and drawing. What was not measured has none."""
-    found = drawn_figures(_figures_of(analysis), analysis)
-    if power is not None:
-        found["power"] = (_POWER.heading, _POWER.draw(power))
-    return found
+    return drawn_figures(_figures_of(analysis), analysis)
 
 
 def drawing(analysis: StudyAnalysis, key: str) -> Figure:
@@ -163,10 +151,6 @@ def drawing(analysis: StudyAnalysis, key: str) -> Figure:
 
 def _figures_of(analysis: StudyAnalysis) -> tuple[FigureOf, ...]:
     return TASK_FIGURES if isinstance(analysis, TaskAnalysis) else FIGURES
-
-
-def _power(curve: PowerCurve, _: str) -> Figure:
-    return times.power(curve)
 
 
 def _numbers_file(analysis: StudyAnalysis) -> str:

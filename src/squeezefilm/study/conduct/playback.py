@@ -24,7 +24,7 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.render.texture.composition import Composable
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.playing_process import Surface, surface_of
-from squeezefilm.study.conduct.study_device import Exploration
+from squeezefilm.study.conduct.study_device import TrialMotion
 from squeezefilm.texture_file import TextureFile, load_texture
 from squeezefilm.twin.hand import EXPLORING
 
@@ -51,7 +51,7 @@ class Played:
     ended: si.Second
     started_utc: str
     ended_utc: str
-    exploration: Exploration
+    exploration: TrialMotion
     record: Path | None
 
 
@@ -147,7 +147,7 @@ class Playback:
         """
         if self._state in ("ready", "closed"):
             raise InputError("nothing plays; start it first")
-        felt = self._end() if self._state == "playing" else Exploration()
+        felt = self._end() if self._state == "playing" else TrialMotion()
         if self._state == "failed":
             raise DeviceError(f"'{self._name}' was not played to the end: {self._failure}")
         record = None if self._keep is None else self._keep / felt.raw_trace
@@ -175,7 +175,7 @@ class Playback:
     def _name(self) -> str:
         return surface_of(self._surface).title
 
-    def _end(self) -> Exploration:
+    def _end(self) -> TrialMotion:
         self._failure, felt = self._device.ended()
         self._state = "failed" if self._failure else "ready"
         word = "failed" if self._failure else "stop"

@@ -25,7 +25,7 @@ from squeezefilm.errors import DeviceError, InputError
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import config_hash
 from squeezefilm.study.conduct.playing_process import Surface, WorkerOrders, serve
-from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
+from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
 from squeezefilm.twin.hand import EXPLORING
 from squeezefilm.twin.settings import PickupModel, TwinSettings
 
@@ -160,7 +160,7 @@ class SessionDevice:
             raise DeviceError(f"the surface could not be presented: {why}. It comes again")
         self._presenting, self._began = True, float(answer[1])
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         """Ramp to zero, disarm, close the record; returns how the finger explored.
 
         Raises:
@@ -175,11 +175,11 @@ class SessionDevice:
             )
         return found
 
-    def ended(self) -> tuple[str, Exploration]:
+    def ended(self) -> tuple[str, TrialMotion]:
         """As `stop`, but a failure is returned: what failed (empty: nothing) and the exploration,
         of which nothing is known where the process that plays failed."""
         if not self._presenting:
-            return "", Exploration()
+            return "", TrialMotion()
         self._presenting = False
         self.halt()
         try:
@@ -189,7 +189,7 @@ class SessionDevice:
         if answer[1]:
             # The next surface begins with a new process, and a new twin.
             self.close()
-        return answer[1], answer[2] if answer[0] == "ended" else Exploration()
+        return answer[1], answer[2] if answer[0] == "ended" else TrialMotion()
 
     def halt(self) -> None:
         """Let the output ramp to zero now; returns at once, from any thread.

@@ -48,7 +48,7 @@ from squeezefilm.session.loop import rows as column
 from squeezefilm.session.play.plan import Ending, PlayView
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.session.record.trace import Trace, read_trace
-from squeezefilm.study.conduct.study_device import DeviceVerification, Exploration
+from squeezefilm.study.conduct.study_device import DeviceVerification, TrialMotion
 from squeezefilm.study.record.exploration import PATH_PERIOD
 from squeezefilm.study.record.explored_trials import explored_table
 from squeezefilm.texture_file import TextureFile
@@ -144,7 +144,7 @@ class Bench:
             require_safe_drive(SerialDrive(host, 1 / self._orders.rate), limits, study=True)
             return sweep_resonance(host, limits, carriers, voltage, settle=settle)
 
-    def presentation(self, given: Surface, seed: int, name: str) -> tuple[str, Exploration]:
+    def presentation(self, given: Surface, seed: int, name: str) -> tuple[str, TrialMotion]:
         """Play until an order comes; returns what failed (empty: nothing) and the exploration."""
         orders, surface = self._orders, surface_of(given)
         setup = self._setup(surface)
@@ -269,7 +269,7 @@ def resonance_verified(
     )
 
 
-def explored(trace: Trace, name: str) -> Exploration:
+def explored(trace: Trace, name: str) -> TrialMotion:
     """How the finger went, from a session's record; `name` is that of its file.
 
     Path and speed are those of the time in which it touched. No force is known.
@@ -282,7 +282,7 @@ def explored(trace: Trace, name: str) -> Exploration:
         found = explored_table(table)
         speed, touched = found.mean_speed, found.touched
         length = found.path_length if touched else math.nan
-    return Exploration(
+    return TrialMotion(
         path_length=length,
         mean_speed=speed,
         trace=csv_text(table) if samples else "",

@@ -24,7 +24,7 @@ from squeezefilm.study.conduct.sessions import (
     display_wanted,
     end_session,
 )
-from squeezefilm.study.conduct.study_device import Exploration, NoDevice
+from squeezefilm.study.conduct.study_device import TrialMotion, NoDevice
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import SIMULATED, SIMULATED_NOTE, origin_of
@@ -125,7 +125,7 @@ class _Hand:
             for name, plate in zip(design.displays, tables.plates, strict=True)
         }
 
-    def explored(self, presentation: Presentation) -> tuple[Exploration, ...]:
+    def explored(self, presentation: Presentation) -> tuple[TrialMotion, ...]:
         """Of each virtual surface; none where the design's rules would not let it count, for the
         hand would break them again."""
         path = self._paths[presentation.trial.display]

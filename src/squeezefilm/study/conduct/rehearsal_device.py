@@ -27,7 +27,7 @@ from squeezefilm.session.play.plan import Ending
 from squeezefilm.session.play.simulated import VirtualStream, virtual_play
 from squeezefilm.session.record.trace import read_trace
 from squeezefilm.study.conduct.playing_process import explored, resonance_verified
-from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
+from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
 from squeezefilm.texture_file import TextureFile
 from squeezefilm.twin.device import TwinDevice
 from squeezefilm.twin.hand import Hand, hand_from
@@ -75,13 +75,13 @@ class StudyTwin:
         its settings, not by `seed`."""
         self._presented = stimulus
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         """Let the hand explore the surface presented, and say how it went.
 
         Raises `DeviceError` where the twin faulted.
         """
         if self._presented is None:
-            return Exploration()
+            return TrialMotion()
         stimulus, self._presented = self._presented, None
         setup = play_setup(
             self.display,

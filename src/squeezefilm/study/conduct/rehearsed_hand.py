@@ -16,7 +16,7 @@ from squeezefilm.perception.observer import FingerClass, Observer
 from squeezefilm.perception.percepts import exploration
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.render.motion.finger_path import FingerPath
-from squeezefilm.study.conduct.study_device import Exploration
+from squeezefilm.study.conduct.study_device import TrialMotion
 from squeezefilm.study.design.matching import Exploring
 from squeezefilm.study.record.exploration import PATH_PERIOD
 from squeezefilm.study.record.explored_trials import explored_table
@@ -41,7 +41,7 @@ def path_of(
 
 def rehearsed(
     path: FingerPath, exploring: Exploring, stimulus: Stimulus, normal_force: si.Newton
-) -> Exploration:
+) -> TrialMotion:
     """That a finger explored a surface along a path at a force (N), as a device would say it."""
     times = np.arange(0.0, path.duration, PATH_PERIOD)
     x, y = path.place(times)
@@ -53,7 +53,7 @@ def rehearsed(
     }
     table = Table({"time_s": times, "x_m": x, "y_m": y}, about)
     found = explored_table(table)
-    return Exploration(
+    return TrialMotion(
         path_length=found.path_length,
         mean_speed=found.mean_speed,
         mean_normal_force=normal_force,

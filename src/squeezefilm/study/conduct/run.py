@@ -27,7 +27,7 @@ from squeezefilm.results import to_json
 from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.conduct.again import COUNTED, practise_again, set_aside
 from squeezefilm.study.conduct.sessions import display_wanted, next_planned
-from squeezefilm.study.conduct.study_device import Exploration
+from squeezefilm.study.conduct.study_device import TrialMotion
 from squeezefilm.study.design.rules import TrialRules
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import Trial
@@ -77,7 +77,7 @@ class Response:
     ended_monotonic: si.Second = 0.0
     started_utc: str = field(default_factory=utc_now)
     ended_utc: str = field(default_factory=utc_now)
-    explorations: tuple[Exploration, ...] = ()
+    explorations: tuple[TrialMotion, ...] = ()
 
 
 @dataclass(frozen=True)

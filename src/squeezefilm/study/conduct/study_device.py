@@ -83,7 +83,7 @@ class DeviceVerification:
 
 
 @dataclass(frozen=True)
-class Exploration:
+class TrialMotion:
     """How the finger explored one trial; NaN where the device does not know.
 
     `trace` is a table's CSV text (`formats.traces.csv_text`) of the finger's path, empty if there
@@ -118,7 +118,7 @@ class StudyDevice(Protocol):
         """Begin to play a surface; returns at once. Raises `SqueezefilmError` if it cannot."""
         ...
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         """Silence the device; returns how the finger explored since `present`."""
         ...
 
@@ -137,9 +137,9 @@ class NoDevice:
     def present(self, stimulus: Stimulus, seed: int) -> None:
         """Nothing."""
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         """Nothing is known of the finger."""
-        return Exploration()
+        return TrialMotion()
 
 
 class ByHand(NoDevice):
@@ -160,7 +160,7 @@ class ByHand(NoDevice):
         depth = f"{100 * stimulus.friction_depth:.3g} % change of friction"
         self._tell(f"put '{stimulus.name}' under the finger: {what}, {depth}")
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         """Say that it is to be taken away; nothing is known of the finger."""
         self._tell("take it away")
-        return Exploration()
+        return TrialMotion()

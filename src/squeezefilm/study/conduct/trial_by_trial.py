@@ -10,7 +10,7 @@ from typing import Protocol
 from squeezefilm import quantities as si
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, Response, StudyRun
-from squeezefilm.study.conduct.study_device import Exploration, StudyDevice
+from squeezefilm.study.conduct.study_device import TrialMotion, StudyDevice
 from squeezefilm.study.record.store import utc_now
 
 Mark = Callable[[str, si.Second | None], None]
@@ -74,7 +74,7 @@ def _presented(
 ) -> Response:
     trial = presentation.trial
     begun, begun_utc = clock(), utc_now()
-    felt: list[Exploration] = []
+    felt: list[TrialMotion] = []
     asked, last = begun, len(presentation.surfaces) - 1
     answer: str | float | None = None
     for place, surface in enumerate(presentation.surfaces):

@@ -31,7 +31,7 @@ from squeezefilm.study.simulated.causes import Causes, causes, free_causes
 if TYPE_CHECKING:
     from squeezefilm.render.motion.finger_path import FingerPath
 
-_AT_ONCE = 3
+_AT_ONCE = 12
 """Fingers that each of two processes has between two words of progress."""
 
 

@@ -35,7 +35,7 @@ from squeezefilm.lab.server import LanPlace
 from squeezefilm.lab.studying.devices import StudyDevices
 from squeezefilm.lab.worker import PAGE
 from squeezefilm.study.conduct.sessions import Exposure
-from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
+from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
 from squeezefilm.study.record.store import StudyStore
 
 from ...study.scripted import gratings, run_through
@@ -65,9 +65,9 @@ class Device:
     def present(self, stimulus: object, seed: int) -> None:
         self.asked.append("present")
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         self.asked.append("stop")
-        return Exploration()
+        return TrialMotion()
 
     def halt(self) -> None:
         self.asked.append("halt")

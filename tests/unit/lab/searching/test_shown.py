@@ -91,6 +91,7 @@ def test_a_result_says_what_to_build_and_what_each_limit_costs() -> None:
     assert found["limits"][0].startswith(
         "temperature rise at most 75 K: broken by 30 of 32 screened"
     )
+    assert not any("broken by 0 of" in one for one in found["limits"])
     assert "without it µ′/µ at the best place of 0.1" in found["limits"][0]
     assert any("none of 30 screened designs is feasible" in one for one in found["corners"])
     assert (found["screened"], found["solved"], found["kept"]) == (32, 2, 4)

@@ -24,7 +24,7 @@ from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.studying.devices import StudyDevices, require_device
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.sessions import Exposure
-from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, Exploration
+from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
 from squeezefilm.study.record.store import StudyStore
 
 SURFACE = (Stimulus("4 mm", 4e-3, "period"), 1)
@@ -56,12 +56,12 @@ class Fake:
         self.asked.append(f"present {stimulus.name}")
         self.presenting = True
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         self.asked.append("stop")
         was, self.presenting = self.presenting, False
         if self.breaks and was:
             raise DeviceError("the device failed")
-        return Exploration(0.1, 0.08, trace="time_s\n0\n") if was else Exploration()
+        return TrialMotion(0.1, 0.08, trace="time_s\n0\n") if was else TrialMotion()
 
     def halt(self) -> None:
         self.asked.append("halt")

@@ -96,10 +96,22 @@ def test_the_chosen_plate_is_told_with_its_nearest_limits_and_its_yield(
     assert "Its nearest limits: " in said
     assert "53 % keep all limits; broken are temperature rise by 30" in said
     member = replace(found.front[0], made=None)
-    assert words.made_sentences(member) == [
+    assert words.made_sentences(found.requirements, member) == [
         "How many plates made of its drawing keep the limits was not computed."
     ]
     assert words.front_row(found.requirements, member)[-1] == "not known"
+
+
+def test_a_yield_names_the_limits_that_it_does_not_ask_of_what_is_made(found: DesignSearch) -> None:
+    own = found.requirements
+    assert own.limits.unasked_of_made == ()
+    limits = replace(own.limits, least_neighbour=3.0, confidence="95 %")
+    asked = replace(own, limits=limits)
+    (said,) = words.made_sentences(asked, found.front[0])
+    left_out = "least_neighbour and most_relative_friction"
+    assert f"keep all limits but {left_out}, which cannot be asked of them" in said
+    assert sum("the yield asks nothing of" in one for one in asked.assumed) == 2
+    assert not any("yield" in one for one in own.assumed)
 
 
 def test_effects_of_tolerances_have_their_size_and_sign(found: DesignSearch) -> None:

@@ -6,7 +6,7 @@ import pytest
 from tests.unit.search.design.made_up import TEXT, drawn
 
 from squeezefilm import config
-from squeezefilm.errors import GeometryError
+from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.plate.layout import DiscPlate
 from squeezefilm.search.design.candidate import design_of, display_of
 from squeezefilm.search.design.requirements import Requirements, load_requirements
@@ -50,6 +50,12 @@ def test_a_rings_workspace_goes_once_round() -> None:
         assert math.pi * mean >= 0.06 - 1e-3
         assert (ring.diameter - ring.inner_diameter) / 2 == pytest.approx(0.005)
         assert ring.ceramic_inner_diameter == ring.inner_diameter
+
+
+def test_a_ring_takes_no_lengths_from_a_catalogue() -> None:
+    text = TEXT[: TEXT.index("[[shapes]]")] + RING + 'lengths = ["9 mm"]\n'
+    with pytest.raises(InputError, match="leave lengths out"):
+        config.load_text(Requirements, text)
 
 
 def test_a_track_that_closes_the_ring_is_refused() -> None:

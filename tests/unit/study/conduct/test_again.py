@@ -13,7 +13,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.study.conduct.again import practise_again, restart_block, set_aside
 from squeezefilm.study.conduct.run import Response, StudyRun, spoiled_by
 from squeezefilm.study.conduct.sessions import begin_session, next_planned
-from squeezefilm.study.conduct.study_device import ByHand, Exploration, NoDevice
+from squeezefilm.study.conduct.study_device import ByHand, TrialMotion, NoDevice
 from squeezefilm.study.design.rules import TrialRules
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.record.answers import recorded_answers
@@ -44,7 +44,7 @@ def answer(run: StudyRun, speed: float = 0.1, right: bool = True) -> str:
         wrong = next(one for one in names if one != shown.trial.answer)
         choice = shown.trial.answer if right else wrong
     told = run.respond(
-        shown.token, Response(choice=choice, explorations=(Exploration(0.1, speed),))
+        shown.token, Response(choice=choice, explorations=(TrialMotion(0.1, speed),))
     )
     return told.spoiled
 
@@ -157,7 +157,7 @@ def test_a_token_that_was_set_aside_is_answered_with_what_was_recorded(tmp_path:
         answer(run)
     shown = run.next_trial()
     assert shown is not None
-    given = Response(choice=shown.trial.answer, explorations=(Exploration(0.1, 0.5),))
+    given = Response(choice=shown.trial.answer, explorations=(TrialMotion(0.1, 0.5),))
     told, repeated = run.respond(shown.token, given), run.respond(shown.token, given)
     assert told.spoiled
     assert repeated == dataclasses.replace(told, repeated=True)

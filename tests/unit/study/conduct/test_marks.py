@@ -7,7 +7,7 @@ from pathlib import Path
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
-from squeezefilm.study.conduct.study_device import Exploration, NoDevice
+from squeezefilm.study.conduct.study_device import TrialMotion, NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record.store import Row, StudyStore
 
@@ -23,9 +23,9 @@ class Silent(NoDevice):
     def present(self, stimulus: Stimulus, seed: int) -> None:
         """It plays."""
 
-    def stop(self) -> Exploration:
+    def stop(self) -> TrialMotion:
         """It was silent at that moment."""
-        return Exploration(ended=self.ended)
+        return TrialMotion(ended=self.ended)
 
 
 Told = list[tuple[str, float]]

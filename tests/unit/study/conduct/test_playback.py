@@ -18,7 +18,7 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.session.loop import rows as column
 from squeezefilm.study.conduct import playback
 from squeezefilm.study.conduct.playback import Playback, named, play, utc_of
-from squeezefilm.study.conduct.study_device import Exploration
+from squeezefilm.study.conduct.study_device import TrialMotion
 from squeezefilm.texture_file import TextureFile, load_texture
 
 GRATING = Stimulus("4 mm", 4e-3, "period")
@@ -46,11 +46,11 @@ class Device:
         self.did.append(surface)
         self.over, self.began = False, time.monotonic()
 
-    def ended(self) -> tuple[str, Exploration]:
+    def ended(self) -> tuple[str, TrialMotion]:
         """As set."""
         if self.failure:
-            return self.failure, Exploration()
-        return "", Exploration(
+            return self.failure, TrialMotion()
+        return "", TrialMotion(
             0.1, 0.08, raw_trace="a.sqft", began=self.began, ended=self.began + 1
         )
 

@@ -16,7 +16,7 @@ from squeezefilm.study.conduct.played_device import SessionDevice, require_study
 from squeezefilm.study.conduct.playing_process import explored
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
-from squeezefilm.study.conduct.study_device import DeviceVerification, Exploration, NoDevice
+from squeezefilm.study.conduct.study_device import DeviceVerification, TrialMotion, NoDevice
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.store import StudyStore
 
@@ -119,7 +119,7 @@ def test_a_raw_trace_belongs_to_its_answer_and_goes_with_the_participant(tmp_pat
         raw, lost = store.traces / f"{'ab' * 16}.sqft", store.traces / f"{'cd' * 16}.sqft"
         raw.write_bytes(b"rows")
         lost.write_bytes(b"rows of a surface that failed")
-        felt = Exploration(0.1, 0.08, trace="time_s\n0\n", raw_trace=raw.name)
+        felt = TrialMotion(0.1, 0.08, trace="time_s\n0\n", raw_trace=raw.name)
         assert run.presented(shown.token)[0] == shown.trial
         assert not run.recorded(shown.token)
         run.respond(shown.token, Response(shown.trial.alternatives[0], explorations=(felt,)))

@@ -22,10 +22,10 @@ from squeezefilm.study.conduct.played_device import (
     require_study_drive,
 )
 from squeezefilm.study.conduct.playing_process import WorkerOrders, serve
-from squeezefilm.study.conduct.study_device import DeviceVerification, Exploration
+from squeezefilm.study.conduct.study_device import DeviceVerification, TrialMotion
 
 GRATING = Stimulus("4 mm", 4e-3, "period")
-FELT = Exploration(0.1, 0.08, trace="time_s\n0\n", raw_trace="a.sqft")
+FELT = TrialMotion(0.1, 0.08, trace="time_s\n0\n", raw_trace="a.sqft")
 
 
 class Pipe:
@@ -135,7 +135,7 @@ def test_a_port_of_one_letter_is_a_port_and_a_long_drive_is_quoted_in_part() -> 
 
 def test_a_surface_is_presented_felt_and_stopped(playing: Playing, tmp_path: Path) -> None:
     pipe = Pipe(
-        ("playing", 1.0), ("ended", "", FELT), ("playing", 1.0), ("ended", "", Exploration())
+        ("playing", 1.0), ("ended", "", FELT), ("playing", 1.0), ("ended", "", TrialMotion())
     )
     device, context = playing(pipe, amplitude_per_pickup=2e-6, rate=4e3, stroke="0.08 m")
     assert not device.presenting
@@ -193,7 +193,7 @@ def test_a_verification_is_what_the_process_measured(playing: Playing) -> None:
 def test_what_ended_before_it_played_was_not_presented(
     playing: Playing, why: str, says: str
 ) -> None:
-    device, context = playing(Pipe(("ended", why, Exploration()), ("playing", 1.0)))
+    device, context = playing(Pipe(("ended", why, TrialMotion()), ("playing", 1.0)))
     with pytest.raises(DeviceError, match=f"could not be presented: {says}.*It comes again"):
         device.present(GRATING, 1)
     assert not device.presenting

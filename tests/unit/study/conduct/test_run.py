@@ -13,7 +13,7 @@ import pytest
 from squeezefilm.errors import InputError
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import display_wanted
-from squeezefilm.study.conduct.study_device import Exploration, NoDevice
+from squeezefilm.study.conduct.study_device import TrialMotion, NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.exports import export_study
@@ -218,7 +218,7 @@ def test_a_trace_that_cannot_be_written_leaves_no_answer(tmp_path: Path) -> None
         assert shown is not None
         store.traces.write_text("a file in the way")
         with pytest.raises(RecordError, match="nothing was acknowledged"):
-            run.respond(shown.token, Response(explorations=(Exploration(trace=TRACE),)))
+            run.respond(shown.token, Response(explorations=(TrialMotion(trace=TRACE),)))
         assert store.rows("SELECT * FROM response") == []
         store.traces.unlink()
         assert not run.respond(shown.token, Response()).repeated
