@@ -22,9 +22,9 @@ from squeezefilm.study.conduct.sessions import Exposure, exposure
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
-    TrialMotion,
     NoDevice,
     StudyDevice,
+    TrialMotion,
 )
 from squeezefilm.study.record.sittings import Sitting
 

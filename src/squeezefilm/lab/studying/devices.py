@@ -20,9 +20,9 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
-    TrialMotion,
     NoDevice,
     StudyDevice,
+    TrialMotion,
 )
 
 if TYPE_CHECKING:

@@ -151,9 +151,7 @@ def _driven(
     )
     begin = np.array([one.x for one in plate.patches])
     end = begin + np.array([one.length for one in plate.patches])
-    forces = [
-        float(pushed @ (mode.rotation_at(end) - mode.rotation_at(begin))) for mode in modes
-    ]
+    forces = [float(pushed @ (mode.rotation_at(end) - mode.rotation_at(begin))) for mode in modes]
     return BeamResponse(
         plate,
         section,

@@ -132,6 +132,17 @@ def show_precision(found: PlannedPrecision) -> None:
         console.print(
             f"{found.needed} people give it in {100 * found.target:.0f} % of the studies."
         )
+    # Beyond what so many studies scatter.
+    scatter = 2 * (0.95 * 0.05 / found.studies) ** 0.5
+    short = found.participants[found.held < 0.95 - scatter]
+    if short.size:
+        normal = "normal in the logarithm" if found.measure == "Weber fraction" else "normal"
+        console.print(
+            f"With {short.max()} people or fewer the interval holds the value less often than the "
+            f"95 % that it promises: it takes people's values to be {normal}, which those of these "
+            "people are not.",
+            highlight=False,
+        )
     one = found.sequential
     console.print(
         f"A study that adds people until its interval is that narrow stops at {one.mean:.3g} in "

@@ -199,7 +199,9 @@ def numbers_of_solved(
     if load is not None:
         found["current"] = load.current
     beside = p.mode.neighbour
-    found["neighbour"] = math.inf if beside is None or beside.share < TAKES_PART else abs(beside.distance)
+    found["neighbour"] = (
+        math.inf if beside is None or beside.share < TAKES_PART else abs(beside.distance)
+    )
     if limits.least_area is not None or limits.most_relative_friction is not None:
         area = active_area(display, p)
         wanted = limits.most_relative_friction or 0.7

@@ -24,7 +24,7 @@ from squeezefilm.study.conduct.sessions import (
     display_wanted,
     end_session,
 )
-from squeezefilm.study.conduct.study_device import TrialMotion, NoDevice
+from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import SIMULATED, SIMULATED_NOTE, origin_of

@@ -10,7 +10,7 @@ from typing import Protocol
 from squeezefilm import quantities as si
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, Response, StudyRun
-from squeezefilm.study.conduct.study_device import TrialMotion, StudyDevice
+from squeezefilm.study.conduct.study_device import StudyDevice, TrialMotion
 from squeezefilm.study.record.store import utc_now
 
 Mark = Callable[[str, si.Second | None], None]

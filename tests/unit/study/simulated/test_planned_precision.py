@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
+from squeezefilm.report.study.terminal_analysis import show_precision
 from squeezefilm.study.identification.power import above_0
 from squeezefilm.study.simulated import planned_precision as module
 from squeezefilm.study.simulated.planned_power import (
@@ -47,6 +48,15 @@ def test_more_people_are_more_precise(design: Any) -> None:
         design, EXACT, 0.15, participants=(2, 12, 40), studies=40, people=60, seed=1
     )
     assert again.reached.tolist() == found.reached.tolist()
+
+
+def test_intervals_that_hold_too_seldom_are_named(capsys: pytest.CaptureFixture[str]) -> None:
+    found = planned_precision(NUMBERS, EXACT, 0.15, participants=(2, 4), studies=40, people=40)
+    show_precision(dataclasses.replace(found, held=np.array([0.7, 0.95])))
+    said = " ".join(capsys.readouterr().out.split())
+    assert "With 2 people or fewer the interval holds the value less often than the 95 %" in said
+    show_precision(dataclasses.replace(found, held=np.array([0.9, 0.95])))
+    assert "less often" not in capsys.readouterr().out
 
 
 def test_what_cannot_be_asked_is_refused() -> None:
