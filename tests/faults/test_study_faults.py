@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import random
 import shutil
@@ -53,6 +54,15 @@ def _adaptive(count: int) -> StudyDesign:
             AdaptiveCondition("stairs", "staircase", count=count),
             AdaptiveCondition("bayes", "bayesian", count=count),
         ),
+    )
+
+
+def _same_different(count: int) -> StudyDesign:
+    """A series of same-different."""
+    return dataclasses.replace(
+        _adaptive(count),
+        task="same-different",
+        adaptive=(AdaptiveCondition("bayes", "bayesian", count=2 * count),),
     )
 
 
@@ -153,8 +163,11 @@ def test_kill_9_loses_no_acknowledged_trial(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_kill_9_leaves_adaptive_series_where_they_stood(tmp_path: Path) -> None:
-    _survives(tmp_path / "study.sqlite", kills=12, design=_adaptive(60))
+@pytest.mark.parametrize("design", [_adaptive(60), _same_different(60)], ids=lambda one: one.task)
+def test_kill_9_leaves_adaptive_series_where_they_stood(
+    tmp_path: Path, design: StudyDesign
+) -> None:
+    _survives(tmp_path / "study.sqlite", kills=12, design=design)
 
 
 @pytest.mark.nightly

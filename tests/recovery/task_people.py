@@ -15,6 +15,7 @@ from scipy.special import ndtr
 
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers
@@ -30,6 +31,12 @@ DESIGNS = {
     "constant": dataclasses.replace(load_design("friction-jnd"), practice=0),
     "adaptive": dataclasses.replace(load_design("period-jnd"), practice=0),
     "same-different": dataclasses.replace(load_design("period-same-different"), practice=0),
+    "same-different, adaptive": dataclasses.replace(
+        load_design("period-same-different"),
+        practice=0,
+        stimuli=load_design("period-same-different").stimuli[:1],
+        adaptive=(AdaptiveCondition("bayes", "bayesian", lowest=0.02, highest=1.0, count=160),),
+    ),
     "magnitude": dataclasses.replace(load_design("coarseness-magnitude"), familiarisation=0),
 }
 
@@ -76,12 +83,14 @@ def answered(design: StudyDesign, people: list[Person], random: np.random.Genera
     place = {one.name: k for k, one in enumerate(surfaces)}
     rows: list[dict[str, object]] = []
     for number, person in enumerate(people):
-        methods = {one.name: adaptive_method(one) for one in design.adaptive}
+        methods = {one.name: adaptive_method(one, task=design.task) for one in design.adaptive}
         for trial in trials(design, number, 7):
             if not trial.asks:
                 continue
             names, intensity = list(trial.stimuli), math.nan
-            if trial.adaptive:
+            if trial.adaptive and trial.answer == "same":
+                intensity, names = 0.0, [design.reference] * 2
+            elif trial.adaptive:
                 intensity = methods[trial.adaptive].next_stimulus()
                 series = next(s for s in design.adaptive if s.name == trial.adaptive)
                 one = design.comparison(series, intensity)

@@ -108,9 +108,9 @@ class WorkingMode:
         return (
             f"{self.label} is crowded: the mode {beside.name} at "
             f"{si.format_quantity(beside.frequency, si.Unit('Hz'))} lies {beside.distance:.2g} "
-            f"half-bandwidths away and {adds}. Where two modes cross they share the motion, so that the amplitude has a "
-            "dip there; small changes of the plate move it, and nodal lines and amplitude then "
-            "differ from what is computed"
+            f"half-bandwidths away and {adds}. Where two modes cross they share the motion, so "
+            "that the amplitude has a dip there; small changes of the plate move it, and nodal "
+            "lines and amplitude then differ from what is computed"
         )
 
     @si.checked_numbers

@@ -10,9 +10,9 @@ from squeezefilm.study.conduct.sessions import Exposure, SessionConditions, begi
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
-    TrialMotion,
     NoDevice,
     StudyDevice,
+    TrialMotion,
 )
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.design.special_trials import AdaptiveCondition

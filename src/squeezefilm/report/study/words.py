@@ -278,7 +278,8 @@ def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
 
 def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
     """Each comparison or stimulus: its answers with their interval, and d′."""
-    units = {} if analysis.is_adaptive else {"spatial_period": "m", "orientation": "rad"}
+    in_parts = analysis.is_adaptive and analysis.task == "two-interval"
+    units = {} if in_parts else {"spatial_period": "m", "orientation": "rad"}
     unit = si.Unit(units.get(analysis.judged, "1"))
     rows: list[tuple[str, ...]] = []
     for one in analysis.conditions:

@@ -237,7 +237,7 @@ def finest_period_felt(display: Display, p: Prediction) -> si.Metre:
     values = p.law.over_speeds(knots, np.array([p.speed]))[0]
 
     def friction(amplitude: si.MetreArray) -> si.DimensionlessArray:
-        return np.interp(amplitude, knots, values)
+        return np.asarray(np.interp(amplitude, knots, values))
 
     amplitude = switched_amplitude(period / rubbed.speed, tau, p.vibration_amplitude)
     d_prime = grating_evidence(senses, period, amplitude, friction, rubbed)

@@ -261,7 +261,7 @@ class Requirements:
             "the contact's constants (asperities and plateaus), which decide the friction",
             "tolerances as the file has them, normal and independent",
             *(
-                f"the yield asks nothing of {one}, which only a plate solved in three dimensions has"
+                f"the yield asks nothing of {one}, which only a solved plate has"
                 for one in self.limits.unasked_of_made
             ),
         )

@@ -2,23 +2,88 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 
 import numpy as np
 
+from squeezefilm import quantities as si
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.adaptive.placement import Placement, PlacementModel
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
+from squeezefilm.study.adaptive.task_models import same_different_model
 from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.study_design import Task
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 _CHOICES = 40
+# Cells of Weber fractions and criteria: a choice takes a millisecond, and finer ones choose alike.
+_WEBER_FRACTIONS, _CRITERIA, _LARGEST_CRITERION = 41, 12, 4.0
+_SPREAD_EVERY = 4
+# As wide as the analysis has them: otherwise plain differences are never asked, and who lapses is
+# not told from who is sharp.
+_LAPSES = np.array([0.01, 0.04, 0.1, 0.2, 0.35])
 
 
-AdaptiveMethod = Staircase | BayesianAdaptive
+class SameDifferentSeries:
+    """The differences of a same-different series: those whose answers tell the most of the Weber
+    fraction, by the differencing model, and every fourth one of all in turn.
+
+    What tells the most lies near one difference, from which nobody can tell a sharp person who
+    lapses often from one who is less sharp; the fourths show the whole function. Half of the
+    trials are planned to present the reference twice, so that people meet as much of the same as
+    of the different and keep their criterion; their answers (a difference of 0) say who is sharp
+    and who says "different", and are taken in like all others.
+    """
+
+    def __init__(self, series: AdaptiveCondition) -> None:
+        self._choices = np.geomspace(series.lowest, series.highest, _CHOICES)
+        self._placement = Placement(_differencing(series.lowest, series.highest), series.count)
+
+    @property
+    def finished(self) -> bool:
+        """Whether it has its trials."""
+        return self._placement.finished
+
+    def estimate(self) -> tuple[si.Dimensionless, si.Dimensionless]:
+        """Posterior mean and standard deviation of the Weber fraction; for intervals use the
+        study's analysis."""
+        return self._placement.estimate("Weber fraction")
+
+    def next_stimulus(self) -> si.Dimensionless:
+        """The next difference that is none of 0, in parts of the reference."""
+        asked = sum(number > 0 for number, _ in self._placement.given)
+        if asked % _SPREAD_EVERY == _SPREAD_EVERY - 1:
+            # Steps of 17 come to each of the forty once before any comes again.
+            return float(self._choices[17 * (asked // _SPREAD_EVERY) % _CHOICES])
+        told = self._placement.expected_information()[1:]
+        return float(self._choices[int(np.argmax(told))])
+
+    def update(self, intensity: si.Dimensionless, correct: bool) -> None:
+        """Take in whether the answer to a difference was right; 0 of a pair that was the same."""
+        number = 0
+        if intensity > 0:
+            number = 1 + int(np.argmin(np.abs(np.log(self._choices / intensity))))
+        # "different" is right of all but a pair that is the same.
+        said = "different" if correct == (intensity > 0) else "same"
+        self._placement.update(number, self._placement.model.answers.index(said))
+
+
+@functools.lru_cache(maxsize=8)
+def _differencing(lowest: float, highest: float) -> PlacementModel:
+    differences = np.append(0.0, np.log1p(np.geomspace(lowest, highest, _CHOICES)))
+    fractions = np.geomspace(lowest / 4, 4 * highest, _WEBER_FRACTIONS)
+    criteria = _LARGEST_CRITERION * (np.arange(_CRITERIA) + 0.5) / _CRITERIA
+    return same_different_model(differences, fractions, criteria, _LAPSES)
+
+
+AdaptiveMethod = Staircase | BayesianAdaptive | SameDifferentSeries
 
 
 def adaptive_method(
-    series: AdaptiveCondition, answers: Iterable[tuple[float, bool]] = ()
+    series: AdaptiveCondition,
+    answers: Iterable[tuple[float, bool]] = (),
+    task: Task = "two-interval",
 ) -> AdaptiveMethod:
     """The method of a series after the answers (intensity, correct) it has had.
 
@@ -28,10 +93,13 @@ def adaptive_method(
 
     A staircase moves linearly, halves its step at each reversal down to a quarter, and goes on
     for `count` trials. The Bayesian choice is of 40 logarithmic steps between `lowest` and
-    `highest`, for a logistic function of two alternatives.
+    `highest`, for a logistic function of two alternatives; of same-different see
+    `SameDifferentSeries`.
     """
     method: AdaptiveMethod
-    if series.method == "staircase":
+    if task == "same-different":
+        method = SameDifferentSeries(series)
+    elif series.method == "staircase":
         method = Staircase(
             StaircaseRule(
                 start=series.start,

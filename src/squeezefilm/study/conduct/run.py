@@ -297,8 +297,10 @@ class StudyRun:
             "ORDER BY t.number",
             [self.participant, series.name, trial.display],
         )
-        method = adaptive_method(series, ((a["intensity"], bool(a["correct"])) for a in answers))
-        intensity = method.next_stimulus()
+        if trial.answer == "same":
+            return trial, (design.stimulus(design.reference),) * 2, 0.0
+        given = ((a["intensity"], bool(a["correct"])) for a in answers)
+        intensity = adaptive_method(series, given, design.task).next_stimulus()
         pair = (design.stimulus(design.reference), design.comparison(series, intensity))
         return trial, pair if trial.reference_first else pair[::-1], intensity
 

@@ -272,9 +272,17 @@ class StudyDesign:
                 "only the reference is there; add a stimulus to compare with it, or [[adaptive]]",
                 quantity="stimuli",
             )
-        if self.adaptive and self.task != "two-interval":
+        if self.adaptive and not pair:
             raise InputError(
-                f"adaptive series need task = 'two-interval', not '{self.task}'",
+                "adaptive series compare with a reference, in task = 'two-interval' or "
+                f"'same-different'; '{self.task}' does not",
+                quantity="adaptive",
+            )
+        stairs = [one.name for one in self.adaptive if one.method == "staircase"]
+        if stairs and self.task == "same-different":
+            raise InputError(
+                f"series '{stairs[0]}' is a staircase, which would settle where a person's "
+                "criterion has it, not their senses; same-different takes method = 'bayesian'",
                 quantity="adaptive",
             )
         if pair and self.practice and len(self.stimuli) < 2:

@@ -263,19 +263,22 @@ def _adaptive_trials(
     design: StudyDesign, display: str, place: int, participant: int, seed: int, found: list[Trial]
 ) -> None:
     """The series interleaved at random, catch trials between them, in blocks of equal size; the
-    reference comes first in half of the trials of each series."""
+    reference comes first in half of the trials of each series, and is presented twice in half of
+    them where the same or different is asked."""
     random = _random(seed, _SPREAD, participant, place)
-    queue: list[tuple[str, bool, CatchTrial | None]] = []
+    queue: list[tuple[str, bool, str, CatchTrial | None]] = []
     for series in design.adaptive:
-        first = np.arange(series.count) % 2 == 0
-        queue += [(series.name, bool(one), None) for one in random.permutation(first)]
+        kinds = [(k % 2 == 0, ("second", "first")[k % 2]) for k in range(series.count)]
+        if design.task == "same-different":
+            kinds = [(k % 4 < 2, ("different", "same")[k % 2]) for k in range(series.count)]
+        order = random.permutation(series.count)
+        queue += [(series.name, *kinds[i], None) for i in order]
     queue = [queue[i] for i in random.permutation(len(queue))]
     for catch in (one for one in design.catch for _ in range(one.count)):
-        queue.insert(int(random.integers(1, len(queue) + 1)), ("", False, catch))
+        queue.insert(int(random.integers(1, len(queue) + 1)), ("", False, catch.answer, catch))
     size = -(-len(queue) // design.blocks)
-    for position, (name, reference_first, caught) in enumerate(queue):
+    for position, (name, reference_first, answer, caught) in enumerate(queue):
         rest = position % size == 0 and (place or position)
-        answer = "second" if reference_first else "first"
         found.append(
             Trial(
                 number=len(found) + 1,
@@ -284,7 +287,7 @@ def _adaptive_trials(
                 phase="main" if caught is None else "catch",
                 stimuli=() if caught is None else design.catch_condition(caught),
                 alternatives=design.answers,
-                answer=answer if caught is None else caught.answer,
+                answer=answer,
                 adaptive=name,
                 reference_first=reference_first,
                 pause=design.break_between_blocks if rest else 0.0,

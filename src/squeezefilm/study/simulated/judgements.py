@@ -181,7 +181,10 @@ def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], b
         for person, row in enumerate(schedules):
             trial = row[at]
             shown = [room.place[name] for name in trial.stimuli]
-            if trial.adaptive:
+            if trial.adaptive and trial.answer == "same":
+                intensity[person, at] = 0.0
+                shown = [room.place[design.reference]] * 2
+            elif trial.adaptive:
                 method = _standing(methods, design, person, trial)
                 intensity[person, at] = method.next_stimulus()
                 one = room.chosen(trial.adaptive, float(intensity[person, at]))
@@ -225,7 +228,7 @@ def _standing(
     key = person, trial.display, trial.adaptive
     if key not in methods:
         series = next(one for one in design.adaptive if one.name == trial.adaptive)
-        methods[key] = adaptive_method(series)
+        methods[key] = adaptive_method(series, task=design.task)
     return methods[key]
 
 

@@ -96,7 +96,8 @@ class TaskAnalysis(Result):
         more: other numbers by name, such as the bias for an interval.
         functions: each person's, of Weber fractions.
         is_adaptive: whether series chose the comparisons: `conditions` are then eighths of the
-            trials by their difference, which is their value.
+            trials by their difference, which is their value (same-different: what it makes of
+            the reference).
         response_times, ex_gaussian: by condition and of all; empty and None without times.
         course: drift and attention.
         exploration: quantity (with unit in its key) → means by condition.

@@ -138,6 +138,7 @@ def _surface(one: Stimulus) -> str:
 
 def _adaptive(design: StudyDesign) -> list[str]:
     said = []
+    alike = design.task == "same-different"
     for one in design.adaptive:
         if one.method == "staircase":
             target = 100 * 0.5 ** (1 / one.down)
@@ -146,13 +147,14 @@ def _adaptive(design: StudyDesign) -> list[str]:
                 f"(Levitt 1971, 10.1121/1.1912375), from {100 * one.start:g} %"
             )
         else:
-            how = (
-                "a Bayesian choice of the most informative difference (Kontsevich and Tyler 1999, "
-                "10.1016/S0042-6989(98)00285-5)"
-            )
+            by = "Kontsevich and Tyler 1999, 10.1016/S0042-6989(98)00285-5"
+            by = "Watson 2017, 10.1167/17.3.10" if alike else by
+            how = f"a Bayesian choice of the most informative difference ({by})"
+            how += ", every fourth of all in turn" if alike else ""
         said.append(
             f"The series '{one.name}' of {one.count} trials chose the comparison by {how}, within "
-            f"{100 * one.lowest:g} and {100 * one.highest:g} % of the reference."
+            f"{100 * one.lowest:g} and {100 * one.highest:g} % of the reference"
+            + ("; half of its trials presented the reference twice." if alike else ".")
         )
     if len(design.adaptive) > 1:
         said.append("The series were interleaved at random.")

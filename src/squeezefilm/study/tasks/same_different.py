@@ -74,6 +74,8 @@ def same_different_conditions(
     apart = np.abs(differences(main))
     design = main.design
     here = design.judged_value(design.stimulus(design.reference))
+    if design.adaptive:
+        return _eighths(main, apart, here, level)
     found = []
     for one in np.unique(apart):
         mine = apart == one
@@ -97,6 +99,27 @@ def same_different_conditions(
                 d,
             )
         )
+    return tuple(found)
+
+
+def _eighths(
+    main: Answers, apart: si.FloatArray, here: float, level: si.Dimensionless
+) -> tuple[ConditionFinding, ...]:
+    """Pairs that were the same, and those that a series chose in eighths by their difference."""
+    order = np.argsort(apart, kind="stable")
+    same = int(np.count_nonzero(apart == 0.0))
+    parts = {"the same": order[:same]}
+    for number, part in enumerate(np.array_split(order[same:], 8)):
+        parts[f"eighth {number + 1} of the differences"] = part
+    found = []
+    for name, part in parts.items():
+        if not part.size:
+            continue
+        hits = int((main.choice[part] == 1).sum())
+        bounds = proportion_interval(hits, part.size, level)
+        share = Estimate(hits / part.size, bounds.low, bounds.high, level, "Wilson, over trials")
+        value, people = here * math.exp(float(apart[part].mean())), main.participant[part]
+        found.append(ConditionFinding(name, value, part.size, np.unique(people).size, share))
     return tuple(found)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.study.adaptive.bayesian import BayesianAdaptive
-from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.adaptive.series import SameDifferentSeries, adaptive_method
 from squeezefilm.study.adaptive.staircase import Staircase
 from squeezefilm.study.design.special_trials import AdaptiveCondition
 
@@ -55,6 +55,38 @@ def test_the_bayesian_choice_is_of_40_even_ratios() -> None:
     right = adaptive_method(BAYES, [(0.1, True)] * 4).next_stimulus()
     wrong = adaptive_method(BAYES, [(0.1, False)] * 4).next_stimulus()
     assert right < wrong
+
+
+def test_same_different_asks_harder_after_right_answers_and_learns_of_the_same() -> None:
+    method = adaptive_method(BAYES, task="same-different")
+    assert isinstance(method, SameDifferentSeries)
+    assert 0.01 <= method.next_stimulus() <= 0.8
+    right = adaptive_method(BAYES, [(0.1, True), (0.0, True)] * 4, "same-different")
+    wrong = adaptive_method(BAYES, [(0.1, False), (0.0, True)] * 4, "same-different")
+    assert right.next_stimulus() < wrong.next_stimulus()
+    # Who says "different" of pairs that are the same has shown less by saying it of others.
+    eager = adaptive_method(BAYES, [(0.1, True), (0.0, False)] * 4, "same-different")
+    assert eager.next_stimulus() > right.next_stimulus()
+    for _ in range(9):
+        assert not method.finished
+        method.update(0.1, True)
+    assert method.finished
+
+
+def test_a_same_different_series_finds_the_weber_fraction() -> None:
+    series = dataclasses.replace(BAYES, lowest=0.02, highest=1.5, count=400)
+    random, weber, criterion = np.random.default_rng(3), 0.2, 1.4
+    method = adaptive_method(series, task="same-different")
+    for number in range(400):
+        asked = method.next_stimulus() if number % 2 else 0.0
+        apart = np.log1p(asked) * 0.9538725524 / np.log1p(weber)
+        different = abs(apart + np.sqrt(2) * random.standard_normal()) > criterion
+        different = random.random() < 0.5 if random.random() < 0.02 else different
+        method.update(asked, bool(different == (asked > 0)))
+    assert isinstance(method, SameDifferentSeries)
+    found, error = method.estimate()
+    assert error < 0.06
+    assert abs(found - weber) < 3 * error
 
 
 @pytest.mark.parametrize("series", [STAIRS, BAYES], ids=["staircase", "bayesian"])

@@ -13,7 +13,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.study.conduct.again import practise_again, restart_block, set_aside
 from squeezefilm.study.conduct.run import Response, StudyRun, spoiled_by
 from squeezefilm.study.conduct.sessions import begin_session, next_planned
-from squeezefilm.study.conduct.study_device import ByHand, TrialMotion, NoDevice
+from squeezefilm.study.conduct.study_device import ByHand, NoDevice, TrialMotion
 from squeezefilm.study.design.rules import TrialRules
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.record.answers import recorded_answers

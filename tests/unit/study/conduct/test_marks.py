@@ -7,7 +7,7 @@ from pathlib import Path
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
-from squeezefilm.study.conduct.study_device import TrialMotion, NoDevice
+from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record.store import Row, StudyStore
 

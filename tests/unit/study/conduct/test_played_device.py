@@ -16,7 +16,7 @@ from squeezefilm.study.conduct.played_device import SessionDevice, require_study
 from squeezefilm.study.conduct.playing_process import explored
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
-from squeezefilm.study.conduct.study_device import DeviceVerification, TrialMotion, NoDevice
+from squeezefilm.study.conduct.study_device import DeviceVerification, NoDevice, TrialMotion
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.store import StudyStore
 

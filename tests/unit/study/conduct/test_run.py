@@ -13,7 +13,7 @@ import pytest
 from squeezefilm.errors import InputError
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import display_wanted
-from squeezefilm.study.conduct.study_device import TrialMotion, NoDevice
+from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.exports import export_study

@@ -140,6 +140,16 @@ def test_adaptive_series_are_interleaved_and_choose_no_stimulus_beforehand() -> 
     assert order[:20] != ["easy"] * 20
 
 
+def test_half_of_a_same_different_series_presents_the_reference_twice() -> None:
+    series = AdaptiveCondition("bayes", "bayesian", count=40)
+    planned = trials(dataclasses.replace(PAIRS, catch=(), practice=0, adaptive=(series,)), 0, 1)
+    assert Counter(one.answer for one in planned) == {"same": 20, "different": 20}
+    for answer in ("same", "different"):
+        assert sum(one.reference_first for one in planned if one.answer == answer) == 10
+    assert [one.answer for one in planned] != [one.answer for one in trials(PAIRS, 1, 1)][:40]
+    assert all(one.stimuli == () for one in planned)
+
+
 def test_seeds_of_trials_differ_and_survive_a_float() -> None:
     seeds = [one.seed for p in range(12) for one in trials(PAIRS, p, 1)]
     assert len(set(seeds)) == len(seeds)

@@ -18,7 +18,7 @@ from squeezefilm.perception.observer import load_observer
 from squeezefilm.study.conduct.rehearsed_hand import path_of, rehearsed
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
-from squeezefilm.study.conduct.study_device import TrialMotion, NoDevice
+from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
 from squeezefilm.study.record.answers import recorded_answers
 from squeezefilm.study.record.explored_trials import MEASURES, ExploredTrials, explored_table
 from squeezefilm.study.record.store import StudyStore
