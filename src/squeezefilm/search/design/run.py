@@ -35,7 +35,7 @@ from squeezefilm.search.design.reference import reference_of
 from squeezefilm.search.design.requirements import NamedRequirements, Requirements
 from squeezefilm.search.design.store import DesignStore
 from squeezefilm.search.design.tolerance import Made, made_of
-from squeezefilm.search.design.worth_solving import objectives_of, worth_solving
+from squeezefilm.search.design.worth_solving import Seen, objectives_of, worth_solving
 from squeezefilm.search.tasks import Lost, Workers
 from squeezefilm.search.workers import workers
 
@@ -302,12 +302,12 @@ class SearchRun:
             self._seen[level].update((design, found[design]) for design in came)
         return found
 
-    def _front(self) -> list[Evaluated]:
+    def _front(self, seen: Seen | None = None) -> list[Evaluated]:
         """The feasible solved designs that none other beats, the first objective rising."""
         wanted, made = self.requirements.limits.least_yield or 0.0, self._made
         feasible = [
             one
-            for one in self._seen["solved"].values()
+            for one in (seen or self._seen)["solved"].values()
             if one.is_feasible and (one.design not in made or made[one.design].kept >= wanted)
         ]
         rows = objectives_of(self.requirements, feasible)
@@ -319,20 +319,19 @@ class SearchRun:
         now = time.monotonic()
         if self._asked.watch is None or now < self._shown_next:
             return
-        known = self._seen[level]
-        self._seen[level] = {**known, **found}
-        self._show()
-        self._seen[level] = known
+        self._show({**self._seen, level: {**self._seen[level], **found}})
         self._shown_next = time.monotonic() + max(1.0, 20 * (time.monotonic() - now))
 
-    def _show(self) -> None:
+    def _show(self, seen: Seen | None = None) -> None:
+        """Show what was seen, if anybody watches."""
         if self._asked.watch is None:
             return
-        feasible = [one for one in self._seen["screened"].values() if one.is_feasible]
+        seen = seen or self._seen
+        feasible = [one for one in seen["screened"].values() if one.is_feasible]
         rows = objectives_of(self.requirements, feasible)
         screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows))
-        counts = len(self._seen["screened"]), len(self._seen["solved"])
-        front = tuple(self._front())
+        counts = len(seen["screened"]), len(seen["solved"])
+        front = tuple(self._front(seen))
         self._asked.watch(Glimpse(self._stage, *counts, screened, front, self._reference))
 
     def result(self) -> DesignSearch:
