@@ -46,7 +46,8 @@ def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:
 
     The CSV is what PsychoPy's loops take as conditions; the JSON is a list of objects, jsPsych's
     `timeline_variables`. An adaptive series chooses its comparisons as it goes, so that its rows
-    name no stimulus; one whose answer is "same" presents the reference twice. Raises `InputError` where the folder cannot be written to.
+    name no stimulus; one whose answer is "same" presents the reference twice. Raises `InputError`
+    where the folder cannot be written to.
     """
     folder, written = Path(folder), []
     if folder.exists() and not folder.is_dir():
