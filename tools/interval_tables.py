@@ -19,6 +19,7 @@ ANSWERS = ROOT / "campaigns" / "statistics.jsonl"
 PEOPLE = {
     "constant": "constant stimuli", "adaptive": "adaptive series",
     "same-different": "same or different", "magnitude": "magnitude estimation",
+    "same-different, adaptive": "same or different, adaptive series",
 }  # fmt: skip
 RUNS_OF_PART, PEOPLES_STUDIES = 125, {"magnitude": 2000}
 _LINE = re.compile(r"(.*): ([\w ]+), (\w+): ([\d.]+), median length (\S+)")
@@ -67,8 +68,8 @@ def people_rows() -> list[str]:
     """Rows of the table of people together."""
     rows = []
     for line in printed("test_intervals_of_many_studies_hold_the_truth"):
-        name, rest = line.split(" ", 1)
-        of = ast.literal_eval(rest)
+        name, rest = line.split(" {", 1)
+        of = ast.literal_eval(f"{{{rest}")
         shares = " | ".join(f"{100 * of[one]:.1f} %" for one in ("persons", "population", "spread"))
         rows.append(f"| {PEOPLE[name]} | {PEOPLES_STUDIES.get(name, 500)} | {shares} |")
     return sorted(rows)
