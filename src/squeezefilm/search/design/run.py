@@ -44,8 +44,9 @@ _TOGETHER: Mapping[Level, int] = {"screened": 8, "solved": 1}
 _BATCH = 16
 # The share of the solved designs that the Bayesian sampler proposes.
 _DEAR = 0.25
-# Designs near each of so many of the front that are screened before the next are solved.
-_NEAR, _FROM = 10, 16
+# Designs near each of so many of the front, and as many expected there, that are screened in each
+# of some generations before the next are solved.
+_NEAR, _FROM, _GENERATIONS = 8, 12, 3
 
 
 @dataclass(frozen=True)
@@ -200,17 +201,21 @@ class SearchRun:
             self._show()
 
     def _screen_beside_the_front(self, pool: Workers) -> None:
-        """Look by the screening theory at what differs a little from the solved front: there its
-        correction is best, and limits can be met to the point."""
-        front, solved = self._front(), self._seen["solved"]
+        """Look by the screening theory at what differs a little from the solved front, and from
+        what is expected on it, some generations on: there the correction is best, and limits can be
+        met to the point."""
+        front, solved = [one.design for one in self._front()], self._seen["solved"]
         draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
-        beside = []
-        for one in [front[k] for k in draw.permutation(len(front))[:_FROM]]:
-            space = self.requirements.spaces[one.design.shape]
-            for _ in range(_NEAR):
-                places = space.moved(space.places(one.design.settings), draw)
-                beside.append(design_of(one.design.shape, space.at(places)))
-        self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
+        for _ in range(_GENERATIONS):
+            known = [front[k] for k in draw.permutation(len(front))[:_FROM]]
+            expected = worth_solving(self.requirements, self._seen, self._corrections, _FROM)
+            beside = []
+            for one in (*known, *expected):
+                space = self.requirements.spaces[one.shape]
+                for _ in range(_NEAR):
+                    places = space.moved(space.places(one.settings), draw)
+                    beside.append(design_of(one.shape, space.at(places)))
+            self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
 
     def _learn(self) -> None:
         solved = list(self._seen["solved"].values())
