@@ -16,14 +16,12 @@ from squeezefilm.errors import InputError
 from squeezefilm.results import Result, to_json
 from squeezefilm.search.design.candidate import Evaluated, display_of
 from squeezefilm.search.design.correction import Correction
-from squeezefilm.search.design.criteria import CRITERIA, criterion_of
+from squeezefilm.search.design.criteria import CRITERIA
 from squeezefilm.search.design.front import dominates, hypervolume, knee_of
 from squeezefilm.search.design.reasons import EmptyCorner, LimitReason
 from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.tolerance import Made
-from squeezefilm.search.design.worth_solving import objectives_of
-
-_NATURAL_WORST: Mapping[str, float] = {"relative_friction": 1.0, "finest_period": 5e-3}
+from squeezefilm.search.design.worth_solving import objectives_of, worst_corner
 
 
 @dataclass(frozen=True)
@@ -82,18 +80,8 @@ class DesignSearch(Result):
 
     @functools.cached_property
     def worst(self) -> si.FloatArray:
-        """The corner from which the hypervolume is measured (SI): limits where there are any, µ′/µ
-        of 1, gratings of 5 mm, else a tenth beyond the worst of the front."""
-        limits = self.requirements.limits
-        found = []
-        for number, name in enumerate(self.requirements.objectives):
-            own = criterion_of(name).limit
-            bound = getattr(limits, own) if own else None
-            natural = _NATURAL_WORST.get(name)
-            if bound is None and natural is None:
-                natural = 1.1 * float(np.max(self.objectives[:, number], initial=0.0)) or 1.0
-            found.append(float(bound if bound is not None else natural or 1.0))
-        return np.array(found)
+        """The corner from which the hypervolume is measured (SI), see `worst_corner`."""
+        return worst_corner(self.requirements, self.objectives)
 
     @property
     def hypervolume(self) -> si.Dimensionless:

@@ -204,17 +204,21 @@ class SearchRun:
         """Look by the screening theory at what differs a little from the solved front, and from
         what is expected on it, some generations on: there the correction is best, and limits can be
         met to the point."""
-        front, solved = [one.design for one in self._front()], self._seen["solved"]
+        front, solved = self._front(), self._seen["solved"]
+        rows = objectives_of(self.requirements, front)
+        # Always from the ends of the front, which decide what it commands.
+        ends = [front[k].design for k in np.argmin(rows, axis=0)] if front else []
         draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
         for _ in range(_GENERATIONS):
-            known = [front[k] for k in draw.permutation(len(front))[:_FROM]]
+            known = [front[k].design for k in draw.permutation(len(front))[:_FROM]]
             expected = worth_solving(self.requirements, self._seen, self._corrections, _FROM)
             beside = []
-            for one in (*known, *expected):
+            for number, one in enumerate((*ends, *known, *expected)):
                 space = self.requirements.spaces[one.shape]
-                for _ in range(_NEAR):
-                    places = space.moved(space.places(one.settings), draw)
-                    beside.append(design_of(one.shape, space.at(places)))
+                here = space.places(one.settings)
+                others = [space.moved(here, draw) for _ in range(_NEAR)]
+                others += space.beside(here) if number < len(ends) else ()
+                beside += [design_of(one.shape, space.at(places)) for places in others]
             self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
 
     def _learn(self) -> None:

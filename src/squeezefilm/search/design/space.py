@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -10,8 +11,9 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 
+_GRAINS_BESIDE = (-10, -3, -1, 1, 3, 10)
 # How far a neighbour moves along a range, and how often it takes another step or name.
-_STEP, _JUMP = 0.06, 0.12
+_STEP, _JUMP, _NEAR_BY = 0.06, 0.12, 0.2
 
 Setting = float | int | str
 Values = Mapping[str, Setting]
@@ -121,7 +123,7 @@ class Space:
     def __iter__(self) -> Iterator[Variable]:
         return iter(self.variables)
 
-    @property
+    @functools.cached_property
     def free(self) -> tuple[Variable, ...]:
         """The variables with something to choose."""
         return tuple(one for one in self.variables if not one.is_fixed)
@@ -139,7 +141,7 @@ class Space:
 
     def moved(self, places: Mapping[str, float], draw: np.random.Generator) -> dict[str, float]:
         """Places a little beside others: lengths and voltages by some percent of their range, each
-        with even odds, steps and names to any other now and then."""
+        with even odds, steps to one near by or any other now and then, names to any other."""
         found = dict(places)
         for one in self.free:
             chance, step = draw.random(), _STEP * draw.standard_normal()
@@ -147,7 +149,18 @@ class Space:
                 found[one.name] = float(np.clip(places[one.name] + step, 0.0, 1.0))
             elif not isinstance(one, Number) and chance < _JUMP:
                 found[one.name] = float(draw.random())
+            elif isinstance(one, Step) and chance < _JUMP + _NEAR_BY:
+                found[one.name] = float(np.clip(places[one.name] + 2 * step, 0.0, 1.0))
         return found
+
+    def beside(self, places: Mapping[str, float]) -> Iterator[dict[str, float]]:
+        """Places that differ in one number, by a few of its grains either way: the next that can be
+        built and set."""
+        for one in self.free:
+            if isinstance(one, Number):
+                for grains in _GRAINS_BESIDE:
+                    step = grains * one.grain / (one.high - one.low)
+                    yield {**places, one.name: float(np.clip(places[one.name] + step, 0.0, 1.0))}
 
     def shares(self, values: Values) -> list[float]:
         """Where values lie, each from 0 to 1, of what is free: features of a design."""

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import qmc
 
 from squeezefilm import quantities as si
 from squeezefilm.search.design.candidate import Design, Evaluated, Level
 from squeezefilm.search.design.correction import Correction
-from squeezefilm.search.design.criteria import breaches
+from squeezefilm.search.design.criteria import breaches, criterion_of
 from squeezefilm.search.design.front import layers_of
 from squeezefilm.search.design.requirements import Requirements
 
@@ -18,6 +19,9 @@ from squeezefilm.search.design.requirements import Requirements
 _DOUBT, _CORRECTED_DOUBT = 0.25, 0.08
 # By what share a corrected objective is taken to be off, where nothing or too much is known of it.
 _ERROR, _MOST_ERROR = 0.1, 0.2
+
+_NATURAL_WORST: Mapping[str, float] = {"relative_friction": 1.0, "finest_period": 5e-3}
+_POINTS = 4096
 
 Seen = Mapping[Level, Mapping[Design, Evaluated]]
 
@@ -34,8 +38,9 @@ def worth_solving(
     corrections: Sequence[Correction | None],
     count: int,
 ) -> list[Design]:
-    """At most `count` designs not solved yet, of all shapes together, by what is expected of them:
-    those that might enter the front, layer by layer; of a layer too large those far apart."""
+    """At most `count` designs not solved yet, of all shapes together, that might enter the front:
+    those expected to add most to what it dominates, each beside those chosen before it; then, since
+    what is expected errs, layer by layer, of a layer too large those far apart."""
     pool = list(_expected(requirements, seen, corrections))
     rows = objectives_of(requirements, pool)
     solved = [one for one in seen["solved"].values() if one.is_feasible]
@@ -44,10 +49,53 @@ def worth_solving(
     nearest = rows * (1 - _error(requirements, corrections))
     might = np.array([not np.any(np.all(known <= row, axis=1)) for row in nearest], dtype=bool)
     at = np.flatnonzero(might)
-    taken = at[layers_of(rows[at], count)]
-    if taken.size > count:
-        taken = _far_apart(rows, taken, count)
-    return [pool[k].design for k in taken]
+    first = at[_adding_most(rows[at], known, worst_corner(requirements, rows[at]), count)]
+    left, room = np.setdiff1d(at, first), count - first.size
+    taken = left[layers_of(rows[left], room)]
+    if taken.size > room:
+        taken = _far_apart(rows, taken, room)
+    return [pool[k].design for k in (*first, *taken)]
+
+
+def worst_corner(requirements: Requirements, rows: si.FloatArray) -> si.FloatArray:
+    """The corner from which a hypervolume is measured (SI): limits where there are any, µ′/µ of 1,
+    gratings of 5 mm, else a tenth beyond the worst of rows of objectives."""
+    found = []
+    for number, name in enumerate(requirements.objectives):
+        own = criterion_of(name).limit
+        bound = getattr(requirements.limits, own) if own else None
+        if bound is None:
+            bound = _NATURAL_WORST.get(name)
+        if bound is None:
+            bound = 1.1 * float(np.max(rows[:, number], initial=0.0)) or 1.0
+        found.append(float(bound))
+    return np.array(found)
+
+
+def _adding_most(
+    rows: si.FloatArray, known: si.FloatArray, worst: si.FloatArray, count: int
+) -> si.IntArray:
+    """At most so many rows that dominate most of what known rows do not, one after the other, by
+    points spread evenly over the box from the best of all to the worst corner."""
+    there = [one for one in (rows, known) if one.size]
+    if not rows.size:
+        return np.array([], dtype=np.intp)
+    best = np.min(np.concatenate(there), axis=0)
+    shares = qmc.Sobol(worst.size, seed=1).random(_POINTS)
+    points = best + shares * np.maximum(worst - best, 0.0)
+    free = np.ones(_POINTS, dtype=bool)
+    for one in known:
+        free &= ~np.all(one <= points, axis=1)
+    reached = np.array([np.all(one <= points, axis=1) for one in rows])
+    chosen: list[int] = []
+    while len(chosen) < count:
+        gain = reached[:, free].sum(axis=1)
+        most = int(np.argmax(gain))
+        if gain[most] == 0:
+            break
+        chosen.append(most)
+        free &= ~reached[most]
+    return np.array(chosen, dtype=np.intp)
 
 
 def _expected(

@@ -46,3 +46,11 @@ def test_ranges_that_are_none_are_refused() -> None:
         number("length", 0.08, 0.05, "m")
     with pytest.raises(InputError, match="of glass is an empty list"):
         step("thickness", {"glass": ()}, "m", "substrate")
+
+
+def test_what_lies_beside_differs_in_one_number_by_what_can_be_built() -> None:
+    values = SPACE.at({"substrate": 0.0, "thickness": 0.9, "length": 0.5})
+    beside = [SPACE.at(one) for one in SPACE.beside(SPACE.places(values))]
+    apart = sorted(round((float(one["length"]) - 0.065) * 1e4) for one in beside)
+    assert apart == [-10, -3, -1, 1, 3, 10]
+    assert all({**one, "length": 0.065} == {**values, "length": 0.065} for one in beside)
