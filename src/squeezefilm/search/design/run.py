@@ -205,9 +205,11 @@ class SearchRun:
         what is expected on it, some generations on: there the correction is best, and limits can be
         met to the point."""
         front, solved = self._front(), self._seen["solved"]
+        if not front:
+            return  # what is expected without a correction lies beyond the limits
         rows = objectives_of(self.requirements, front)
         # Always from the ends of the front, which decide what it commands.
-        ends = [front[k].design for k in np.argmin(rows, axis=0)] if front else []
+        ends = [front[k].design for k in np.argmin(rows, axis=0)]
         draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
         for _ in range(_GENERATIONS):
             known = [front[k].design for k in draw.permutation(len(front))[:_FROM]]

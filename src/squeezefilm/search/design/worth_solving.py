@@ -49,7 +49,10 @@ def worth_solving(
     nearest = rows * (1 - _error(requirements, corrections))
     might = np.array([not np.any(np.all(known <= row, axis=1)) for row in nearest], dtype=bool)
     at = np.flatnonzero(might)
-    first = at[_adding_most(rows[at], known, worst_corner(requirements, rows[at]), count)]
+    first = at[:0]
+    # Of a screening that no solved plate has corrected, the most is expected of what cannot be.
+    if all(one is not None for one in corrections):
+        first = at[_adding_most(rows[at], known, worst_corner(requirements, rows[at]), count)]
     left, room = np.setdiff1d(at, first), count - first.size
     taken = left[layers_of(rows[left], room)]
     if taken.size > room:
