@@ -19,15 +19,23 @@ from squeezefilm.contact.asperities import (
 )
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.sharing import gas_table
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
-from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable, film_table
+from squeezefilm.contact.sharing.gas_table import (
+    DEEPEST_EXCURSION,
+    FilmTable,
+    across_frequencies,
+    film_table,
+)
 from squeezefilm.contact.sharing.pad import PadPosture, friction_ripple, pad_friction, ridge_points
 from squeezefilm.contact.sharing.paper import relative_friction
 from squeezefilm.contact.sharing.tapping import contact_angle, tapping_friction
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.gap import PaperGap
+from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.film import solve_uniform
+from squeezefilm.kept_arrays import CACHE_VARIABLE
 from squeezefilm.materials import Gas
 
 GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)
@@ -95,6 +103,48 @@ def test_the_table_is_within_its_bound_of_films_solved_elsewhere(ambient: float,
         ).over_pressure
         assert found == pytest.approx(ambient * solved, rel=table.relative_error)
     assert 0 < table.relative_error <= table.tolerance
+
+
+@pytest.mark.parametrize("slip", ["first", "veijola"])
+def test_tables_across_frequencies_are_within_their_bound(slip: str) -> None:
+    """What a search takes of thousands of plates, each with a frequency of its own."""
+    rng = np.random.default_rng(9)
+    for _ in range(60):
+        frequency, u = rng.uniform(15e3, 90e3), rng.uniform(1e-6, 8e-6)
+        eps = rng.uniform(0.02, DEEPEST_EXCURSION - 0.005)
+        table = FilmTable(frequency, 250e-6, GAS, slip, across=True)
+        found = float(table.over_pressure(u, eps * u))
+        solved = solve_uniform(
+            (table.length / u) ** 2,
+            eps,
+            knudsen_number=GAS.mean_free_path / u,
+            slip=slip,
+            tolerance=1e-5,
+        ).over_pressure
+        assert found == pytest.approx(1e5 * solved, rel=table.relative_error)
+        assert 0 < table.relative_error <= table.tolerance
+
+
+def test_tables_across_frequencies_solve_films_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    counted = list[int]()
+
+    def counting(squeeze_number: np.ndarray, *args: object, **named: object) -> object:
+        counted.append(squeeze_number.size)
+        return solve_films(squeeze_number, *args, **named)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(gas_table, "solve_films", counting)
+    monkeypatch.setenv(CACHE_VARIABLE, "off")
+    gas_table._span.cache_clear()
+    with across_frequencies():
+        counts = []
+        for frequency in np.linspace(30e3, 50e3, 30):
+            film_table(float(frequency), 251e-6, GAS).over_pressure(2e-6, 1e-6)
+            counts.append(sum(counted))
+    # Two spans, where their border lies between.
+    assert len(set(counts)) <= 2
+    own = film_table(41e3, 251e-6, GAS)
+    own.over_pressure(2e-6, 1e-6)
+    assert sum(counted) > counts[-1]  # a table that is asked for by itself is solved by itself
 
 
 @pytest.mark.parametrize("slip", ["first", "veijola", "fukui-kaneko"])

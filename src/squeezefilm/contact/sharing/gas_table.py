@@ -6,15 +6,20 @@ path: at given frequency, width and gas it depends on the mean gap u and on ε =
 table holds ln((W − 1)/ε²), ln of stiffness and of damping over ln(u/ℓ) and −ln(1 − ε²), as
 Chebyshev interpolants in panels that are solved when first needed. Nothing is fitted: every node
 is a solved film, and each panel is checked against films solved between its nodes. Solved panels
-are kept on disk (`kept_arrays`): a display that is asked again finds them.
+are kept on disk (`kept_arrays`): a display that is asked again finds them. A panel depends on the
+frequency by Λ/ℓ alone, and smoothly: `across_frequencies`, for thousands of displays each at one of
+its own, panels are interpolated over it, so that two octaves are solved once.
 """
 
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 
@@ -34,10 +39,16 @@ DEEPEST_EXCURSION: si.Dimensionless = 0.993
 
 _SHALLOWEST = 3e-3
 _EXCURSIONS = (_SHALLOWEST, 0.8, 0.95, 0.985, DEEPEST_EXCURSION)
+_EDGES = -np.log1p(-(np.array(_EXCURSIONS) ** 2))
 _FIRST_COLUMN, _COLUMNS = -6, 10
 _START = (8, 8)
 _MOST = (41, 38)
 _SMOOTH_LAWS = ("first", "second", "veijola")
+# ln(Λ/ℓ) over two octaves of frequency, in which panels are interpolated between so many Chebyshev
+# nodes: that errs by 2e-5 at most, of the over-pressure.
+_SPAN = float(np.log(2.0))
+_SPAN_NODES = 4
+_ACROSS: ContextVar[bool] = ContextVar("across_frequencies", default=False)
 _PANELS = KeptArrays("film-panels", (Path(film.__path__[0]), Path(__file__)))
 
 
@@ -51,8 +62,9 @@ def default_tolerance(slip: str) -> float:
 class FilmTable:
     """The film of a plateau at one frequency, width and gas, over mean gap and amplitude.
 
-    `tolerance` is relative on the over-pressure (None: see `default_tolerance`). `error` is the
-    largest deviation found between the table and films solved between its nodes, doubled, plus
+    `tolerance` is relative on the over-pressure (None: see `default_tolerance`). Panels of a table
+    `across` frequencies are interpolated between those that other frequencies have, too. `error` is
+    the largest deviation found between the table and films solved between its nodes, doubled, plus
     the solver's own estimate; None before the first panel is solved. `solved` counts the films
     behind it.
     """
@@ -64,9 +76,13 @@ class FilmTable:
         gas: Gas,
         slip: str = "first",
         tolerance: Annotated[float, si.AtLeast(1e-6), si.AtMost(1e-2)] | None = None,
+        *,
+        across: bool = False,
     ) -> None:
         tolerance = default_tolerance(slip) if tolerance is None else tolerance
         slip_law(slip, 1.0)
+        # A law with joints is not smooth in Λ/ℓ either.
+        self._across = across and slip in _SMOOTH_LAWS
         self.frequency, self.width, self.gas = frequency, width, gas
         self.slip, self.tolerance = slip, tolerance
         self.length: si.Metre = width * float(
@@ -76,7 +92,6 @@ class FilmTable:
         self.solved = 0
         self._nodes = _START
         self._scale = np.array([self.length, gas.ambient_pressure, float(_FIRST_COLUMN)])
-        self._edges = -np.log1p(-(np.array(_EXCURSIONS) ** 2))
         self._lock = threading.Lock()
         self._empty()
 
@@ -91,7 +106,7 @@ class FilmTable:
         """The table as the compiled code takes it."""
         from squeezefilm.contact.sharing.kernel import CompiledFilms
 
-        return CompiledFilms(self._scale, self._edges, self._built, self._panels)
+        return CompiledFilms(self._scale, _EDGES, self._built, self._panels)
 
     @property
     def relative_error(self) -> si.Dimensionless:
@@ -148,62 +163,125 @@ class FilmTable:
 
     def _solve(self, panel: int) -> float:
         """Fill a panel with what is kept of it, or else solved; the bound on its error."""
-        column, row = divmod(panel, self._built.shape[1])
         nx, nt = self._nodes
-        # Nothing else of gas, width and frequency is in it.
-        slip_length = float(self.gas.mean_free_path / self.length).hex()
-        asked = repr((slip_length, self.slip, self.tolerance, self._nodes, panel))
-        found = _PANELS.get(asked, 3 * nx * nt + 1)
-        if found is None:
-            found = self._solved(column, row)
-            _PANELS.put(asked, found)
-        self.solved += nx * nt + len(self._between()[0])
-        self._panels[column, row] = found[:-1].reshape(3, nx, nt)
-        self._built[column, row] = 1
+        slip_length = float(self.gas.mean_free_path / self.length)
+        which = _Panel(self.slip, self.tolerance, self._nodes, panel)
+        solved = _interpolated if self._across else _kept
+        found = solved(slip_length, which)
+        self.solved += nx * nt + len(which.between()[0])
+        self._panels.reshape(-1, 3, nx, nt)[panel] = found[:-1].reshape(3, nx, nt)
+        self._built.flat[panel] = 1
         error = float(found[-1])
         self.error = max(self.relative_error, error)
         return error
 
-    def _between(self) -> tuple[si.FloatArray, si.FloatArray]:
+
+class _Panel(NamedTuple):
+    """A panel of a table, but for Λ/ℓ; nothing else of gas, width and frequency is in it."""
+
+    slip: str
+    tolerance: float
+    nodes: tuple[int, int]
+    number: int
+
+    def between(self) -> tuple[si.FloatArray, si.FloatArray]:
         """Points between nodes where a panel is checked: a lattice that meets every line. A slip
         law with joints leaves its mark somewhere along them: there, between all nodes."""
-        nx, nt = self._nodes
+        nx, nt = self.nodes
         lines = 1 if self.slip in _SMOOTH_LAWS else nt - 1
         i = np.tile(np.arange(nx - 1), lines)
         j = (3 * i + np.repeat(np.arange(lines), nx - 1)) % (nt - 1)
         return np.cos(np.pi * (i + 0.5) / (nx - 1)), np.cos(np.pi * (j + 0.5) / (nt - 1))
 
-    def _solved(self, column: int, row: int) -> si.FloatArray:
-        """The coefficients of a panel's three quantities, and the bound on its error."""
-        from numpy.polynomial import chebyshev
-
-        nx, nt = self._nodes
-        xi, eta = (np.cos(np.pi * np.arange(n) / (n - 1)) for n in (nx, nt))
-        xi_check, eta_check = self._between()
-        XI, ETA = np.meshgrid(xi, eta, indexing="ij")
-        x = np.concatenate([XI.ravel(), xi_check])
-        y = np.concatenate([ETA.ravel(), eta_check])
-        low, high = self._edges[row], self._edges[row + 1]
+    def films(
+        self, slip_length: float, x: si.FloatArray, y: si.FloatArray
+    ) -> tuple[si.FloatArray, float]:
+        """The logarithms of the panel's three quantities at points of it, shape (3, points), and
+        the relative error of the over-pressure."""
+        column, row = divmod(self.number, len(_EXCURSIONS) - 1)
+        low, high = _EDGES[row], _EDGES[row + 1]
         gap = np.exp(_FIRST_COLUMN + column + 0.5 * (x + 1.0))
         excursion = np.sqrt(-np.expm1(-(low + 0.5 * (y + 1.0) * (high - low))))
         films = solve_films(
             gap**-2.0,
             excursion,
-            knudsen_number=self.gas.mean_free_path / (self.length * gap),
+            knudsen_number=slip_length / gap,
             slip=self.slip,
             tolerance=self.tolerance / (3 if self.slip in _SMOOTH_LAWS else 10),
             workers=1,
         )
         values = (
-            np.log(films.over_pressure / excursion**2),
-            np.log(films.stiffness_relative),
-            np.log(films.damping_relative),
+            films.over_pressure / excursion**2,
+            films.stiffness_relative,
+            films.damping_relative,
         )
-        panels = np.stack([_coefficients(one[: nx * nt].reshape(nx, nt)) for one in values])
-        found = chebyshev.chebval2d(xi_check, eta_check, panels[0])
-        deviation = float(np.max(np.abs(np.expm1(found - values[0][nx * nt :]))))
-        films_error = float(np.max(films.over_pressure_error / films.over_pressure))
-        return np.append(panels.ravel(), 2.0 * deviation + films_error)
+        return np.log(values), float(np.max(films.over_pressure_error / films.over_pressure))
+
+
+def _kept(slip_length: float, which: _Panel) -> si.FloatArray:
+    """The coefficients of a panel's three quantities, and the bound on its error."""
+    asked = repr((slip_length.hex(), *which))
+    found = _PANELS.get(asked, 3 * which.nodes[0] * which.nodes[1] + 1)
+    if found is None:
+        found = _solved(slip_length, which)
+        _PANELS.put(asked, found)
+    return found
+
+
+def _solved(slip_length: float, which: _Panel) -> si.FloatArray:
+    nx, nt = which.nodes
+    xi, eta = (np.cos(np.pi * np.arange(n) / (n - 1)) for n in (nx, nt))
+    XI, ETA = np.meshgrid(xi, eta, indexing="ij")
+    between = which.between()
+    x, y = (
+        np.concatenate([nodes.ravel(), points])
+        for nodes, points in zip((XI, ETA), between, strict=True)
+    )
+    values, films_error = which.films(slip_length, x, y)
+    panels = np.stack([_coefficients(one[: nx * nt].reshape(nx, nt)) for one in values])
+    deviation = _deviation(panels[0], between, values[0][nx * nt :])
+    return np.append(panels.ravel(), 2.0 * deviation + films_error)
+
+
+def _deviation(
+    panel: si.FloatArray, points: tuple[si.FloatArray, si.FloatArray], values: si.FloatArray
+) -> float:
+    """The largest relative deviation of a panel from logarithms of films at points of it."""
+    from numpy.polynomial import chebyshev
+
+    return float(np.max(np.abs(np.expm1(chebyshev.chebval2d(*points, panel) - values))))
+
+
+def _interpolated(slip_length: float, which: _Panel) -> si.FloatArray:
+    """As `_kept`, interpolated over the span in which Λ/ℓ lies."""
+    span, place = divmod(float(np.log(slip_length)) / _SPAN, 1.0)
+    panels, error = _span(int(span), which)
+    return np.append(_weights(2.0 * place - 1.0) @ panels, error)
+
+
+@lru_cache(maxsize=2048)
+def _span(number: int, which: _Panel) -> tuple[si.FloatArray, float]:
+    """A panel at the nodes of a span, a row each, and the bound on the error between them."""
+    lengths = np.exp(_SPAN * (number + 0.5 * (_span_nodes() + 1.0)))
+    rows = np.array([_kept(float(one), which) for one in lengths])
+    points = which.between()
+    # Midway between nodes the interpolation errs most.
+    values, films_error = which.films(float(np.exp(_SPAN * (number + 0.5))), *points)
+    middle = (_weights(0.0) @ rows[:, :-1]).reshape(3, *which.nodes)
+    deviation = _deviation(middle[0], points, values[0])
+    return rows[:, :-1], max(2.0 * deviation + films_error, *rows[:, -1].tolist())
+
+
+def _span_nodes() -> si.FloatArray:
+    return np.cos(np.pi * np.arange(_SPAN_NODES) / (_SPAN_NODES - 1))
+
+
+def _weights(place: float) -> si.FloatArray:
+    """The weights of the nodes' values at a place between −1 and 1 (Lagrange)."""
+    nodes = _span_nodes()
+    off = ~np.eye(len(nodes), dtype=bool)
+    above, below = place - nodes, nodes[:, None] - nodes
+    return np.array([np.prod(above[row] / below[k][row]) for k, row in enumerate(off)])
 
 
 def _coefficients(values: si.FloatArray) -> si.FloatArray:
@@ -221,8 +299,18 @@ def _coefficients(values: si.FloatArray) -> si.FloatArray:
     return np.ascontiguousarray(result)
 
 
+@contextmanager
+def across_frequencies() -> Iterator[None]:
+    """While a search looks at thousands of displays: their film tables are interpolated between
+    films that they share, within the same tolerance."""
+    before = _ACROSS.set(True)
+    try:
+        yield
+    finally:
+        _ACROSS.reset(before)
+
+
 @si.checked_numbers
-@lru_cache(maxsize=256)
 def film_table(
     frequency: si.Hertz,
     width: si.Metre,
@@ -231,4 +319,16 @@ def film_table(
     tolerance: float | None = None,
 ) -> FilmTable:
     """The table of a plateau's film (kept, so that each is solved once). See `FilmTable`."""
-    return FilmTable(frequency, width, gas, slip, tolerance)
+    return _table(frequency, width, gas, slip, tolerance, _ACROSS.get())
+
+
+@lru_cache(maxsize=256)
+def _table(
+    frequency: si.Hertz,
+    width: si.Metre,
+    gas: Gas,
+    slip: str,
+    tolerance: float | None,
+    across: bool,
+) -> FilmTable:
+    return FilmTable(frequency, width, gas, slip, tolerance, across=across)

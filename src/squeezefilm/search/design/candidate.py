@@ -12,6 +12,7 @@ from typing import Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.contact.sharing.gas_table import across_frequencies
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.kept_arrays import in_passing
@@ -116,20 +117,22 @@ def display_of(requirements: Requirements, design: Design) -> Display:
 def evaluate(requirements: Requirements, design: Design, level: Level) -> Evaluated:
     """What a design does, by the screening theory or solved. What is refused is an answer, too."""
     began = time.perf_counter()
-    theory = screening_theory(requirements, design) if level == "screened" else None
     try:
         with in_passing(), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             display = display_of(requirements, design)
-            found = predict(display, theory=theory)
-            numbers = judged(requirements, display, found, design, level)
+            if level == "screened":
+                found, numbers = None, screened(requirements, display, design)
+            else:
+                found = predict(display)
+                numbers = _judged(requirements, display, found, design, level)
     except SqueezefilmError as error:
         return Evaluated(design, level, {}, reason=str(error), seconds=_since(began))
     except Exception as error:
         # One design of thousands: a fault of ours is told, and the others are not lost.
         reason = f"not foreseen: {type(error).__name__}: {error}"
         return Evaluated(design, level, {}, reason=reason, seconds=_since(began))
-    if level == "solved" and found.mode.solid is None and found.mode.disc is None:
+    if found is not None and found.mode.solid is None and found.mode.disc is None:
         return Evaluated(design, level, {}, reason=found.objections[-1], seconds=_since(began))
     return Evaluated(
         design,
@@ -137,7 +140,7 @@ def evaluate(requirements: Requirements, design: Design, level: Level) -> Evalua
         numbers,
         breaches(numbers, requirements.limits),
         seconds=_since(began),
-        warnings=found.warnings if level == "solved" else (),
+        warnings=() if found is None else found.warnings,
     )
 
 
@@ -148,7 +151,14 @@ def evaluate_all(
     return [evaluate(requirements, design, level) for design in designs]
 
 
-def judged(
+def screened(requirements: Requirements, display: Display, design: Design) -> dict[str, float]:
+    """The criteria of a display by the theory by which its design is screened."""
+    with across_frequencies():
+        found = predict(display, theory=screening_theory(requirements, design))
+        return _judged(requirements, display, found, design, "screened")
+
+
+def _judged(
     requirements: Requirements, display: Display, found: Prediction, design: Design, level: Level
 ) -> dict[str, float]:
     """The criteria of a prediction, and those that only a solved plate has."""

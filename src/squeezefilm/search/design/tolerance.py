@@ -10,7 +10,6 @@ import numpy as np
 from scipy.stats import norm, qmc
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate, turned
@@ -18,8 +17,7 @@ from squeezefilm.search.design.candidate import (
     Design,
     Evaluated,
     display_of,
-    judged,
-    screening_theory,
+    screened,
 )
 from squeezefilm.search.design.correction import CORRECTED
 from squeezefilm.search.design.criteria import breaches, criterion_of
@@ -114,8 +112,7 @@ def _numbers(
     cannot be."""
     try:
         display = as_made(requirements, design, deviations)
-        found = predict(display, theory=screening_theory(requirements, design))
-        return judged(requirements, display, found, design, "screened")
+        return screened(requirements, display, design)
     except SqueezefilmError:
         return {}
 
