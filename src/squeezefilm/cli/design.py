@@ -38,7 +38,8 @@ class DesignOptions:
         ),
     ] = None
     screened: Annotated[
-        int, typer.Option(help="Designs that are looked at by the screening theory.")
+        int,
+        typer.Option(help="Designs that are screened before any is solved."),
     ] = 2000
     solved: Annotated[
         int, typer.Option(help="Plates that are solved in three dimensions, at most.")

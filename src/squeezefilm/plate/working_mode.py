@@ -103,7 +103,7 @@ class WorkingMode:
         adds = (
             f"adds {100 * beside.share:.0f} % of the amplitude at resonance"
             if beside.share <= 1
-            else "moves more at resonance than this mode, which the drive hardly moves"
+            else "moves more at resonance than this mode"
         )
         return (
             f"{self.label} is crowded: the mode {beside.name} at "

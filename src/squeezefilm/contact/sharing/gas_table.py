@@ -66,7 +66,7 @@ class FilmTable:
     `across` frequencies are interpolated between those that other frequencies have, too. `error` is
     the largest deviation found between the table and films solved between its nodes, doubled, plus
     the solver's own estimate; None before the first panel is solved. `solved` counts the films
-    behind it.
+    of its panels.
     """
 
     def __init__(

@@ -138,9 +138,9 @@ def show_precision(found: PlannedPrecision) -> None:
     if short.size:
         normal = "normal in the logarithm" if found.measure == "Weber fraction" else "normal"
         console.print(
-            f"With {short.max()} people or fewer the interval holds the value less often than the "
-            f"95 % that it promises: it takes people's values to be {normal}, which those of these "
-            "people are not.",
+            f"With {', '.join(map(str, short))} people the interval holds the value less often "
+            f"than the 95 % that it promises: it takes people's values to be {normal}, which those "
+            "of these people are not.",
             highlight=False,
         )
     one = found.sequential

@@ -125,7 +125,8 @@ def evaluate(requirements: Requirements, design: Design, level: Level) -> Evalua
                 found, numbers = None, screened(requirements, display, design)
             else:
                 found = predict(display)
-                numbers = _judged(requirements, display, found, design, level)
+                numbers = _judged(requirements, display, found, design)
+                numbers |= numbers_of_solved(requirements, display, found)
     except SqueezefilmError as error:
         return Evaluated(design, level, {}, reason=str(error), seconds=_since(began))
     except Exception as error:
@@ -155,18 +156,14 @@ def screened(requirements: Requirements, display: Display, design: Design) -> di
     """The criteria of a display by the theory by which its design is screened."""
     with across_frequencies():
         found = predict(display, theory=screening_theory(requirements, design))
-        return _judged(requirements, display, found, design, "screened")
+        return _judged(requirements, display, found, design)
 
 
 def _judged(
-    requirements: Requirements, display: Display, found: Prediction, design: Design, level: Level
+    requirements: Requirements, display: Display, found: Prediction, design: Design
 ) -> dict[str, float]:
-    """The criteria of a prediction, and those that only a solved plate has."""
     cost = requirements.shapes[design.shape].cost_class(design.settings)
-    numbers = numbers_of_prediction(requirements, display, found, cost)
-    if level == "solved":
-        numbers |= numbers_of_solved(requirements, display, found)
-    return numbers
+    return numbers_of_prediction(requirements, display, found, cost)
 
 
 def _since(began: float) -> si.Second:

@@ -208,7 +208,7 @@ def numbers_of_solved(
         share = None if area is None else area.share_below(wanted)
         if share is not None:
             found["area"] = share
-    if limits.most_sound_level is not None or "sound_level" in requirements.objectives:
+    if limits.most_sound_level is not None:
         with contextlib.suppress(SqueezefilmError):
             heard = ear_exposure(display, p)
             if heard is not None:

@@ -30,7 +30,6 @@ Objective = Literal[
     "temperature_rise",
     "mass",
     "thickness",
-    "sound_level",
 ]
 
 _SHARE = (si.Above(0.0), si.AtMost(1.0))
@@ -261,7 +260,7 @@ class Requirements:
             "the contact's constants (asperities and plateaus), which decide the friction",
             "tolerances as the file has them, normal and independent",
             *(
-                f"the yield asks nothing of {one}, which only a solved plate has"
+                f"the yield asks nothing of {one}: only a solved plate can be asked"
                 for one in self.limits.unasked_of_made
             ),
         )

@@ -87,7 +87,8 @@ def search_designs(asked: SearchRequest) -> DesignSearch:
 
     Args:
         requirements: what is asked of a display; a preset's name, or a TOML file.
-        screened: designs that are looked at by the screening theory.
+        screened: designs that are looked at by the screening theory before any is solved; beside
+            the front some hundreds more are, between one batch of solved plates and the next.
         solved: designs that are solved in three dimensions, at most.
         seed: of everything that is drawn.
         jobs: processes; more than one in a script needs ``if __name__ == "__main__":``.
@@ -206,22 +207,27 @@ class SearchRun:
         met to the point."""
         front, solved = self._front(), self._seen["solved"]
         if not front:
-            return  # what is expected without a correction lies beyond the limits
+            return  # what is expected before any plate kept the limits lies beyond them
         rows = objectives_of(self.requirements, front)
-        # Always from the ends of the front, which decide what it commands.
+        # Always from the ends of the front, which decide what it dominates.
         ends = [front[k].design for k in np.argmin(rows, axis=0)]
+        beside = []
+        for one in ends:
+            space = self.requirements.spaces[one.shape]
+            others = space.beside(space.places(one.settings))
+            beside += [design_of(one.shape, space.at(places)) for places in others]
         draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
         for _ in range(_GENERATIONS):
+            self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
             known = [front[k].design for k in draw.permutation(len(front))[:_FROM]]
             expected = worth_solving(self.requirements, self._seen, self._corrections, _FROM)
             beside = []
-            for number, one in enumerate((*ends, *known, *expected)):
+            for one in (*ends, *known, *expected):
                 space = self.requirements.spaces[one.shape]
                 here = space.places(one.settings)
                 others = [space.moved(here, draw) for _ in range(_NEAR)]
-                others += space.beside(here) if number < len(ends) else ()
                 beside += [design_of(one.shape, space.at(places)) for places in others]
-            self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
+        self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
 
     def _learn(self) -> None:
         solved = list(self._seen["solved"].values())

@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 
+# By so many grains a neighbour differs from a design, in one value.
 _GRAINS_BESIDE = (-10, -3, -1, 1, 3, 10)
 # How far a neighbour moves along a range, and how often it takes another step or name.
 _STEP, _JUMP, _NEAR_BY = 0.06, 0.12, 0.2

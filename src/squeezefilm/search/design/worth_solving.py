@@ -51,7 +51,7 @@ def worth_solving(
     at = np.flatnonzero(might)
     first = at[:0]
     # Of a screening that no solved plate has corrected, the most is expected of what cannot be.
-    if all(one is not None for one in corrections):
+    if all(corrections[pool[k].design.shape] is not None for k in at):
         first = at[_adding_most(rows[at], known, worst_corner(requirements, rows[at]), count)]
     left, room = np.setdiff1d(at, first), count - first.size
     taken = left[layers_of(rows[left], room)]
@@ -80,10 +80,9 @@ def _adding_most(
 ) -> si.IntArray:
     """At most so many rows that dominate most of what known rows do not, one after the other, by
     points spread evenly over the box from the best of all to the worst corner."""
-    there = [one for one in (rows, known) if one.size]
     if not rows.size:
         return np.array([], dtype=np.intp)
-    best = np.min(np.concatenate(there), axis=0)
+    best = np.min(np.concatenate((rows, known)), axis=0)
     shares = qmc.Sobol(worst.size, seed=1).random(_POINTS)
     points = best + shares * np.maximum(worst - best, 0.0)
     free = np.ones(_POINTS, dtype=bool)

@@ -20,14 +20,14 @@ _CHOICES = 40
 # Cells of Weber fractions and criteria: a choice takes a millisecond, and finer ones choose alike.
 _WEBER_FRACTIONS, _CRITERIA, _LARGEST_CRITERION = 41, 12, 4.0
 _SPREAD_EVERY = 4
-# As wide as the analysis has them: otherwise plain differences are never asked, and who lapses is
+# Up to a third of the answers: with fewer, plain differences are never asked, and who lapses is
 # not told from who is sharp.
 _LAPSES = np.array([0.01, 0.04, 0.1, 0.2, 0.35])
 
 
 class SameDifferentSeries:
     """The differences of a same-different series: those whose answers tell the most of the Weber
-    fraction, by the differencing model, and every fourth one of all in turn.
+    fraction, by the differencing model; every fourth goes through all differences in turn.
 
     What tells the most lies near one difference, from which nobody can tell a sharp person who
     lapses often from one who is less sharp; the fourths show the whole function. Half of the
@@ -51,7 +51,7 @@ class SameDifferentSeries:
         return self._placement.estimate("Weber fraction")
 
     def next_stimulus(self) -> si.Dimensionless:
-        """The next difference that is none of 0, in parts of the reference."""
+        """The next difference above 0, in parts of the reference."""
         asked = sum(number > 0 for number, _ in self._placement.given)
         if asked % _SPREAD_EVERY == _SPREAD_EVERY - 1:
             # Steps of 17 come to each of the forty once before any comes again.

@@ -290,6 +290,8 @@ class StudyRun:
             return trial, tuple(gratings[name] for name in trial.stimuli), None
         if not trial.adaptive:
             return trial, tuple(design.stimulus(name) for name in trial.stimuli), None
+        if trial.answer == "same":
+            return trial, (design.stimulus(design.reference),) * 2, 0.0
         series = next(one for one in design.adaptive if one.name == trial.adaptive)
         answers = self._store.rows(
             "SELECT r.intensity, r.correct FROM response r JOIN trial t ON t.uuid = r.trial WHERE "
@@ -297,8 +299,6 @@ class StudyRun:
             "ORDER BY t.number",
             [self.participant, series.name, trial.display],
         )
-        if trial.answer == "same":
-            return trial, (design.stimulus(design.reference),) * 2, 0.0
         given = ((a["intensity"], bool(a["correct"])) for a in answers)
         intensity = adaptive_method(series, given, design.task).next_stimulus()
         pair = (design.stimulus(design.reference), design.comparison(series, intensity))

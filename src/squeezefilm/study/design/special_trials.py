@@ -43,7 +43,7 @@ class AdaptiveCondition:
         lowest, highest: differences allowed, likewise (1).
         step: of a staircase, in parts of the reference's value; halved at the first reversals (1).
         down: correct answers in a row that make a staircase harder.
-        count: trials; of same-different every second presents the reference twice.
+        count: trials; of same-different half present the reference twice, in random order.
     """
 
     name: str

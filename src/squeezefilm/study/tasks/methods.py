@@ -72,6 +72,8 @@ _JUDGED = {
     "ridge_share": "share of ridges",
     "orientation": "orientation",
 }
+_PSI = "Kontsevich and Tyler 1999, 10.1016/S0042-6989(98)00285-5"
+_QUEST_PLUS = "Watson 2017, 10.1167/17.3.10"
 
 
 def methods_text(answers: Answers, display: int) -> str:
@@ -147,10 +149,9 @@ def _adaptive(design: StudyDesign) -> list[str]:
                 f"(Levitt 1971, 10.1121/1.1912375), from {100 * one.start:g} %"
             )
         else:
-            by = "Kontsevich and Tyler 1999, 10.1016/S0042-6989(98)00285-5"
-            by = "Watson 2017, 10.1167/17.3.10" if alike else by
+            by = _QUEST_PLUS if alike else _PSI
             how = f"a Bayesian choice of the most informative difference ({by})"
-            how += ", every fourth of all in turn" if alike else ""
+            how += "; every fourth went through all differences in turn" if alike else ""
         said.append(
             f"The series '{one.name}' of {one.count} trials chose the comparison by {how}, within "
             f"{100 * one.lowest:g} and {100 * one.highest:g} % of the reference"

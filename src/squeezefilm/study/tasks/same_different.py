@@ -24,7 +24,9 @@ from squeezefilm.study.tasks.population import LAPSES, lapse_weights
 from squeezefilm.study.tasks.two_interval import (
     PeopleOnGrid,
     differences,
+    in_eighths,
     mean_sensitivity,
+    part_finding,
     spread_edges,
     t_interval,
 )
@@ -108,19 +110,13 @@ def _eighths(
     """Pairs that were the same, and those that a series chose in eighths by their difference."""
     order = np.argsort(apart, kind="stable")
     same = int(np.count_nonzero(apart == 0.0))
-    parts = {"the same": order[:same]}
-    for number, part in enumerate(np.array_split(order[same:], 8)):
-        parts[f"eighth {number + 1} of the differences"] = part
-    found = []
-    for name, part in parts.items():
-        if not part.size:
-            continue
-        hits = int((main.choice[part] == 1).sum())
-        bounds = proportion_interval(hits, part.size, level)
-        share = Estimate(hits / part.size, bounds.low, bounds.high, level, "Wilson, over trials")
-        value, people = here * math.exp(float(apart[part].mean())), main.participant[part]
-        found.append(ConditionFinding(name, value, part.size, np.unique(people).size, share))
-    return tuple(found)
+    parts = {"the same": order[:same]} if same else {}
+    parts |= in_eighths(order[same:])
+    values = {name: here * math.exp(float(apart[part].mean())) for name, part in parts.items()}
+    return tuple(
+        part_finding(main, name, part, values[name], main.choice[part] == 1, level)
+        for name, part in parts.items()
+    )
 
 
 def _mean_d_prime(

@@ -186,19 +186,34 @@ def two_interval_conditions(
 def adaptive_conditions(main: Answers, level: si.Dimensionless) -> tuple[ConditionFinding, ...]:
     """The trials of adaptive series in eighths by their difference: how often they were right, and
     the mean difference of each, in parts of the reference."""
-    order = np.argsort(main.intensity, kind="stable")
-    found = []
-    for number, part in enumerate(np.array_split(order, 8)):
-        if not part.size:
-            continue
-        hits = int(main.correct[part].sum())
-        bounds = proportion_interval(hits, part.size, level)
-        share = Estimate(hits / part.size, bounds.low, bounds.high, level, "Wilson, over trials")
-        people = int(np.unique(main.participant[part]).size)
-        value = float(main.intensity[part].mean())
-        name = f"eighth {number + 1} of the differences"
-        found.append(ConditionFinding(name, value, part.size, people, share))
-    return tuple(found)
+    parts = in_eighths(np.argsort(main.intensity, kind="stable"))
+    return tuple(
+        part_finding(
+            main, name, part, float(main.intensity[part].mean()), main.correct[part], level
+        )
+        for name, part in parts.items()
+    )
+
+
+def in_eighths(order: si.IntArray) -> dict[str, si.IntArray]:
+    """Trials in the order of their difference, in eighths by name; none is empty."""
+    parts = np.array_split(order, 8)
+    return {f"eighth {k + 1} of the differences": one for k, one in enumerate(parts) if one.size}
+
+
+def part_finding(
+    main: Answers,
+    name: str,
+    part: si.IntArray,
+    value: float,
+    hits: NDArray[np.bool_],
+    level: si.Dimensionless,
+) -> ConditionFinding:
+    """What was found of a part of the trials, of which some are hits."""
+    bounds = proportion_interval(int(hits.sum()), part.size, level)
+    share = Estimate(float(hits.mean()), bounds.low, bounds.high, level, "Wilson, over trials")
+    people = int(np.unique(main.participant[part]).size)
+    return ConditionFinding(name, value, part.size, people, share)
 
 
 def _mean_d_prime(

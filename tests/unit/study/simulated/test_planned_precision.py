@@ -54,7 +54,7 @@ def test_intervals_that_hold_too_seldom_are_named(capsys: pytest.CaptureFixture[
     found = planned_precision(NUMBERS, EXACT, 0.15, participants=(2, 4), studies=40, people=40)
     show_precision(dataclasses.replace(found, held=np.array([0.7, 0.95])))
     said = " ".join(capsys.readouterr().out.split())
-    assert "With 2 people or fewer the interval holds the value less often than the 95 %" in said
+    assert "With 2 people the interval holds the value less often than the 95 %" in said
     show_precision(dataclasses.replace(found, held=np.array([0.9, 0.95])))
     assert "less often" not in capsys.readouterr().out
 
