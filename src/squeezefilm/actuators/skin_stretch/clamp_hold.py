@@ -43,15 +43,20 @@ class ClampHold:
     tilted_moment: Annotated[float, si.Unit("m3")]
 
     @classmethod
+    @si.checked_numbers
     def of(
         cls,
         along: Annotated[float, si.Unit("N*m"), si.Above(0.0)],
         across: Annotated[float, si.Unit("N*m")],
-        twist: Annotated[float, si.Unit("N*m"), si.AtLeast(0.0)],
+        twist: Annotated[float, si.Unit("N*m"), si.Above(0.0)],
         width: Annotated[si.Metre, si.Above(0.0)],
     ) -> ClampHold:
         """Of a strip's D11, D12 and D66 per width (N·m) and its width (m). Source: derived above;
-        checked against the plate room's solids."""
+        checked against the plate room's solids.
+
+        Raises `InputError` unless |D12| is below D11, as of every material that is stable.
+        """
+        si.require("across / along", across / along, above=-1.0, below=1.0)
         # In half widths, over which the mean of y^(2n) is 1/(2n + 1).
         powers = [Polynomial([0.0] * 2 * n + [1.0]) - 1 / (2 * n + 1) for n in range(1, _TERMS + 1)]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
 
 
 def zero_crossings(position: si.FloatArray, profile: si.FloatArray) -> si.FloatArray:
@@ -15,11 +16,19 @@ def zero_crossings(position: si.FloatArray, profile: si.FloatArray) -> si.FloatA
     return np.asarray(x[at] - w[at] * (x[at + 1] - x[at]) / (w[at + 1] - w[at]))
 
 
+@si.checked_numbers
 def line_distance(nodes: si.MetreArray) -> si.Metre:
-    """The mean distance (m) of nodal lines at rising places (m); NaN with fewer than two.
+    """The mean distance (m) of nodal lines at rising places (m).
 
     Of six or more, the outermost at each end is left out: the free edge's near field moves it.
+    Raises `InputError` with fewer than two.
     """
+    if nodes.ndim != 1 or nodes.size < 2:
+        raise InputError(
+            f"a half wavelength lies between two nodal lines or more, given are {nodes.size}; "
+            "choose a mode with more",
+            quantity="nodal_lines",
+        )
     if nodes.size >= 6:
         nodes = nodes[1:-1]
-    return float(np.mean(np.diff(nodes))) if nodes.size > 1 else float("nan")
+    return float(np.mean(np.diff(nodes)))

@@ -189,7 +189,7 @@ def adaptive_conditions(main: Answers, level: si.Dimensionless) -> tuple[Conditi
     parts = in_eighths(np.argsort(main.intensity, kind="stable"))
     return tuple(
         part_finding(
-            main, name, part, float(main.intensity[part].mean()), main.correct[part], level
+            main, name, part, float(main.intensity[part].mean()), main.correct[part] == 1, level
         )
         for name, part in parts.items()
     )
