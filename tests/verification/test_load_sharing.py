@@ -86,6 +86,17 @@ def test_the_mean_over_the_period_is_not_the_pressure_at_the_mean_gap(table: Fil
 # --- the film table -----------------------------------------------------------------------------
 
 
+def over_pressure_solved(table: FilmTable, u: float, eps: float, tolerance: float) -> float:
+    """⟨p_gas⟩/p0 − 1 of the table's film at a mean gap and an excursion, solved by itself."""
+    return solve_uniform(
+        (table.length / u) ** 2,
+        eps,
+        knudsen_number=table.gas.mean_free_path / u,
+        slip=table.slip,
+        tolerance=tolerance,
+    ).over_pressure
+
+
 @pytest.mark.parametrize(("ambient", "slip"), [(1e5, "first"), (2e3, "fukui-kaneko")])
 def test_the_table_is_within_its_bound_of_films_solved_elsewhere(ambient: float, slip: str) -> None:
     gas = GAS.at_pressure(ambient)
@@ -94,13 +105,7 @@ def test_the_table_is_within_its_bound_of_films_solved_elsewhere(ambient: float,
     for _ in range(40):
         u, eps = rng.uniform(1e-6, 8e-6), rng.uniform(0.02, DEEPEST_EXCURSION - 0.005)
         found = float(table.over_pressure(u, eps * u))
-        solved = solve_uniform(
-            (table.length / u) ** 2,
-            eps,
-            knudsen_number=gas.mean_free_path / u,
-            slip=slip,
-            tolerance=1e-5,
-        ).over_pressure
+        solved = over_pressure_solved(table, u, eps, 1e-5)
         assert found == pytest.approx(ambient * solved, rel=table.relative_error)
     assert 0 < table.relative_error <= table.tolerance
 
@@ -114,13 +119,7 @@ def test_tables_across_frequencies_are_within_their_bound(slip: str) -> None:
         eps = rng.uniform(0.02, DEEPEST_EXCURSION - 0.005)
         table = FilmTable(frequency, 250e-6, GAS, slip, across=True)
         found = float(table.over_pressure(u, eps * u))
-        solved = solve_uniform(
-            (table.length / u) ** 2,
-            eps,
-            knudsen_number=GAS.mean_free_path / u,
-            slip=slip,
-            tolerance=1e-5,
-        ).over_pressure
+        solved = over_pressure_solved(table, u, eps, 1e-5)
         assert found == pytest.approx(1e5 * solved, rel=table.relative_error)
         assert 0 < table.relative_error <= table.tolerance
 
@@ -156,13 +155,7 @@ def test_the_deepest_panels_are_within_their_bound(slip: str) -> None:
     for _ in range(8):
         u, eps = rng.uniform(2e-6, 8e-6), rng.uniform(0.985, DEEPEST_EXCURSION)
         found = float(table.over_pressure(u, eps * u))
-        solved = solve_uniform(
-            (table.length / u) ** 2,
-            eps,
-            knudsen_number=GAS.mean_free_path / u,
-            slip=slip,
-            tolerance=1e-4,
-        ).over_pressure
+        solved = over_pressure_solved(table, u, eps, 1e-4)
         assert found == pytest.approx(1e5 * solved, rel=table.relative_error + 1e-4)
     assert 0 < table.relative_error <= table.tolerance
     with pytest.raises(InputError, match="amplitude / mean_gap"):

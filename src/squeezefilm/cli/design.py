@@ -38,8 +38,7 @@ class DesignOptions:
         ),
     ] = None
     screened: Annotated[
-        int,
-        typer.Option(help="Designs that are screened before any is solved."),
+        int, typer.Option(help="Designs that are screened before any is solved.")
     ] = 2000
     solved: Annotated[
         int, typer.Option(help="Plates that are solved in three dimensions, at most.")

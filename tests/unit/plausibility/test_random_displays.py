@@ -21,8 +21,7 @@ from squeezefilm.plausibility.checks import implausibilities
 # implausible by itself. All others differ by less than ten.
 DIFFER = {
     "quality_factor": 1e3,
-    # A stator's 140 V and a film's 500 mV are both usual.
-    "voltage": 3e2,
+    "voltage": 1e2,
     "roughness": 1e4,
     "asperity_roughness": 1e4,
     "skin_roughness": 1e3,

@@ -32,6 +32,8 @@ from squeezefilm.kept_arrays import KeptArrays
 from squeezefilm.materials import Gas
 
 if TYPE_CHECKING:
+    from scipy.interpolate import KroghInterpolator
+
     from squeezefilm.contact.sharing.kernel import CompiledFilms
 
 DEEPEST_EXCURSION: si.Dimensionless = 0.993
@@ -255,33 +257,23 @@ def _deviation(
 def _interpolated(slip_length: float, which: _Panel) -> si.FloatArray:
     """As `_kept`, interpolated over the span in which Λ/ℓ lies."""
     span, place = divmod(float(np.log(slip_length)) / _SPAN, 1.0)
-    panels, error = _span(int(span), which)
-    return np.append(_weights(2.0 * place - 1.0) @ panels, error)
+    panel, error = _span(int(span), which)
+    return np.append(panel(place), error)
 
 
 @lru_cache(maxsize=2048)
-def _span(number: int, which: _Panel) -> tuple[si.FloatArray, float]:
-    """A panel at the nodes of a span, a row each, and the bound on the error between them."""
-    lengths = np.exp(_SPAN * (number + 0.5 * (_span_nodes() + 1.0)))
-    rows = np.array([_kept(float(one), which) for one in lengths])
+def _span(number: int, which: _Panel) -> tuple[KroghInterpolator, float]:
+    """A panel's coefficients over a span, from 0 to 1, and the bound on the error within."""
+    from scipy.interpolate import KroghInterpolator
+
+    places = 0.5 * (np.cos(np.pi * np.arange(_SPAN_NODES) / (_SPAN_NODES - 1)) + 1.0)
+    rows = np.array([_kept(float(np.exp(_SPAN * (number + one))), which) for one in places])
+    panel = KroghInterpolator(places, rows[:, :-1])
     points = which.between()
     # Midway between nodes the interpolation errs most.
     values, films_error = which.films(float(np.exp(_SPAN * (number + 0.5))), *points)
-    middle = (_weights(0.0) @ rows[:, :-1]).reshape(3, *which.nodes)
-    deviation = _deviation(middle[0], points, values[0])
-    return rows[:, :-1], max(2.0 * deviation + films_error, *rows[:, -1].tolist())
-
-
-def _span_nodes() -> si.FloatArray:
-    return np.cos(np.pi * np.arange(_SPAN_NODES) / (_SPAN_NODES - 1))
-
-
-def _weights(place: float) -> si.FloatArray:
-    """The weights of the nodes' values at a place between −1 and 1 (Lagrange)."""
-    nodes = _span_nodes()
-    off = ~np.eye(len(nodes), dtype=bool)
-    above, below = place - nodes, nodes[:, None] - nodes
-    return np.array([np.prod(above[row] / below[k][row]) for k, row in enumerate(off)])
+    deviation = _deviation(panel(0.5).reshape(3, *which.nodes)[0], points, values[0])
+    return panel, max(2.0 * deviation + films_error, *rows[:, -1].tolist())
 
 
 def _coefficients(values: si.FloatArray) -> si.FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -33,6 +33,7 @@ from squeezefilm.search.design.front import front_of
 from squeezefilm.search.design.reasons import empty_corners, limit_reasons
 from squeezefilm.search.design.reference import reference_of
 from squeezefilm.search.design.requirements import NamedRequirements, Requirements
+from squeezefilm.search.design.space import Space
 from squeezefilm.search.design.store import DesignStore
 from squeezefilm.search.design.tolerance import Made, made_of
 from squeezefilm.search.design.worth_solving import Seen, objectives_of, worth_solving
@@ -211,23 +212,30 @@ class SearchRun:
         rows = objectives_of(self.requirements, front)
         # Always from the ends of the front, which decide what it dominates.
         ends = [front[k].design for k in np.argmin(rows, axis=0)]
-        beside = []
-        for one in ends:
-            space = self.requirements.spaces[one.shape]
-            others = space.beside(space.places(one.settings))
-            beside += [design_of(one.shape, space.at(places)) for places in others]
+        self._screen_near(pool, ends, Space.beside)
         draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
         for _ in range(_GENERATIONS):
-            self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
             known = [front[k].design for k in draw.permutation(len(front))[:_FROM]]
             expected = worth_solving(self.requirements, self._seen, self._corrections, _FROM)
-            beside = []
-            for one in (*ends, *known, *expected):
-                space = self.requirements.spaces[one.shape]
-                here = space.places(one.settings)
-                others = [space.moved(here, draw) for _ in range(_NEAR)]
-                beside += [design_of(one.shape, space.at(places)) for places in others]
-        self._evaluated(pool, list(dict.fromkeys(beside)), "screened")
+            self._screen_near(
+                pool,
+                (*ends, *known, *expected),
+                lambda space, here: [space.moved(here, draw) for _ in range(_NEAR)],
+            )
+
+    def _screen_near(
+        self,
+        pool: Workers,
+        designs: Iterable[Design],
+        near: Callable[[Space, Mapping[str, float]], Iterable[Mapping[str, float]]],
+    ) -> None:
+        """Screen what lies near designs, by places that their space gives."""
+        found = []
+        for one in designs:
+            space = self.requirements.spaces[one.shape]
+            places = near(space, space.places(one.settings))
+            found += [design_of(one.shape, space.at(there)) for there in places]
+        self._evaluated(pool, found, "screened")
 
     def _learn(self) -> None:
         solved = list(self._seen["solved"].values())

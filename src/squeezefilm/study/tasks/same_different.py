@@ -16,17 +16,16 @@ from scipy.special import ndtr
 
 from squeezefilm import quantities as si
 from squeezefilm.perception.senses import D_PRIME_OF_75
-from squeezefilm.study.identification.proportions import proportion_interval
 from squeezefilm.study.psychometric.discrimination import differencing_sensitivity
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, Estimate
 from squeezefilm.study.tasks.population import LAPSES, lapse_weights
 from squeezefilm.study.tasks.two_interval import (
     PeopleOnGrid,
+    condition_finding,
     differences,
     in_eighths,
     mean_sensitivity,
-    part_finding,
     spread_edges,
     t_interval,
 )
@@ -81,8 +80,6 @@ def same_different_conditions(
     found = []
     for one in np.unique(apart):
         mine = apart == one
-        hits, trials = int((main.choice[mine] == 1).sum()), int(mine.sum())
-        bounds = proportion_interval(hits, trials, level)
         others = {
             main.surfaces[k].name
             for pair in (main.first[mine], main.second[mine])
@@ -91,16 +88,8 @@ def same_different_conditions(
         }
         name = "the same" if one == 0.0 else " / ".join(sorted(others))
         d = None if one == 0.0 else _mean_d_prime(main, apart, float(one), level, seed)
-        found.append(
-            ConditionFinding(
-                name,
-                here * math.exp(float(one)),
-                trials,
-                int(np.unique(main.participant[mine]).size),
-                Estimate(hits / trials, bounds.low, bounds.high, level, "Wilson, over trials"),
-                d,
-            )
-        )
+        value = here * math.exp(float(one))
+        found.append(condition_finding(main, name, value, mine, main.choice == 1, level, d))
     return tuple(found)
 
 
@@ -114,7 +103,7 @@ def _eighths(
     parts |= in_eighths(order[same:])
     values = {name: here * math.exp(float(apart[part].mean())) for name, part in parts.items()}
     return tuple(
-        part_finding(main, name, part, values[name], main.choice[part] == 1, level)
+        condition_finding(main, name, values[name], part, main.choice == 1, level)
         for name, part in parts.items()
     )
 

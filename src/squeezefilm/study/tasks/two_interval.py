@@ -167,30 +167,18 @@ def two_interval_conditions(
     found = []
     for one in sorted(np.unique(surface), key=lambda s: main.values[s]):
         here = surface == one
-        hits, trials = int(more[here].sum()), int(here.sum())
-        bounds = proportion_interval(hits, trials, level)
         d = _mean_d_prime(main, here, level, seed)
-        found.append(
-            ConditionFinding(
-                main.surfaces[one].name,
-                float(main.values[one]),
-                trials,
-                int(np.unique(main.participant[here]).size),
-                Estimate(hits / trials, bounds.low, bounds.high, level, "Wilson, over trials"),
-                d,
-            )
-        )
+        name, value = main.surfaces[one].name, float(main.values[one])
+        found.append(condition_finding(main, name, value, here, more, level, d))
     return tuple(found)
 
 
 def adaptive_conditions(main: Answers, level: si.Dimensionless) -> tuple[ConditionFinding, ...]:
     """The trials of adaptive series in eighths by their difference: how often they were right, and
     the mean difference of each, in parts of the reference."""
-    parts = in_eighths(np.argsort(main.intensity, kind="stable"))
+    parts, right = in_eighths(np.argsort(main.intensity, kind="stable")), main.correct == 1
     return tuple(
-        part_finding(
-            main, name, part, float(main.intensity[part].mean()), main.correct[part] == 1, level
-        )
+        condition_finding(main, name, float(main.intensity[part].mean()), part, right, level)
         for name, part in parts.items()
     )
 
@@ -201,19 +189,22 @@ def in_eighths(order: si.IntArray) -> dict[str, si.IntArray]:
     return {f"eighth {k + 1} of the differences": one for k, one in enumerate(parts) if one.size}
 
 
-def part_finding(
+def condition_finding(
     main: Answers,
     name: str,
-    part: si.IntArray,
     value: float,
-    hits: NDArray[np.bool_],
+    part: NDArray[np.bool_] | si.IntArray,
+    hit: NDArray[np.bool_],
     level: si.Dimensionless,
+    d_prime: Estimate | None = None,
 ) -> ConditionFinding:
-    """What was found of a part of the trials, of which some are hits."""
-    bounds = proportion_interval(int(hits.sum()), part.size, level)
-    share = Estimate(float(hits.mean()), bounds.low, bounds.high, level, "Wilson, over trials")
+    """What was answered in a part of the trials (a mask or indices), given which of all are hits:
+    the share of hits with its interval over trials."""
+    hits, trials = int(hit[part].sum()), int(hit[part].size)
+    bounds = proportion_interval(hits, trials, level)
+    share = Estimate(hits / trials, bounds.low, bounds.high, level, "Wilson, over trials")
     people = int(np.unique(main.participant[part]).size)
-    return ConditionFinding(name, value, part.size, people, share)
+    return ConditionFinding(name, value, trials, people, share, d_prime)
 
 
 def _mean_d_prime(

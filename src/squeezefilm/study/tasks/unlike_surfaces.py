@@ -13,11 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
-from squeezefilm.study.identification.proportions import proportion_interval
 from squeezefilm.study.psychometric.discrimination import differencing_sensitivity, sensitivity
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, Estimate, PersonEstimate
-from squeezefilm.study.tasks.two_interval import mean_sensitivity, t_interval
+from squeezefilm.study.tasks.two_interval import (
+    condition_finding,
+    mean_sensitivity,
+    t_interval,
+)
 
 MEASURE = "sensitivity d′"
 _MODEL = "differencing"
@@ -38,21 +41,12 @@ def unlike_conditions(
     found = []
     for one in (-1, *np.unique(other[~alike]).tolist()):
         mine = alike if one < 0 else ~alike & (other == one)
-        hits, trials = int((main.choice[mine] == 1).sum()), int(mine.sum())
-        if not trials:
+        if not mine.any():
             continue
-        bounds = proportion_interval(hits, trials, level)
+        name = "the same" if one < 0 else main.surfaces[one].name
         counts = [] if one < 0 else _counts(main, mine, alike)
-        found.append(
-            ConditionFinding(
-                "the same" if one < 0 else main.surfaces[one].name,
-                math.nan,
-                trials,
-                int(np.unique(main.participant[mine]).size),
-                Estimate(hits / trials, bounds.low, bounds.high, level, "Wilson, over trials"),
-                mean_sensitivity(counts, _MODEL, differencing_sensitivity, level, seed),
-            )
-        )
+        d = mean_sensitivity(counts, _MODEL, differencing_sensitivity, level, seed)
+        found.append(condition_finding(main, name, math.nan, mine, main.choice == 1, level, d))
     return tuple(found)
 
 

@@ -106,7 +106,7 @@ def test_company_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     # A mode that the drive hardly moves.
     idle = mode("(8,0)", beside=Neighbour("(8,1)", 31e3, 4.0, 2.9e7)).company
     assert idle is not None
-    assert "moves more at resonance than this mode" in idle
+    assert "away and moves more at resonance than this mode. Where two modes cross" in idle
     near(monkeypatch, row("(8,0)", 30e3, 1e-7), row("(8,0)", 31e3, 2e-8))
     (doubt,) = mode_doubts(PAPER, mode("(8,0)"))
     assert doubt.kind == "ambiguous"
