@@ -167,7 +167,7 @@ def test_twenty_runs_of_each_task_choose_as_questplus_does(task: str) -> None:
             )
 
     first = model.first_weights()
-    choices, same, worst = 0, 0, 0.0
+    choices, same, tied, worst = 0, 0, 0, 0.0
     for seed in SETS:
         random = np.random.default_rng([8, seed])
         truth = random.choice(first.size, p=first)
@@ -185,16 +185,22 @@ def test_twenty_runs_of_each_task_choose_as_questplus_does(task: str) -> None:
             mine, other = ours.next_stimulus(), int(theirs.next_stim["stimulus"])
             choices += 1
             same += mine == other
-            if mine != other:
-                told = ours.expected_information()
-                assert abs(told[mine] - told[other]) < 1e-9
+            # Presented in either order, or as far apart elsewhere, a pair tells as much: which of
+            # them a processor's rounding puts first says nothing.
+            told = ours.expected_information()
+            assert told[other] > told.max() - 1e-9
+            tied += int(np.sum(told > told.max() - 1e-9))
             answer = random.choice(len(outcomes), p=model.chances[:, truth, mine])
             ours.update(mine, int(answer))
             theirs.update(stim={"stimulus": mine}, outcome={"response": outcomes[answer]})
         posterior = theirs.posterior.transpose(*domain).values
         worst = max(worst, float(np.abs(posterior - ours.probability).max()))
-    print(f"questplus, {task}: {same} of {choices} choices alike, posteriors within {worst:.1e}")
-    assert same >= 0.5 * choices
+    print(
+        f"questplus, {task}: {same} of {choices} choices alike, all others ties; on average "
+        f"{tied / choices:.1f} of {len(stimuli)} tie; posteriors within {worst:.1e}"
+    )
+    # Information that is the same everywhere would agree with any choice.
+    assert tied < 0.5 * choices * len(stimuli)
     assert worst < 1e-12
 
 
