@@ -59,16 +59,12 @@ coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which t
 	$(BIN)/coverage report --skip-covered --sort=-cover; \
 	exit $$failed
 
-# The quick tests, with the branches that they take, then all others.
+# What neither `make test` nor `make slow` runs, and the properties again, with other examples.
 nightly: export SQUEEZEFILM_EXPLORE = 1
 nightly: export PYTEST_ADDOPTS += --hypothesis-seed=$(SEED) --durations=25
-nightly: $(VENV)/test.stamp  ## run every test but a campaign's, and explore properties (SEED=N)
+nightly: $(VENV)/test.stamp  ## run what takes minutes or is repeated by the hundred, and explore properties (SEED=N)
 	@echo "nightly: seed $(SEED)"
-	@failed=0; \
-	$(MAKE) --no-print-directory coverage || failed=1; \
-	$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime and (slow or nightly)" || failed=1; \
-	$(PYTEST) -m "not campaign and realtime" $(REALTIME) || failed=1; \
-	exit $$failed
+	$(call run_tests,and (nightly or hypothesis))
 
 campaign: coverage  ## what takes hours and goes on where it stopped: statistics, mutants
 	@nice $(PYTEST) -n $(WORKERS) -p tests.campaign --answers campaigns/statistics.jsonl -m campaign
