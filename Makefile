@@ -49,6 +49,7 @@ QUICK := and not slow and not nightly
 test: $(VENV)/test.stamp  ## run the quick tests, in some five minutes
 	$(call run_tests,$(QUICK))
 
+slow: export PYTEST_ADDOPTS += --durations=40
 slow: $(VENV)/test.stamp  ## run the tests that take seconds each, as CI does after the quick ones
 	$(call run_tests,and slow and not nightly)
 
