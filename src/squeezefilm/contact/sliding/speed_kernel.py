@@ -329,6 +329,9 @@ def rows_march(
         speed[i + 1] = v
         stuck[i + 1] = sign == 0.0
         bone_force[i + 1] = k * (bone[i + 1] - x) + c * (speed_out[i] - v)
+        if v == 0.0 and sign != 0.0:
+            # About to slip: the law itself, which a line reaches but for rounding.
+            force_end = at_rest * at_place(x, start, spacing, profile)
         friction[i + 1] = bone_force[i + 1] if sign == 0.0 else sign * force_end
         work[0, i + 1] = work[0, i] + done_bone
         work[1, i + 1] = work[1, i] + done_lost

@@ -172,8 +172,9 @@ class Played:
 
 
 def _rows(arrays: Iterable[si.FloatArray]) -> tuple[si.FloatArray, ...]:
-    """Arrays as the compiled loops take them."""
-    return tuple(np.ascontiguousarray(one).ravel() for one in arrays)
+    """Arrays as the compiled loops take them; copies, since NumPy warns when compiled code looks at
+    the views that broadcasting makes."""
+    return tuple(one.copy().ravel() for one in arrays)
 
 
 def _series(*arguments: Any) -> tuple[si.FloatArray, ...]:

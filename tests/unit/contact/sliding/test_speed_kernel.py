@@ -7,7 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.contact.sliding.dry_friction import DryFriction, SpeedFriction
 from squeezefilm.contact.sliding.kernel import Drive, Ground, Track
+from squeezefilm.contact.sliding.march import slide
 from squeezefilm.contact.sliding.skin_motion import Skin
 from squeezefilm.contact.sliding.speed_kernel import (
     Rows,
@@ -72,3 +75,15 @@ def test_too_many_slips_in_one_sample_are_given_up() -> None:
     # It turns round twice a swing.
     assert march(90.0) == 3
     assert march(110.0) == 0
+
+
+def test_a_skin_at_rest_without_friction_there_feels_exactly_none() -> None:
+    """The line between two samples ends beside the law by rounding; what stands still shows it."""
+    rng = np.random.default_rng(0)
+    rows = rng.random((200, 2))
+    rows[::2, 0] = 0.0
+    pad = FingerpadDynamics(stiffness=100.0, damping=0.0, mass=6e-5)
+    friction = SpeedFriction(np.array([0.0, 0.01]), np.sort(rows, axis=1))
+    motion = slide(np.zeros(200), 1e-4, friction, rng.random(200), pad, DryFriction(1.0))
+    assert not np.any(motion.skin_speed)
+    assert not np.any(motion.friction_force)

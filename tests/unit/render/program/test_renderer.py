@@ -2,6 +2,8 @@
 
 import inspect
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -319,3 +321,17 @@ def test_code_that_would_run_away_is_refused(code: list[float], said: str) -> No
     whole[5] = 50
     with pytest.raises(InputError, match=said):
         checked(whole)
+
+
+def test_a_first_render_of_broadcast_arrays_warns_of_nothing() -> None:
+    """NumPy warns only when a type is compiled for the first time, so in a process."""
+    code = (
+        "import numpy as np\n"
+        "from squeezefilm.render.program.lowering import lower\n"
+        "from squeezefilm.render.program.renderer import evaluate, render\n"
+        "from squeezefilm.render.texture.levels import Amplitude\n"
+        "program = lower(Amplitude.constant(1e-6), largest_amplitude=4e-6)\n"
+        "evaluate(program, 0.0, 0.0, np.array([0.1]), 0.0)\n"
+        "render(program, 0.0, 0.0, np.array([0.1]), np.zeros(1))\n"
+    )
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
