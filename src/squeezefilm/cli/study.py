@@ -248,7 +248,10 @@ def rehearse(
     store: NewStore,
     participants: Annotated[int, typer.Option(help="How many simulated people.")] = 3,
     observer: Observer = "fingertip",
-    seed: Seed = 0,
+    seed: Annotated[
+        int | None,
+        typer.Option(help="Of all orders, for a file that is not there yet; 0 without it."),
+    ] = None,
 ) -> None:
     """Let simulated participants do every trial of a study's file, to try analysis and exports."""
     from squeezefilm.perception.observer import load_observer

@@ -169,7 +169,7 @@ def persons(analysis: TaskAnalysis) -> Figure:
         axes.plot([at, at], ends, **style.INTERVAL)
         look = {
             **style.ESTIMATE,
-            **({"mfc": style.PAPER, "mec": style.BLUE} if one.bounded else {}),
+            **({"mfc": style.PAPER, "mec": style.BLUE} if one.unbounded else {}),
         }
         axes.plot([at], [scale * one.estimate.value], **look)
     if analysis.pooled is not None:

@@ -311,7 +311,7 @@ def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
             f"{scale * one.estimate.value:.3g}{unit}",
             f"{scale * one.estimate.low:.3g} to {scale * one.estimate.high:.3g}{unit}",
             f"{one.trials}",
-            "not bounded by the answers alone" if one.bounded else "",
+            "not bounded by the answers alone" if one.unbounded else "",
         )
         for one in analysis.persons
     ]

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from squeezefilm import quantities as si
+from squeezefilm.progress import about
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
 
@@ -84,16 +84,15 @@ def practise_again(write: sqlite3.Connection, design: StudyDesign, who: str, dis
     return f"{wanted} are wanted: practice again, round {rounds + 1} of {design.practice_rounds}"
 
 
-def restart_block(store: StudyStore, who: str, session: str, row: Row) -> str:
-    """Begin a block again that was left for longer than the design allows. Returns what to say, an
-    empty text where there is nothing.
+def restart_block(store: StudyStore, who: str, session: str, row: Row) -> None:
+    """Begin a block again that was left for longer than the design allows.
 
     `row` is the participant's next trial. All of the block's trials are set aside, answers and
     all, and planned again in their order.
     """
     limit = store.design.resume_within
     if not limit or not row["block"]:
-        return ""
+        return
     block = store.rows(
         "SELECT t.*, r.ended_utc FROM trial t LEFT JOIN response r ON r.trial = t.uuid "
         f"WHERE t.participant = ? AND t.display = ? AND t.block = ? AND {COUNTED} "
@@ -102,13 +101,22 @@ def restart_block(store: StudyStore, who: str, session: str, row: Row) -> str:
     )
     ended = [one["ended_utc"] for one in block if one["ended_utc"] is not None]
     if not ended:
-        return ""
+        return
     last = max(datetime.fromisoformat(one) for one in ended)
     gone = (datetime.now(UTC) - last).total_seconds()
     if gone <= limit:
-        return ""
-    away, allowed = (si.format_quantity(one, si.Unit("s"), 2) for one in (gone, limit))
-    reason = f"the block was left for {away}, and may be for {allowed}; it begins again"
+        return
+    allowed = about(limit).removeprefix("about ")
+    reason = f"the block was left for {about(gone)}, and may be for {allowed}; it begins again"
     with store.transaction() as write:
         set_aside(write, block, session, reason)
-    return f"block {row['block']}: {reason}; {len(ended)} answers are kept, set aside"
+
+
+def why_begun_again(store: StudyStore, session: str) -> str:
+    """Why a session began with a block of before, for the experimenter; empty where it did not."""
+    found = store.rows(
+        "SELECT a.reason, count(r.trial) AS answers FROM set_aside a LEFT JOIN response r "
+        "ON r.trial = a.trial WHERE a.session = ? GROUP BY a.reason",
+        [session],
+    )
+    return "; ".join(f"{one['reason']}: {one['answers']} answers are set aside" for one in found)

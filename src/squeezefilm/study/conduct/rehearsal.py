@@ -73,14 +73,14 @@ def rehearse(
     tell = progress or (lambda _: None)
     design = store.design
     tables = chain_tables(design, observer, progress=tell)
+    # What somebody answers depends on their number, of which those that are free come next.
+    most = max((int(one["number"]) + 1 for one in store.participants()), default=0) + participants
+    answered = simulate_participants(design, observer, most, int(store.study["seed"]), tables)
     found = []
     for count in range(participants):
         who = store.enrol()
         number = int(store.require_participant(who)["number"])
         tell(f"simulated participant {count + 1} of {participants}")
-        answered = simulate_participants(
-            design, observer, number + 1, int(store.study["seed"]), tables
-        )
         _answer_everything(
             store, who, _responses(answered, number), _Hand(tables, answered, number)
         )

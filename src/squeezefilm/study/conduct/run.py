@@ -292,11 +292,11 @@ class StudyRun:
             return trial, tuple(design.stimulus(name) for name in trial.stimuli), None
         if trial.answer == "same":
             return trial, (design.stimulus(design.reference),) * 2, 0.0
-        series = next(one for one in design.adaptive if one.name == trial.adaptive)
+        series = design.series(trial.adaptive)
         answers = self._store.rows(
             "SELECT r.intensity, r.correct FROM response r JOIN trial t ON t.uuid = r.trial WHERE "
             f"t.participant = ? AND t.adaptive = ? AND t.display = ? AND {COUNTED} "
-            "ORDER BY t.number",
+            "ORDER BY t.block, t.number",
             [self.participant, series.name, trial.display],
         )
         given = ((a["intensity"], bool(a["correct"])) for a in answers)

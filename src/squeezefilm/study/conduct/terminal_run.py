@@ -18,6 +18,7 @@ from squeezefilm.formats.traces import Table, csv_text
 from squeezefilm.perception.observer import load_observer
 from squeezefilm.progress import SayProgress
 from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.study.conduct.again import COUNTED, why_begun_again
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import (
     Exposure,
@@ -31,8 +32,7 @@ from squeezefilm.study.conduct.study_device import ByHand, NoDevice, StudyDevice
 from squeezefilm.study.conduct.trial_by_trial import Examiner, Mark, conduct
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.design.trials import expected_duration
-from squeezefilm.study.identification.course import attention
-from squeezefilm.study.record.answers import recorded_answers
+from squeezefilm.study.identification.course import judged
 from squeezefilm.study.record.deletion import remove_rows
 from squeezefilm.study.record.store import StudyStore
 
@@ -126,6 +126,8 @@ def run_session(
                 remove_rows(store, who)
             raise
         desk.tell(f"participant {who}: go on with --participant {who}")
+        if again := why_begun_again(store, session):
+            desk.tell(again)
         run = StudyRun(store, session)
         try:
             count = conduct(run, device, desk.examiner, mark=desk.mark)
@@ -137,22 +139,25 @@ def run_session(
     said = f"{count} trials on {display} recorded"
     if after.problems:
         said += f". CAUTION, the device is off after the session: {'; '.join(after.problems)}"
-    said += _attended(store, who)
+    said += _attended(store, who, display)
     if run.state == "display changes":
         said += f"; next display: {display_wanted(store, who)}"
     return said
 
 
-def _attended(store: StudyStore, who: str) -> str:
-    """What a participant's catch trials say, for the experimenter; nothing without any."""
-    answers = recorded_answers(store)
-    if who not in answers.people:
+def _attended(store: StudyStore, who: str, display: str) -> str:
+    """What a participant's catch trials on a display say, for the experimenter; nothing without."""
+    [found] = store.rows(
+        "SELECT count(r.correct) AS asked, total(r.correct) AS right FROM response r "
+        "JOIN trial t ON t.uuid = r.trial WHERE t.participant = ? AND t.display = ? "
+        f"AND t.phase = 'catch' AND {COUNTED}",
+        [who, display],
+    )
+    if not found["asked"]:
         return ""
-    mine = answers.participant == answers.people.index(who)
-    for one in attention(answers.take(mine & (answers.phase == "catch"))):
-        said = f"; {one.right} of {one.asked} catch trials right"
-        return said if one.attended else f"{said}: CAUTION, fewer than of somebody who attends"
-    return ""
+    one = judged(who, int(found["right"]), found["asked"])
+    said = f"; {one.right} of {one.asked} catch trials right"
+    return said if one.attended else f"{said}: CAUTION, fewer than of somebody who attends"
 
 
 def _sitting(conditions: Path | None, consent: bool) -> SessionConditions:

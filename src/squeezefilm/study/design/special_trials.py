@@ -39,7 +39,8 @@ class AdaptiveCondition:
         name: of the series.
         method: "staircase" or "bayesian".
         varied: what of the design's reference is changed; what the design's `judged` asks about.
-        start: first difference from the reference, in parts of the reference's value (1).
+        start: of a staircase: first difference from the reference, in parts of the reference's
+            value (1).
         lowest, highest: differences allowed, likewise (1).
         step: of a staircase, in parts of the reference's value; halved at the first reversals (1).
         down: correct answers in a row that make a staircase harder.
@@ -59,8 +60,9 @@ class AdaptiveCondition:
     def __post_init__(self) -> None:
         require_name(self.name)
         si.require("highest", self.highest, above=self.lowest, at_most=100.0)
-        si.require("start", self.start, at_least=self.lowest, at_most=self.highest)
-        si.require("step", self.step, above=0.0, at_most=self.highest)
+        if self.method == "staircase":
+            si.require("start", self.start, at_least=self.lowest, at_most=self.highest)
+            si.require("step", self.step, above=0.0, at_most=self.highest)
         self._require_room()
 
     def _require_room(self) -> None:

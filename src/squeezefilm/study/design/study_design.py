@@ -15,6 +15,7 @@ Four tasks:
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -306,6 +307,22 @@ class StudyDesign:
                 "a modulus needs magnitude-estimation and a reference that it is given to",
                 quantity="modulus",
             )
+
+    @property
+    def on_a_scale(self) -> bool:
+        """Whether the surfaces have each another amount of what is judged, so that differences
+        between them are told along it; those of adaptive series always have."""
+        amounts = [self.judged_value(one) for one in self.stimuli]
+        distinct = all(map(math.isfinite, amounts)) and len(set(amounts)) == len(amounts)
+        return bool(self.adaptive) or distinct
+
+    def series(self, name: str) -> AdaptiveCondition:
+        """The adaptive series of that name. Raises `InputError` if there is none."""
+        for one in self.adaptive:
+            if one.name == name:
+                return one
+        known = ", ".join(one.name for one in self.adaptive)
+        raise InputError(f"'{name}' is none of: {known}", quantity="adaptive_series")
 
     def comparison(self, series: AdaptiveCondition, intensity: float) -> Stimulus:
         """What an adaptive series presents beside the reference at an intensity: more of what is

@@ -88,8 +88,9 @@ def drift(
         mine &= np.isfinite(values)
         if np.count_nonzero(mine) < 10:
             continue
-        place = main.number[mine] - main.number[mine].min()
-        slopes.append(float(np.polyfit(place / place.max(), values[mine], 1)[0]))
+        # Not their numbers: what was asked again has a late one, and a foreign file any.
+        place = np.linspace(0.0, 1.0, np.count_nonzero(mine))
+        slopes.append(float(np.polyfit(place, values[mine], 1)[0]))
     if not slopes:
         return None
     mean, count = float(np.mean(slopes)), len(slopes)
@@ -109,7 +110,11 @@ def attention(caught: Answers) -> tuple[Attention, ...]:
         right = right[np.isfinite(right)]
         if not right.size:
             continue
-        hits = int(right.sum())
-        p = float(stats.binom.cdf(hits, right.size, ATTENDS))
-        found.append(Attention(caught.people[person], hits, right.size, p, p >= _DOUBTFUL))
+        found.append(judged(caught.people[person], int(right.sum()), right.size))
     return tuple(found)
+
+
+def judged(person: str, right: int, asked: int) -> Attention:
+    """Whether somebody who attends would miss so many catch trials."""
+    p = float(stats.binom.cdf(right, asked, ATTENDS))
+    return Attention(person, right, asked, p, p >= _DOUBTFUL)

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.explored_trials import MEASURES
@@ -101,20 +100,21 @@ def recorded_answers(store: StudyStore) -> Answers:
 def answers_of(design: StudyDesign, table: Sequence[Mapping[str, Cell]], origin: str) -> Answers:
     """The same of a table with the keys of `COLUMNS` that answers need, whoever wrote it."""
     rows = [row for row in table if row["phase"] != "familiarisation" and not row["set_aside"]]
+    own = {one.name for one in (*design.stimuli, *(one.stimulus for one in design.catch))}
     known: dict[tuple[str, object], int] = {}
     surfaces: list[Stimulus] = []
 
     def surface(name: str, row: Mapping[str, object]) -> int:
         if not name:
             return -1
-        key = name, row["intensity"] if row["adaptive_series"] else None
+        # What is not one of the design's an adaptive series chose, by its intensity.
+        chosen = name not in own and row["adaptive_series"]
+        key = name, row["intensity"] if chosen else None
         if key not in known:
-            try:
+            if chosen:
+                found = design.comparison(design.series(str(chosen)), float(str(row["intensity"])))
+            else:
                 found = design.stimulus(name)
-            except InputError:
-                # Not one of the design's: what an adaptive series chose.
-                series = next(s for s in design.adaptive if s.name == row["adaptive_series"])
-                found = design.comparison(series, float(str(row["intensity"])))
             known[key] = len(surfaces)
             surfaces.append(found)
         return known[key]

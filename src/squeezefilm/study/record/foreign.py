@@ -15,6 +15,7 @@ from pathlib import Path
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.traces import text_of_file
 from squeezefilm.hard_limits import FOREIGN_TRIALS, require_within
+from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import EXPLORED, Answers, answers_of
 from squeezefilm.study.record.tables import Cell, unguarded
@@ -46,7 +47,8 @@ def read_answers(
     (a number), "response_time_s", "display" (the design's first, if left out), "phase" ("main", if
     left out), "count" (how many trials a row stands for) and others of `study export`. A row
     without an answer is left out: programs write such for what is no trial. What is right follows
-    from the stimuli unless "answer" says it.
+    from the stimuli, and from the "intensity" of an "adaptive_series", unless "answer" says it.
+    Rows are taken to be in each person's order.
 
     Raises:
         ConfigError: a file that cannot be read, with the line and column of what is not understood.
@@ -98,7 +100,7 @@ def _rows(
         for _ in range(_count(path, number, words)):
             who = str(row["participant_id"])
             given[who] = given.get(who, 0) + 1
-            yield {**row, "trial": words.get("trial") or given[who]}
+            yield {**row, "trial": row["trial"] or given[who]}
 
 
 def _places(
@@ -158,15 +160,37 @@ def _row(
                 line=line,
                 key=columns.get(key, key),
             )
-    if not found["adaptive_series"]:
-        pair = [str(found[key]) for key in ("stimulus", "second_stimulus") if found[key]]
-        try:
-            surfaces = [design.stimulus(one) for one in pair]
-        except InputError as error:
-            raise ConfigError(str(error), file=path, line=line) from error
-        if "answer" not in words:
-            found["answer"] = design.answer_to(*surfaces)
+
+    def refused(key: str, said: str) -> ConfigError:
+        return ConfigError(said, file=path, line=line, key=columns.get(key, key) or None)
+
+    if found["trial"]:
+        trial = _number(path, line, columns.get("trial", "trial"), words["trial"])
+        if not trial.is_integer():
+            raise refused("trial", f"'{words['trial']}' is no whole number")
+        found["trial"] = int(trial)
+    if not design.answers and not float(str(found["estimate"])) > 0:
+        raise refused("estimate", f"'{words['estimate']}' is not above 0, and has no logarithm")
+    pair = [str(found[key]) for key in ("stimulus", "second_stimulus") if found[key]]
+    try:
+        surfaces = [_surface(design, one, found) for one in pair]
+    except InputError as error:
+        raise refused(error.quantity or "", str(error)) from error
+    if "answer" not in words:
+        found["answer"] = design.answer_to(*surfaces)
     return found
+
+
+def _surface(design: StudyDesign, name: str, row: Mapping[str, Cell]) -> Stimulus:
+    """A surface of the design, or beside its reference what an adaptive series chose. Raises
+    `InputError`."""
+    series, intensity = str(row["adaptive_series"]), float(str(row["intensity"]))
+    if not series or name == design.reference:
+        return design.stimulus(name)
+    chosen = design.series(series)
+    if not math.isfinite(intensity):
+        raise InputError("say how much more than the reference it had", quantity="intensity")
+    return design.comparison(chosen, intensity)
 
 
 def _number(path: str | Path, line: int, column: str, text: str) -> float:

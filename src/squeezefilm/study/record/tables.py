@@ -84,14 +84,19 @@ COLUMNS = (
 )
 """What every export holds, in this order."""
 
+# In the order in which they were asked: what was asked again has a late number, and comes at the
+# end of its block.
 _QUERY = """
+WITH placed AS (
+    SELECT *, min(number) OVER (PARTITION BY participant, display, block) AS begun FROM trial
+)
 SELECT r.*, p.uuid AS participant_id, p.number AS participant_number, r.session AS session_id,
     coalesce(a.reason, '') AS set_aside,
     t.display, t.number AS trial, t.block, t.phase, t.adaptive AS adaptive_series, t.answer,
     (SELECT count(*) FROM presentation s WHERE s.trial = t.uuid) AS presentations
-FROM response r JOIN trial t ON t.uuid = r.trial JOIN participant p ON p.uuid = t.participant
+FROM response r JOIN placed t ON t.uuid = r.trial JOIN participant p ON p.uuid = t.participant
 LEFT JOIN set_aside a ON a.trial = t.uuid
-ORDER BY p.number, p.uuid, t.number
+ORDER BY p.number, p.uuid, t.begun, t.number
 """
 
 Cell = str | float | int | bool | None
@@ -120,7 +125,7 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
             felt = row["phase"] == "familiarisation" and gratings
             one: Any = (gratings if felt else stimuli).get(name)
             if name is not None and one is None and row["adaptive_series"]:
-                series = next(s for s in design.adaptive if s.name == row["adaptive_series"])
+                series = design.series(row["adaptive_series"])
                 one = design.comparison(series, row["intensity"])
             row |= {f"{prefix}_{key}": value for key, value in surfaces.cells(one).items()}
         found.append({column.name: row[column.name] for column in COLUMNS})

@@ -123,7 +123,7 @@ class _Room:
         """The number of what an adaptive series presents at an intensity."""
         key = series, intensity
         if key not in self._chosen:
-            one = next(s for s in self.design.adaptive if s.name == series)
+            one = self.design.series(series)
             self._chosen[key] = len(self.surfaces)
             self.surfaces.append(self.design.comparison(one, intensity))
         return self._chosen[key]
@@ -227,7 +227,7 @@ def _standing(
 ) -> AdaptiveMethod:
     key = person, trial.display, trial.adaptive
     if key not in methods:
-        series = next(one for one in design.adaptive if one.name == trial.adaptive)
+        series = design.series(trial.adaptive)
         methods[key] = adaptive_method(series, task=design.task)
     return methods[key]
 

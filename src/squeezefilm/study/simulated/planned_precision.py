@@ -32,7 +32,8 @@ from squeezefilm.study.tasks.findings import PersonEstimate
 from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.population import Population
 from squeezefilm.study.tasks.same_different import same_different_on_grid
-from squeezefilm.study.tasks.two_interval import on_grid, t_interval
+from squeezefilm.study.tasks.two_interval import PeopleOnGrid, on_grid, t_interval
+from squeezefilm.study.tasks.unlike_surfaces import MEASURE, unlike_persons
 
 PEOPLE = 400
 """Simulated people that studies are drawn from; each one's fit takes some 20 ms."""
@@ -202,11 +203,9 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
     """What a study of these people measures, and its value with the 95 % interval of any group of
     them, whose people are fitted once."""
     main = answers.main(0)
-    task = answers.design.task
-    if task in ("two-interval", "same-different"):
-        tell("each person's fit")
-        two = task == "two-interval"
-        people = on_grid(main, lambda _: None) if two else same_different_on_grid(main)
+    tell("each person's fit")
+    people = _on_grid(main)
+    if people is not None:
         population = Population(people.likelihoods())
 
         def fraction(who: si.IntArray) -> Ends:
@@ -226,16 +225,24 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
 def person_values(main: Answers) -> tuple[str, si.FloatArray]:
     """What the answers to one display measure of a person, and each one's value, as the analysis
     fits it; shape (people,)."""
-    task = main.design.task
-    if task in ("two-interval", "same-different"):
-        two = task == "two-interval"
-        people = on_grid(main, lambda _: None) if two else same_different_on_grid(main)
+    people, task = _on_grid(main), main.design.task
+    if people is not None:
         return "Weber fraction", _values(people.estimates(0.95))
+    if task == "same-different":
+        return MEASURE, _values(unlike_persons(main, 0.95, 0)[0])
     if task == "magnitude-estimation":
         return "exponent", _values(exponents(main, 0.95)[0])
     size = len(main.people)
     right = np.bincount(main.participant, main.correct, size)
     return "proportion correct", right / np.bincount(main.participant, minlength=size)
+
+
+def _on_grid(main: Answers) -> PeopleOnGrid | None:
+    """Each person's Weber fraction, in tasks whose surfaces differ along a scale."""
+    if main.design.task == "two-interval":
+        return on_grid(main, lambda _: None)
+    is_scaled = main.design.task == "same-different" and main.design.on_a_scale
+    return same_different_on_grid(main) if is_scaled else None
 
 
 def _values(persons: list[PersonEstimate]) -> si.FloatArray:

@@ -38,6 +38,7 @@ from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions, r
 from squeezefilm.study.tasks.methods import methods_text
 from squeezefilm.study.tasks.population import Population
 from squeezefilm.study.tasks.same_different import (
+    false_alarms,
     same_different_conditions,
     same_different_numbers,
     same_different_on_grid,
@@ -51,8 +52,6 @@ from squeezefilm.study.tasks.two_interval import (
 )
 from squeezefilm.study.tasks.unlike_surfaces import (
     MEASURE,
-    false_alarms,
-    on_a_scale,
     unlike_conditions,
     unlike_persons,
 )
@@ -187,7 +186,7 @@ def _matches(
         seed=seed,
         progress=tell,
     )
-    if not on_a_scale(main):
+    if not design.on_a_scale:
         found = dataclasses.replace(
             found,
             sensitivity=None,
@@ -236,11 +235,11 @@ def _judgements(
     course = course_of(answers, display)
     times, ex_gaussian = _times(main, condition, names, level, seed, found.notes)
     explored = _explored(main, condition, names, level)
-    bounded = [one.person for one in found.persons if one.bounded]
+    unbounded = [one.person for one in found.persons if one.unbounded]
     notes = [*found.notes]
-    if bounded:
+    if unbounded:
         notes.append(
-            f"the answers of {len(bounded)} of {len(found.persons)} people do not bound their "
+            f"the answers of {len(unbounded)} of {len(found.persons)} people do not bound their "
             f"{found.measure}: an end of its interval is where the prior ends, and more trials "
             "near the threshold are wanted"
         )
@@ -306,7 +305,7 @@ def _two_interval(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
 
 
 def _same_different(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
-    if not on_a_scale(main):
+    if not main.design.on_a_scale:
         return _unlike(main, level, seed, tell)
     tell("differencing model of each person")
     people = same_different_on_grid(main)
@@ -332,8 +331,14 @@ def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> _Found:
     tell("power law of each person")
     persons, pooled, spread = exponents(main, level)
     conditions, notes = magnitude_conditions(main, level)
-    if spread is None:
-        notes.append("one participant: the interval is of their own line, and not of a population")
+    lacking = np.unique(main.participant).size - len(persons)
+    if lacking:
+        notes.append(
+            f"{lacking} {'person has' if lacking == 1 else 'people have'} no line of their own "
+            "(fewer than 3 answers, or to one stimulus only) and no share in the exponent"
+        )
+    if len(persons) == 1:
+        notes.append("one line: the interval is of it, and not of a population")
     return _Found("exponent", persons, pooled, spread, conditions, {}, {}, notes)
 
 
@@ -348,7 +353,10 @@ def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
     if main.design.two_surfaces:
         here = names.index(main.design.reference) if main.design.reference in names else -1
         first, second = place[main.first], place[main.second]
-        return np.where(first != here, first, second), names
+        other = np.where(first != here, first, second)
+        if main.design.task == "same-different":
+            return np.where(first == second, len(names), other), (*names, "the same")
+        return other, names
     return place[main.first], names
 
 

@@ -32,13 +32,13 @@ class Estimate:
 class PersonEstimate:
     """One person's Weber fraction or exponent.
 
-    `bounded` says that the answers alone do not bound it: an end of the interval is the prior's.
+    `unbounded` says that the answers alone do not bound it: an end of the interval is the prior's.
     """
 
     person: str
     estimate: Estimate
     trials: int
-    bounded: bool
+    unbounded: bool
 
 
 @dataclass(frozen=True, slots=True)

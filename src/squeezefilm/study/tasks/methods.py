@@ -83,6 +83,7 @@ def methods_text(answers: Answers, display: int) -> str:
     is said.
     """
     design, main = answers.design, answers.main(display)
+    alike = design.task == "same-different"
     people = len(set(main.participant.tolist()))
     named = design.displays[display]
     who = "simulated participants" if "simulated" in answers.origin else "participants"
@@ -98,7 +99,7 @@ def methods_text(answers: Answers, display: int) -> str:
         + f" (“{design.spoken_question}”).",
         *_adaptive(design),
         _trials(design, answers, display),
-        _ANALYSES[design.task] if _on_a_scale(design) else _UNLIKE,
+        _UNLIKE if alike and not design.on_a_scale else _ANALYSES[design.task],
         f"Orders and analysis were made with squeezefilm {__version__} "
         f"(design SHA-256 {design.sha256[:12]}).",
     ]
@@ -107,23 +108,20 @@ def methods_text(answers: Answers, display: int) -> str:
 
 def _stimuli(design: StudyDesign) -> str:
     free = " They were explored freely over the face." if design.exploring == "free" else ""
-    simple = all(
-        one.kind in ("square grating", "sine grating", "constant") for one in design.stimuli
-    )
+    # Beside the reference of adaptive series they are for practice and familiarisation only.
+    every = [one for one in design.stimuli if not design.adaptive or one.name == design.reference]
+    simple = all(one.kind in ("square grating", "sine grating", "constant") for one in every)
     listed = []
-    for one in design.stimuli:
+    for one in every:
         period, depth = si.format_quantity(one.period, si.Unit("m")), _depth(one)
         listed.append(f"{period} ({depth})" if simple else _surface(one))
+    shapes = " and ".join(sorted({one.waveform for one in every}))
+    if design.adaptive:
+        kind = f"a {shapes} grating of friction with the period" if simple else "the surface"
+        return f"The reference was {kind} {', '.join(listed)}.{free}"
     if not simple:
         return f"Stimuli were surfaces of friction: {'; '.join(listed)}.{free}"
-    shapes = " and ".join(sorted({one.waveform for one in design.stimuli}))
     return f"Stimuli were {shapes} gratings of friction with the periods {', '.join(listed)}.{free}"
-
-
-def _on_a_scale(design: StudyDesign) -> bool:
-    amounts = [design.judged_value(one) for one in design.stimuli]
-    scale = all(map(math.isfinite, amounts)) and len(set(amounts)) == len(amounts)
-    return scale or design.task != "same-different"
 
 
 def _depth(one: Stimulus) -> str:

@@ -124,9 +124,20 @@ def same_different_numbers(
     main: Answers, criteria: list[float], level: si.Dimensionless
 ) -> dict[str, Estimate]:
     """False alarms and criterion, over people."""
-    apart, people = np.abs(differences(main)), np.unique(main.participant)
-    alarms = [np.mean(main.choice[(main.participant == one) & (apart == 0)] == 1) for one in people]
+    criterion = t_interval(np.array(criteria), level)
     return {
-        "false alarms (same called different)": t_interval(np.array(alarms), level),
-        "criterion (standard deviations of a percept)": t_interval(np.array(criteria), level),
+        **false_alarms(main, level),
+        "criterion (standard deviations of a percept)": criterion,
     }
+
+
+def false_alarms(main: Answers, level: si.Dimensionless) -> dict[str, Estimate]:
+    """The share of "different" where both were the same, over the people who had such a trial."""
+    alike = main.first == main.second
+    shares = [
+        np.mean(main.choice[alike & (main.participant == one)] == 1)
+        for one in np.unique(main.participant[alike])
+    ]
+    if not shares:
+        return {}
+    return {"false alarms (same called different)": t_interval(np.array(shares), level)}

@@ -117,9 +117,9 @@ class PeopleOnGrid:
             density = lapses @ (likelihood / likelihood.max())
             heights = np.concatenate([[0.0], np.cumsum(density * self.flat)])
             value, low, high = np.exp(np.interp(tails, heights / heights[-1], self.edges)).tolist()
-            bounded = max(density[0], density[-1]) > 0.05 * density.max()
+            unbounded = max(density[0], density[-1]) > 0.05 * density.max()
             estimate = Estimate(value, low, high, level, "posterior")
-            found.append(PersonEstimate(name, estimate, trials, bool(bounded)))
+            found.append(PersonEstimate(name, estimate, trials, bool(unbounded)))
         return found
 
     def functions(self, level: si.Dimensionless) -> dict[str, PersonFunction]:

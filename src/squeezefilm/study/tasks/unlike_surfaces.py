@@ -26,13 +26,6 @@ MEASURE = "sensitivity d′"
 _MODEL = "differencing"
 
 
-def on_a_scale(main: Answers) -> bool:
-    """Whether every surface presented has an amount of what is judged, all of them different."""
-    presented = np.unique(np.concatenate([main.first, main.second]))
-    values = main.values[presented[presented >= 0]]
-    return bool(np.isfinite(values).all()) and np.unique(values).size == values.size
-
-
 def unlike_conditions(
     main: Answers, level: si.Dimensionless, seed: int
 ) -> tuple[ConditionFinding, ...]:
@@ -67,18 +60,6 @@ def unlike_persons(
         return persons, persons[0].estimate if persons else None
     means = np.array([one.estimate.value for one in persons])
     return persons, t_interval(means, level)
-
-
-def false_alarms(main: Answers, level: si.Dimensionless) -> dict[str, Estimate]:
-    """The share of "different" where both were the same, over people."""
-    alike, _ = _pairs(main)
-    shares = [
-        np.mean(main.choice[alike & (main.participant == one)] == 1)
-        for one in np.unique(main.participant[alike])
-    ]
-    if not shares:
-        return {}
-    return {"false alarms (same called different)": t_interval(np.array(shares), level)}
 
 
 def _pairs(main: Answers) -> tuple[NDArray[np.bool_], si.IntArray]:

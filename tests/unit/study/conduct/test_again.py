@@ -10,7 +10,13 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.conduct.again import practise_again, restart_block, set_aside
+from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.conduct.again import (
+    practise_again,
+    restart_block,
+    set_aside,
+    why_begun_again,
+)
 from squeezefilm.study.conduct.run import Response, StudyRun, spoiled_by
 from squeezefilm.study.conduct.sessions import begin_session, next_planned
 from squeezefilm.study.conduct.study_device import ByHand, NoDevice, TrialMotion
@@ -100,6 +106,30 @@ def test_an_adaptive_series_asks_again_at_the_same_level(tmp_path: Path) -> None
     assert counted.trials == 12
 
 
+def test_a_series_goes_on_from_the_answers_in_the_order_in_which_they_were_given(
+    tmp_path: Path,
+) -> None:
+    """A trial of the first block that comes again has a later number than all of the second."""
+    plain = staircase(12)
+    design = dataclasses.replace(plain, adaptive=plain.adaptive[:1], rules=FAST, blocks=2)
+    store, run = begun(tmp_path / "b.sqlite", design)
+    given: list[tuple[float, bool]] = []
+    while (shown := run.next_trial()) is not None:
+        level, count = shown.intensity, len(given)
+        assert level is not None
+        assert level == adaptive_method(design.adaptive[0], given, design.task).next_stimulus()
+        if count == 1 and not store.rows("SELECT * FROM set_aside"):
+            assert "too fast" in answer(run, 0.5)
+            continue
+        right = count % 3 != 2
+        answer(run, right=right)
+        given.append((level, right))
+    assert len(given) == 12
+    recorded = recorded_answers(store)
+    assert recorded.intensity.tolist() == [level for level, _ in given]
+    assert (recorded.correct == 1).tolist() == [right for _, right in given]
+
+
 def test_practice_below_the_criterion_comes_again_so_often_and_no_more(tmp_path: Path) -> None:
     design = dataclasses.replace(
         gratings(1), familiarisation=0, practice=3, practice_criterion=0.9, practice_rounds=2
@@ -133,11 +163,15 @@ def test_a_block_left_for_too_long_begins_again(tmp_path: Path) -> None:
     planned = next_planned(store, run.participant)
     assert planned is not None
     session = str(run.session["uuid"])
-    assert restart_block(store, run.participant, session, planned) == ""
+    restart_block(store, run.participant, session, planned)
+    assert why_begun_again(store, session) == ""
     late = (datetime.now(UTC) - timedelta(hours=30)).isoformat(timespec="milliseconds")
     with store.transaction() as write:
         write.execute("UPDATE response SET ended_utc = ?", [late])
     again = begin_session(store, run.participant, NoDevice(), CONSENT, None, acknowledged=False)
+    said = why_begun_again(store, again)
+    assert "left for about 30 h, and may be for 60 min" in said
+    assert said.endswith("2 answers are set aside")
     asked = []
     second = StudyRun(store, again)
     while (shown := second.next_trial()) is not None:

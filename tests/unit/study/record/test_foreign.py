@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.perception.observer import load_observer
 from squeezefilm.report.study.simulated_page import ANSWER_COLUMNS
 from squeezefilm.study.conduct.rehearsal import rehearse
+from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.record import foreign
 from squeezefilm.study.record.answers import recorded_answers
@@ -21,6 +23,7 @@ from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import csv_text
 from squeezefilm.study.simulated.answers import SimulatedAnswers, simulate_participants
 from squeezefilm.study.tasks.analyze import analyze_study
+from squeezefilm.study.tasks.findings import TaskAnalysis
 
 Given = Callable[[str], Path]
 DESIGN = load_design("friction-jnd")
@@ -172,3 +175,57 @@ def test_columns_are_told_as_pairs() -> None:
         with pytest.raises(InputError, match="says no column; write NAME=COLUMN"):
             columns_of(wrong)
     assert foreign.COUNT == "count"
+
+
+def test_a_recorded_series_of_same_different_has_weber_fractions(tmp_path: Path) -> None:
+    """From its file and from its export, in which series' comparisons are known by intensity."""
+    plain = load_design("period-same-different")
+    design = dataclasses.replace(
+        plain,
+        adaptive=(AdaptiveCondition("bayes", "bayesian", count=24),),
+        displays=plain.displays[:1],
+    )
+    with StudyStore.create(tmp_path / "s.sqlite", design, 3) as store:
+        rehearse(store, load_observer("fingertip"), 2)
+        (own,) = analyze_study(store).values()
+        recorded = recorded_answers(store)
+        export_study(store, "csv", tmp_path / "out")
+    names = [one.name for one in recorded.surfaces]
+    assert len(set(names)) == len(names)
+    assert isinstance(own, TaskAnalysis)
+    assert own.measure == "Weber fraction"
+    assert "Weber fraction" in own.methods
+    assert own.conditions[0].name == "the same"
+    (path,) = (tmp_path / "out").glob("*trials.csv")
+    again = read_answers(path, design)
+    assert again.surfaces == recorded.surfaces
+    # What is right follows from the intensity where a file does not say it.
+    header, *lines = path.read_text(encoding="utf-8").splitlines()
+    path.write_text("\n".join([header.replace(",answer,", ",told,"), *lines]), encoding="utf-8")
+    np.testing.assert_array_equal(read_answers(path, design).right, recorded.right)
+
+
+SERIES = "participant_id,stimulus,second_stimulus,choice,adaptive_series,intensity"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (f"{SERIES}\na,4 mm,x,first,stairs,0.2\n", "line 2: adaptive_series: 'stairs' is none of"),
+        (f"{SERIES}\na,4 mm,x,first,staircase,\n", "line 2: intensity: .*say how much more"),
+        (f"{HEAD},trial\na,4 mm,6 mm,first,T1\n", "line 2: trial: 'T1' is no number"),
+        (f"{HEAD},trial\na,4 mm,6 mm,first,1.5\n", "line 2: trial: '1.5' is no whole number"),
+    ],
+)
+def test_a_series_or_trial_that_is_not_understood_is_told_with_its_line(
+    given: Given, text: str, says: str
+) -> None:
+    with pytest.raises(ConfigError, match=says):
+        read_answers(given(text), load_design("period-jnd"))
+
+
+def test_an_estimate_without_a_logarithm_is_told_with_its_line(given: Given) -> None:
+    design = load_design("coarseness-magnitude")
+    text = f"participant_id,stimulus,estimate\na,{design.stimuli[0].name},0\n"
+    with pytest.raises(ConfigError, match="line 2: estimate: '0' is not above 0"):
+        read_answers(given(text), design)

@@ -100,7 +100,7 @@ def test_one_person_has_no_population() -> None:
         found = analysed(name, [somebody(random)], random)
         assert found.spread is None
         assert found.pooled == found.persons[0].estimate
-        assert any("one participant" in note for note in found.notes)
+        assert any("one participant" in note or "one line" in note for note in found.notes)
 
 
 def test_exponents_are_those_of_peoples_own_lines() -> None:

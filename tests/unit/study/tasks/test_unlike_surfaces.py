@@ -11,7 +11,7 @@ from squeezefilm.study.design.trials import conditions
 from squeezefilm.study.psychometric.discrimination import differencing_rates
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.analyze import analyze_answers
-from squeezefilm.study.tasks.unlike_surfaces import MEASURE, on_a_scale, unlike_conditions
+from squeezefilm.study.tasks.unlike_surfaces import MEASURE, unlike_conditions
 
 TRUE = {"bars": 1.0, "checks": 3.0}
 CRITERION = 1.4
@@ -60,7 +60,7 @@ def answers(people: int, repetitions: int, seed: int) -> Answers:
 
 def test_the_d_prime_of_each_pair_is_found_again() -> None:
     made = answers(40, 60, 3)
-    assert not on_a_scale(made)
+    assert not made.design.on_a_scale
     same, *pairs = unlike_conditions(made, 0.95, 0)
     assert same.name == "the same"
     assert same.d_prime is None
