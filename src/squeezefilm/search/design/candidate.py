@@ -76,7 +76,7 @@ def design_of(shape: int, values: Mapping[str, Setting]) -> Design:
 class Evaluated:
     """What a design does: its criteria by key (SI), whether by the screening theory or solved in
     three dimensions, the limits that it breaks, why it cannot be built ("" where it can), and what
-    it took (s)."""
+    it took (s). `lasting` is what would be the same another time."""
 
     design: Design
     level: Level
@@ -85,6 +85,7 @@ class Evaluated:
     reason: str = ""
     seconds: float = field(default=0.0, compare=False)
     warnings: tuple[str, ...] = ()
+    lasting: bool = field(default=True, compare=False)
 
     @property
     def is_feasible(self) -> bool:
@@ -132,7 +133,9 @@ def evaluate(requirements: Requirements, design: Design, level: Level) -> Evalua
     except Exception as error:
         # One design of thousands: a fault of ours is told, and the others are not lost.
         reason = f"not foreseen: {type(error).__name__}: {error}"
-        return Evaluated(design, level, {}, reason=reason, seconds=_since(began))
+        return Evaluated(
+            design, level, {}, reason=reason, seconds=_since(began), lasting=False
+        )
     if found is not None and found.mode.solid is None and found.mode.disc is None:
         return Evaluated(design, level, {}, reason=found.objections[-1], seconds=_since(began))
     return Evaluated(

@@ -315,8 +315,10 @@ class SearchRun:
         try:
             for number, answers in pool.answers(evaluate_all, tasks):
                 if isinstance(answers, Lost):
+                    why = answers.reason
                     answers = [
-                        Evaluated(one, level, {}, reason=answers.reason) for one in parts[number]
+                        Evaluated(one, level, {}, reason=why, lasting=False)
+                        for one in parts[number]
                     ]
                 self._store.add(answers)
                 found.update((one.design, one) for one in answers)

@@ -102,12 +102,13 @@ class DesignStore:
         return self._known.get((design, level))
 
     def add(self, found: Iterable[Evaluated]) -> None:
-        """Keep evaluated designs, together on the disk. A fault of ours is kept in memory only."""
+        """Keep evaluated designs, together on the disk. What might be another one another time is
+        kept in memory only."""
         lines = []
         for one in found:
             self._known[one.design, one.level] = one
             self.computed += 1
-            if not one.reason.startswith("not foreseen"):
+            if one.lasting:
                 lines.append(json.dumps(self._line(one), separators=(",", ":"), allow_nan=False))
         self._append(lines)
 

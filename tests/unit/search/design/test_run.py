@@ -1,20 +1,25 @@
 from __future__ import annotations
 
+import contextlib
 import warnings
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from tests.unit.search.design.made_up import evaluated_by_formula, requirements
+from tests.unit.search.design.made_up import evaluated_by_formula, random_designs, requirements
 
 import squeezefilm.search.design.run as run
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.results import config_hash
+from squeezefilm.search.design import candidate
 from squeezefilm.search.design.candidate import Evaluated
 from squeezefilm.search.design.found import DesignSearch
 from squeezefilm.search.design.reasons import limit_in_words, margins
 from squeezefilm.search.design.tolerance import Made
+from squeezefilm.search.tasks import Lost
 
 
 def _made(wanted: object, one: Evaluated) -> Made:
@@ -86,6 +91,42 @@ def test_a_search_that_was_stopped_goes_on(
     found = _search(tmp_path)
     assert not found.stopped
     assert [one.evaluated for one in found.front] == [one.evaluated for one in whole.front]
+
+
+class _Deadly:
+    """Workers of which one dies of every eighth task."""
+
+    def answers(
+        self, function: Callable[..., Any], tasks: dict[Any, Any], alike: object = None
+    ) -> Iterator[tuple[Any, Any]]:
+        for number, (key, arguments) in enumerate(tasks.items()):
+            yield key, Lost() if number % 8 == 0 else function(*arguments)
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_designs_that_a_process_died_of_are_asked_again_another_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as dying:
+        dying.setattr(run, "workers", lambda **_: contextlib.nullcontext(_Deadly()))
+        lost = _search(tmp_path)
+    assert any(one.reason == Lost().reason for one in lost.screened)
+    again = _search(tmp_path)
+    assert again.computed > 0
+    assert not any(one.reason for one in again.screened)
+
+
+def test_a_fault_of_ours_is_told_and_may_be_mended_another_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def faulty(*_: object) -> None:
+        raise KeyError("x")
+
+    wanted = requirements()
+    monkeypatch.setattr(candidate, "display_of", faulty)
+    found = candidate.evaluate(wanted, random_designs(wanted, 1)[0], "screened")
+    assert found.reason == "not foreseen: KeyError: 'x'"
+    assert not found.lasting
 
 
 def _made_of_low_voltages(wanted: object, one: Evaluated) -> Made:
