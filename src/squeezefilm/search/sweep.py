@@ -90,7 +90,7 @@ class Run:
 
     def finish(self) -> None:
         """Ask what is not known yet. What came is kept where this is interrupted."""
-        described: dict[int, Any] = {}
+        described: dict[Any, Any] = {}
         waiting: dict[str, list[tuple[int, str]]] = {}
         points: list[Point] = []
         for number, (questions, _) in enumerate(self.plan.points):
