@@ -6,9 +6,8 @@ import contextlib
 import itertools
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
 from squeezefilm.progress import SayProgress, about
-from squeezefilm.results import config_hash, stamp
+from squeezefilm.results import stamp
 from squeezefilm.search.design.candidate import (
     Design,
     Evaluated,
@@ -34,7 +33,7 @@ from squeezefilm.search.design.reasons import empty_corners, limit_reasons
 from squeezefilm.search.design.reference import reference_of
 from squeezefilm.search.design.requirements import NamedRequirements, Requirements
 from squeezefilm.search.design.space import Space
-from squeezefilm.search.design.store import DesignStore
+from squeezefilm.search.design.store import DesignStore, requirements_hash
 from squeezefilm.search.design.tolerance import Made, made_of
 from squeezefilm.search.design.worth_solving import Seen, objectives_of, worth_solving
 from squeezefilm.search.tasks import Lost, Workers
@@ -165,10 +164,9 @@ class SearchRun:
                 proposals.tell([(trial, found[design]) for trial, design in asked])
                 self._show()
         if all(one.reason for one in self._seen["screened"].values()):
-            first = next(iter(self._seen["screened"].values()), None)
+            first = next(iter(self._seen["screened"].values()))
             raise InputError(
-                "none of the screened designs can be built, for example: "
-                f"{'none was asked for' if first is None else first.reason}"
+                f"none of the screened designs can be built, for example: {first.reason}"
             )
 
     def _say_screening(self, shape: str, done: int, begun: float) -> None:
@@ -379,13 +377,8 @@ class SearchRun:
             seconds=time.monotonic() - self._began,
             stopped=not self._done,
             provenance=stamp(requirements.base, self._asked.seed)
-            | {"requirements_sha256": _hash(requirements)},
+            | {"requirements_sha256": requirements_hash(requirements)},
         )
-
-
-def _hash(requirements: Requirements) -> str:
-    values: dict[str, Any] = {f.name: getattr(requirements, f.name) for f in fields(requirements)}
-    return config_hash(values)
 
 
 def _parts(designs: list[Design], size: int) -> Iterator[tuple[Design, ...]]:

@@ -8,6 +8,7 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,11 @@ def asked_hash(requirements: Requirements) -> str:
         sort_keys=True,
     )
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def requirements_hash(requirements: Requirements) -> str:
+    """A hash of all that requirements say, limits and objectives, too."""
+    return config_hash({one.name: getattr(requirements, one.name) for one in fields(requirements)})
 
 
 def _made_hash(requirements: Requirements) -> str:
