@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -13,7 +12,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, WorkersError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
 from squeezefilm.progress import SayProgress, about
@@ -106,12 +105,21 @@ def search_designs(asked: SearchRequest) -> DesignSearch:
     return run.result()
 
 
-def search_until_stopped(asked: SearchRequest) -> DesignSearch:
-    """A search that Ctrl-C stops, with what was found until then. Raises as `search_designs`."""
+def search_until_stopped(asked: SearchRequest) -> tuple[DesignSearch, str]:
+    """A search that Ctrl-C or the end of a cluster stops, with what was found until then, and what
+    stopped it (empty where nothing did). Raises as `search_designs`, and `WorkersError` where a
+    cluster cannot be used from the beginning."""
     run = SearchRun(asked)
-    with contextlib.suppress(KeyboardInterrupt):
+    stopped = ""
+    try:
         run.finish()
-    return run.result()
+    except KeyboardInterrupt:
+        stopped = "stopped"
+    except WorkersError as error:
+        stopped = str(error)
+        if not run.result().screened:
+            raise
+    return run.result(), stopped
 
 
 class SearchRun:
@@ -273,7 +281,8 @@ class SearchRun:
         self._stage, solved = f"solving {what}", self._seen["solved"]
         took = [one.seconds for one in solved.values()]
         left = ""
-        if took:
+        # Nobody knows how many workers a cluster has.
+        if took and self._asked.scheduler is None:
             rest = (self._asked.solved - len(solved)) * float(np.mean(took)) / self._asked.jobs
             left = f", {about(rest)} left at most"
         self._tell(

@@ -12,7 +12,7 @@ import pytest
 from tests.unit.search.design.made_up import evaluated_by_formula, random_designs, requirements
 
 import squeezefilm.search.design.run as run
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.errors import ConfigError, InputError, WorkersError
 from squeezefilm.results import config_hash
 from squeezefilm.search.design import candidate
 from squeezefilm.search.design.candidate import Evaluated
@@ -83,10 +83,10 @@ def test_a_search_that_was_stopped_goes_on(
         return evaluated_by_formula(*args)  # type: ignore[arg-type]
 
     monkeypatch.setattr(run, "evaluate_all", stopping)
-    stopped = run.search_until_stopped(
+    stopped, why = run.search_until_stopped(
         run.SearchRequest(requirements(), screened=400, solved=60, out=tmp_path)
     )
-    assert stopped.stopped
+    assert (stopped.stopped, why) == (True, "stopped")
     monkeypatch.setattr(run, "evaluate_all", evaluated_by_formula)
     found = _search(tmp_path)
     assert not found.stopped
@@ -127,6 +127,48 @@ def test_a_fault_of_ours_is_told_and_may_be_mended_another_time(
     found = candidate.evaluate(wanted, random_designs(wanted, 1)[0], "screened")
     assert found.reason == "not foreseen: KeyError: 'x'"
     assert not found.lasting
+
+
+class _Gone:
+    """Workers of a cluster whose scheduler dies after so many tasks."""
+
+    def __init__(self, left: int) -> None:
+        self.left = left
+
+    def answers(
+        self, function: Callable[..., Any], tasks: dict[Any, Any], alike: object = None
+    ) -> Iterator[tuple[Any, Any]]:
+        for key, arguments in tasks.items():
+            if not self.left:
+                raise WorkersError("the scheduler answers no more; start it")
+            self.left -= 1
+            yield key, function(*arguments)
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_a_cluster_that_is_gone_leaves_what_was_found_and_why_it_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    asked = run.SearchRequest(
+        requirements(), screened=200, solved=40, scheduler="tcp://there:1", progress=told.append,
+        out=tmp_path,
+    )  # fmt: skip
+    with monkeypatch.context() as clustered:
+        gone = _Gone(60)
+        clustered.setattr(run, "workers", lambda **_: contextlib.nullcontext(gone))
+        found, why = run.search_until_stopped(asked)
+        assert (found.stopped, why) == (True, "the scheduler answers no more; start it")
+        assert found.front
+        solving = [one for one in told if one.startswith("solving")]
+        assert solving
+        # How many solve at once is not known.
+        assert not any("left" in one for one in solving)
+        with pytest.raises(WorkersError):
+            run.search_designs(requirements(), screened=20, scheduler="tcp://there:1")
+        # Without anything found there is nothing to show.
+        with pytest.raises(WorkersError):
+            run.search_until_stopped(replace(asked, out=None))
 
 
 def _made_of_low_voltages(wanted: object, one: Evaluated) -> Made:
