@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -212,6 +213,15 @@ def test_the_reasons_name_the_limits_and_what_they_cost() -> None:
     corner = [one for one in found.corners if "nodal lines 5" in one.where]
     assert corner
     assert corner[0].key == "resonance_frequency"
+
+
+def test_the_nearest_limits_come_first_whatever_is_not_known() -> None:
+    wanted = requirements()
+    wanted = replace(wanted, limits=replace(wanted.limits, most_deflection=1e-3, most_mass=0.1))
+    one = evaluated_by_formula(wanted, tuple(random_designs(wanted, 1)), "solved")[0]
+    near = margins(wanted, replace(one, numbers={**one.numbers, "deflection": math.nan}))
+    assert set(near) == {"relative_friction", "resonance_frequency", "temperature_rise"}
+    assert list(near.values()) == sorted(near.values())
 
 
 @pytest.mark.usefixtures("by_formula")
