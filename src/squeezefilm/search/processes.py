@@ -66,12 +66,11 @@ class Processes:
                 return
             if process == len(self._executors):
                 self._executors.append(_executor())
-            arguments = computed, function, tasks[key]
             try:
-                future = self._executors[process].submit(*arguments)
+                future = self._executors[process].submit(computed, function, tasks[key])
             except BrokenProcessPool:  # it died while it had nothing to do
                 self._renew(process)
-                future = self._executors[process].submit(*arguments)
+                future = self._executors[process].submit(computed, function, tasks[key])
             running[future] = process, key
 
         try:

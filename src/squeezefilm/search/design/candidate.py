@@ -38,11 +38,6 @@ _SCREENING: Mapping[str, PlateTheory | None] = {
 """By which theory a shape is screened; None: as it is solved, since a ring's solver is quick."""
 
 
-def screening_theory(requirements: Requirements, design: Design) -> PlateTheory | None:
-    """By which theory a design is screened; a bimorph's upper ceramics are known to beams only."""
-    return _SCREENING[requirements.shapes[design.shape].type]
-
-
 @dataclass(frozen=True)
 class Design:
     """What is chosen: the number of the shape in the requirements, and a value for each of its
@@ -156,7 +151,8 @@ def evaluate_all(
 def screened(requirements: Requirements, display: Display, design: Design) -> dict[str, float]:
     """The criteria of a display by the theory by which its design is screened."""
     with across_frequencies():
-        found = predict(display, theory=screening_theory(requirements, design))
+        theory = _SCREENING[requirements.shapes[design.shape].type]
+        found = predict(display, theory=theory)
         return _judged(requirements, display, found, design)
 
 

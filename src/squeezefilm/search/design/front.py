@@ -9,7 +9,7 @@ from squeezefilm.search.tradeoffs import non_dominated
 
 
 def dominates(a: si.FloatArray, b: si.FloatArray) -> bool:
-    """Whether `a` is at least as small as `b` in everything and smaller in something; objectives may
+    """Whether `a` is at least as small as `b` in everything and smaller in something; either may
     be infinite."""
     return bool(np.all(a <= b) and np.any(a < b))
 

@@ -30,7 +30,7 @@ from squeezefilm.search.design.found import DesignSearch, FrontMember
 from squeezefilm.search.design.front import front_of
 from squeezefilm.search.design.reasons import empty_corners, limit_reasons
 from squeezefilm.search.design.reference import reference_of
-from squeezefilm.search.design.requirements import NamedRequirements, Requirements
+from squeezefilm.search.design.requirements import NamedRequirements
 from squeezefilm.search.design.space import Space
 from squeezefilm.search.design.store import DesignStore, requirements_hash
 from squeezefilm.search.design.tolerance import Made, made_of

@@ -79,5 +79,5 @@ def test_nothing_is_wished_of_followed_modes_which_have_no_names_yet() -> None:
     for name in ("followed.frequency_Hz", "followed.(8,0).frequency_Hz"):
         with pytest.raises(InputError, match="names only once they are solved"):
             wishes(asked, [name], [])
-    with pytest.raises(InputError, match="There are: relative_friction, amplitude_m$"):
+    with pytest.raises(InputError, match=r"There are: relative_friction, amplitude_m$"):
         wishes(asked, ["amplitud"], [])
