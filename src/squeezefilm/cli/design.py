@@ -65,8 +65,8 @@ class DesignOptions:
 def design(asked: DesignOptions) -> None:
     """Plates that meet requirements: say what a finger should feel, get those that can do it.
 
-    Ctrl-C stops it and shows what it has; with --out the same command goes on from there. Exit code
-    1 where no plate was found.
+    Ctrl-C stops it and shows what it has, and so does the end of a cluster; with --out the same
+    command goes on from there. Exit code 1 where no plate was found.
     """
     import os
 
@@ -99,7 +99,7 @@ def design(asked: DesignOptions) -> None:
             member=asked.member,
             progress=step,
         )
-        found = search_until_stopped(request)
+        found, stopped = search_until_stopped(request)
         page = None
         if asked.out is not None:
             chosen = None if found.stopped else found.chosen
@@ -109,9 +109,9 @@ def design(asked: DesignOptions) -> None:
                 plate = load_display(asked.out / "plates" / f"{chosen.name}.toml")
                 written_for(plate, asked.out / built, quick=asked.quick, step=step)
     answer(asked.as_json, found, show_design, page=page)
-    if found.stopped:
+    if stopped:
         again = "the same command goes on" if asked.out else "add --out DIR to keep what is done"
-        typer.echo(f"stopped; {again}", err=True)
-        raise typer.Exit(130)
+        typer.echo(f"{stopped}; {again}", err=True)
+        raise typer.Exit(130 if stopped == "stopped" else 2)
     if not found.front:
         raise typer.Exit(1)

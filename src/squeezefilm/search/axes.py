@@ -122,20 +122,18 @@ def axis_of_file(path: str | Path, display: Display) -> Axis:
     (``actuator.thickness [mm]``) cells are plain numbers. Raises `ConfigError` for a file that
     cannot be used, with its line, and what `axis_of` raises.
     """
-    lines = [line for line in text_of_file(path).lstrip("\ufeff").splitlines() if line.strip()]
-    rows = list(csv.reader(line for line in lines if not line.startswith("#")))
+    rows = list(_rows(path))
     if len(rows) < 2:
         raise ConfigError("has no header and row; write names, and below them values", file=path)
-    heads = [_head(cell) for cell in rows[0]]
+    heads = [_head(cell) for cell in rows[0][1]]
+    for line, row in rows[1:]:
+        if len(row) != len(heads):
+            raise ConfigError(
+                f"has {len(row)} cells where the header has {len(heads)}", file=path, line=line
+            )
     columns: list[Axis] = []
     for number, (name, symbol) in enumerate(heads):
-        cells = []
-        for line, row in enumerate(rows[1:], 2):
-            if len(row) != len(heads):
-                raise ConfigError(
-                    f"has {len(row)} cells where the header has {len(heads)}", file=path, line=line
-                )
-            cells.append(f"{row[number].strip()} {symbol}".strip())
+        cells = [(line, f"{row[number].strip()} {symbol}".strip()) for line, row in rows[1:]]
         columns.append(_column(name, cells, display, path))
     steps = zip(*(one.steps for one in columns), strict=True)
     return Axis(
@@ -145,16 +143,29 @@ def axis_of_file(path: str | Path, display: Display) -> Axis:
     )
 
 
+def _rows(path: str | Path) -> Iterator[tuple[int, list[str]]]:
+    """The rows of a CSV file, each with its line in the file; empty lines and those that begin with
+    # are none."""
+    every = enumerate(text_of_file(path).lstrip("\ufeff").splitlines(), 1)
+    lines = [(at, text) for at, text in every if text.strip() and not text.startswith("#")]
+    reader = csv.reader(text for _, text in lines)
+    for row in reader:
+        yield lines[reader.line_num - 1][0], row
+
+
 def _head(cell: str) -> tuple[str, str]:
     found = re.fullmatch(r"\s*(.+?)\s*(?:\[(.+)\])?\s*", cell)
     return (found[1], (found[2] or "").strip()) if found else (cell, "")
 
 
-def _column(name: str, cells: list[str], display: Display, path: str | Path) -> Axis:
-    """A column of a file; the same value may stand there more than once."""
+def _column(
+    name: str, cells: Sequence[tuple[int, str]], display: Display, path: str | Path
+) -> Axis:
+    """A column of a file, each cell with its line; the same value may stand there more than
+    once."""
     option, unit, whole = what_is_varied(name, display)
     steps = []
-    for line, cell in enumerate(cells, 2):
+    for line, cell in cells:
         try:
             value = _value(name, cell, option, unit)
             steps.append((_whole(name, value) if whole else value,))

@@ -134,7 +134,7 @@ def _of_points(
         terms = list(itertools.islice(_terms(counts, degree, varied), most + 1))
         if len(terms) > most:
             break
-        matrix = _matrix(single, terms)
+        matrix = _matrix(single, terms, len(y))
         left = _left_out_error(matrix, y)
         if best is None or left < best[0]:
             best = left, matrix, terms
@@ -161,16 +161,17 @@ def _of_points(
 
 def _functions(one: Varied, there: NDArray[np.bool_]) -> list[si.FloatArray]:
     """Functions of one varied value that are orthonormal over its range: Legendre's polynomials of
-    numbers, contrasts of words."""
-    x = one.values[there]
+    numbers, contrasts of words; none of a value that is the same at all points."""
+    x = np.log(one.values[there]) if one.logarithmic else one.values[there]
+    if np.ptp(x) == 0:
+        return []
     if one.words:
         basis, _ = np.linalg.qr(
             np.column_stack([np.ones(len(one.words)), np.eye(len(one.words))[:, 1:]])
         )
         scaled = basis[:, 1:] * math.sqrt(len(one.words))
         return [scaled[x.astype(int), k] for k in range(scaled.shape[1])]
-    x = np.log(x) if one.logarithmic else x
-    u = 2 * (x - x.min()) / np.ptp(x) - 1 if np.ptp(x) > 0 else 0 * x
+    u = 2 * (x - x.min()) / np.ptp(x) - 1
     most = min(max(_DEGREES), len(np.unique(x)) - 1)
     return [
         math.sqrt(2 * k + 1) * np.polynomial.legendre.legval(u, np.eye(k + 1)[k])
@@ -195,11 +196,11 @@ def _terms(
 
 
 def _matrix(
-    single: Sequence[Sequence[si.FloatArray]], terms: Sequence[tuple[int, ...]]
+    single: Sequence[Sequence[si.FloatArray]], terms: Sequence[tuple[int, ...]], count: int
 ) -> si.FloatArray:
     columns = []
     for term in terms:
-        product = np.ones(len(single[0][0]) if single[0] else 0)
+        product = np.ones(count)
         for functions, k in zip(single, term, strict=True):
             product = product * functions[k - 1] if k else product
         columns.append(product)

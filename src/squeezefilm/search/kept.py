@@ -11,7 +11,8 @@ from typing import Any
 
 from squeezefilm import __version__
 from squeezefilm.errors import InputError
-from squeezefilm.results import to_json
+from squeezefilm.results import config_hash, to_json
+from squeezefilm.search.options import OPTIONS
 from squeezefilm.search.points import Answer, Point
 from squeezefilm.search.verbs import VERBS
 
@@ -19,11 +20,12 @@ FILE = "answers.jsonl"
 """Its name in the folder of a sweep: a line for every answer, appended as it comes."""
 
 
-def address(point: Point, described: dict[int, Any] | None = None) -> str:
-    """The SHA-256 of all that an answer depends on: the display's values, verb, options, samples
-    and the version of this package.
+def address(point: Point, described: dict[Any, Any] | None = None) -> str:
+    """The SHA-256 of all that an answer depends on: the display's values, verb, options (of a file
+    what is in it), samples and the version of this package.
 
-    `described` keeps what was made of displays, which many points share, by their `id`.
+    `described` keeps what many points share: what was made of displays, by their `id`, and of
+    files, by option and name. Raises `ConfigError` for a file that cannot be read.
     """
     verb, known = VERBS[point.verb], {} if described is None else described
     whole = verb.display(point.display, point.options)
@@ -36,12 +38,25 @@ def address(point: Point, described: dict[int, Any] | None = None) -> str:
     question = {
         "version": __version__,
         "verb": point.verb,
-        "options": verb.settings(point.options),
+        "options": {
+            name: _meant(name, value, known) for name, value in verb.settings(point.options).items()
+        },
         "samples": point.samples if verb.draws else 0,
         "display": values,
     }
     text = json.dumps(question, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _meant(name: str, value: Any, known: dict[Any, Any]) -> Any:
+    """An option's value; in place of a file's name, which says nothing of a file that was edited,
+    the hash of what is read from it."""
+    option = OPTIONS[name]
+    if not option.of_file:
+        return value
+    if (name, value) not in known:
+        known[name, value] = config_hash(option.argument(value))
+    return known[name, value]
 
 
 class Kept:

@@ -23,7 +23,8 @@ from squeezefilm.texture_file import load_texture
 class Option:
     """One operating option: the unit of its numbers, or for words what reads one.
 
-    Numbers are `bounds`, words for `si.require`; `between` separates several words in a text.
+    Numbers are `bounds`, words for `si.require`; `between` separates several words in a text. A
+    word may name a file where `of_file` says so.
     """
 
     name: str
@@ -31,6 +32,7 @@ class Option:
     bounds: Mapping[str, Any] = field(default_factory=dict)
     read: Callable[[str], Any] = str
     between: str = ","
+    of_file: bool = False
 
     def number(self, value: float) -> float:
         """A number of this option. Raises `InputError` for one outside its bounds."""
@@ -78,8 +80,8 @@ OPTIONS: dict[str, Option] = {
         _one_of("model", typing.get_args(FrictionModel)),
         _one_of("theory", PLATE_THEORIES),
         Option("band", read=parse_band),
-        Option("texture", read=load_texture),
-        Option("motion", read=motion_from, between=";"),
+        Option("texture", read=load_texture, of_file=True),
+        Option("motion", read=motion_from, between=";", of_file=True),
         Option("sensor", read=sensor_named),
         _one_of("compensation", COMPENSATIONS),
         Option("braking", read=_yes_or_no),

@@ -66,7 +66,12 @@ class Processes:
                 return
             if process == len(self._executors):
                 self._executors.append(_executor())
-            running[self._executors[process].submit(computed, function, tasks[key])] = process, key
+            try:
+                future = self._executors[process].submit(computed, function, tasks[key])
+            except BrokenProcessPool:  # it died while it had nothing to do
+                self._renew(process)
+                future = self._executors[process].submit(computed, function, tasks[key])
+            running[future] = process, key
 
         try:
             for process in range(min(self._jobs, sum(map(len, groups)))):
@@ -79,13 +84,17 @@ class Processes:
                     try:
                         found = future.result()
                     except BrokenProcessPool:
-                        self._executors[process].shutdown(wait=False)
-                        self._executors[process] = _executor()
+                        self._renew(process)
                     yield key, found
                     begin(process)
         finally:
             if running:  # stopped while some are at work: nobody waits for them
                 self._end()
+
+    def _renew(self, process: int) -> None:
+        """A new process in the place of one that died."""
+        self._executors[process].shutdown(wait=False)
+        self._executors[process] = _executor()
 
     def _end(self) -> None:
         for executor in self._executors:

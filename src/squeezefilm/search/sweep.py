@@ -16,7 +16,7 @@ from squeezefilm.arguments import called_with
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.errors import WorkersError
 from squeezefilm.from_text import reads_text
-from squeezefilm.progress import SayProgress
+from squeezefilm.progress import SayProgress, about
 from squeezefilm.results import config_hash, stamp
 from squeezefilm.search.answers import FOLLOWED, Asked
 from squeezefilm.search.followed import FollowedMode, followed_modes
@@ -55,7 +55,7 @@ def sweep(asked: SweepRequest) -> Sweep:
         vary: values by name, ``{"actuator.thickness": "1 mm..3 mm:9"}``: any path of a number in
             the display, or an operating option; see `search.axes`. Several make a grid.
         ask: names of numbers in the JSON of predict, render, plate, friction and analyze; the
-            quickest verb that knows a name is asked. ``modes`` follows modes by their shapes.
+            quickest verb that knows a name is asked. ``followed`` follows modes by their shapes.
         over: a CSV file whose header names what is varied, a point in each row.
         sample: how many points to draw in the ranges of `vary` without steps (``"1 mm..3 mm"``,
             ``"1 V..100 V:log"``), see `search.sampled`; more of them keep those before.
@@ -86,11 +86,12 @@ class Run:
         self._asked, self._tell = asked, asked.progress or (lambda _: None)
         self._kept = Kept(None if asked.out is None else Path(asked.out))
         self._found: dict[tuple[int, str], Answer] = {}
+        self._before: set[str] = set()
         self._computed = 0
 
     def finish(self) -> None:
         """Ask what is not known yet. What came is kept where this is interrupted."""
-        described: dict[int, Any] = {}
+        described: dict[Any, Any] = {}
         waiting: dict[str, list[tuple[int, str]]] = {}
         points: list[Point] = []
         for number, (questions, _) in enumerate(self.plan.points):
@@ -99,6 +100,7 @@ class Run:
                 known = None if self._asked.fresh else self._kept.get(at)
                 if known is not None:
                     self._found[number, verb] = known
+                    self._before.add(at)
                 elif at in waiting:
                     waiting[at].append((number, verb))
                 else:
@@ -125,7 +127,7 @@ class Run:
         left = ""
         if 0 < done < of:
             seconds = (time.monotonic() - began) / done * (of - done)
-            left = f", about {_duration(seconds)} left"
+            left = f", {about(seconds)} left"
         self._tell(f"{done} of {of} points" + left)
 
     def result(self) -> Sweep:
@@ -146,7 +148,7 @@ class Run:
             reasons,
             self._warnings(),
             self._computed,
-            len(self._found) - self._computed,
+            len(self._before),
             origin,
             follows,
         )
@@ -190,14 +192,6 @@ class Run:
         """What was warned of, texts that differ in their numbers only told once."""
         answers = self._found.values()
         return counted(text for one in answers for text in dict.fromkeys(one.warnings))
-
-
-def _duration(seconds: float) -> str:
-    if seconds < 90:
-        return f"{math.ceil(seconds)} s"
-    if seconds < 5400:
-        return f"{round(seconds / 60)} min"
-    return f"{seconds / 3600:.1f} h"
 
 
 def sweep_until_stopped(asked: SweepRequest) -> tuple[Sweep, str]:

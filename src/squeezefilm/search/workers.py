@@ -24,9 +24,10 @@ def workers(
     scheduler: str | None = None,
     tell: SayProgress | None = None,
 ) -> Iterator[Workers]:
-    """Those who answer, for the block: `jobs` processes, one of which is this one, or all workers
-    of the Dask `scheduler` (``"tcp://host:8786"``) however many there are, `jobs` then counting
-    for nothing. `tell` is told of a cluster who is there and where its dashboard is.
+    """Those who answer, for the block: this process where `jobs` is 1, else so many of their own
+    beside it, or all workers of the Dask `scheduler` (``"tcp://host:8786"``) however many there
+    are, `jobs` then counting for nothing. `tell` is told of a cluster who is there and where its
+    dashboard is.
 
     Raises `InputError` where Dask is not installed, and `WorkersError` where no scheduler answers
     or its workers cannot be used. More than one process in a script needs

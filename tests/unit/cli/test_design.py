@@ -6,12 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.unit.report.design.made_search import made_search
 from typer.testing import CliRunner
 
 import squeezefilm as sf
 from squeezefilm import presets
 from squeezefilm.cli import app
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.errors import ConfigError, InputError, WorkersError
 from squeezefilm.search.design import run as searches
 
 PRESET = "biet2008-plate"
@@ -118,6 +119,26 @@ def test_one_that_is_stopped_says_so_and_ends_as_interrupted(
         code, shown = invoked(PRESET, *FEW, *options)
         assert code == 130
         assert f"stopped; {hint}" in shown
+    assert "was stopped" in (tmp_path / "index.html").read_text(encoding="utf-8")
+
+
+def test_one_whose_cluster_is_gone_shows_what_it_has_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def gone(*_: object, **__: object) -> object:
+        raise WorkersError("the scheduler answers no more; start it")
+
+    monkeypatch.setattr(searches.SearchRun, "_screen", gone)
+    monkeypatch.setattr(searches.SearchRun, "_compare", lambda self: None)
+    with pytest.raises(WorkersError):
+        invoked(PRESET, *FEW, "--out", tmp_path)
+    assert not (tmp_path / "index.html").exists()
+    why = "the scheduler answers no more; start it"
+    part = made_search(screened=40, solved=4, stopped=True), why
+    monkeypatch.setattr(searches, "search_until_stopped", lambda _: part)
+    code, shown = invoked(PRESET, *FEW, "--out", tmp_path)
+    assert code == 2
+    assert f"{why}; the same command goes on" in shown
     assert "was stopped" in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 

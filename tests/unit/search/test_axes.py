@@ -110,6 +110,8 @@ def test_a_file_is_an_axis_whose_columns_change_together(tmp_path: Path) -> None
         ("voltage\n", "no header and row"),
         ("voltage\n10\n", r"line 2.*'10' has no unit"),
         ("voltage,surface\n10 V\n", r"line 2.*has 1 cells where the header has 2"),
+        ("# mine\n\nvoltage\n10 V\n\n# of it\n20\n", r"line 7.*'20' has no unit"),
+        ("# mine\nvoltage,speed\n\n10 V\n", r"line 4.*has 1 cells where the header has 2"),
     ):
         file.write_text(text)
         with pytest.raises(ConfigError, match=message):

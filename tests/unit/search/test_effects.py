@@ -90,3 +90,17 @@ def test_what_says_nothing_has_no_effects() -> None:
     assert effects_of(swept((axis,), np.ones(16))) == ()
     few = dataclasses.replace(axis, steps=axis.steps[:4])
     assert effects_of(swept((few,), [1, 2, 3, 4])) == ()
+
+
+def test_a_value_that_has_one_step_left_among_the_answers_decides_nothing() -> None:
+    """Wherever it stands: of the first thickness, or word, every point is answered, of the other
+    none."""
+    slope = Axis(("x",), (si.Unit("1"),), tuple((k / 10,) for k in range(11)))
+    values = [k / 10 for k in range(11)] + [math.nan] * 11
+    for unit, steps in ((si.Unit("1"), ((1.0,), (2.0,))), (None, (("bare",), ("adhesive",)))):
+        first = Axis(("first",), (unit,), steps)
+        (found,) = effects_of(swept((first, slope), values))
+        assert [one.total for one in found.shares] == pytest.approx([0, 1])
+        turned = np.array(values).reshape(2, 11).T.ravel()
+        (found,) = effects_of(swept((slope, first), turned))
+        assert [one.total for one in found.shares] == pytest.approx([1, 0])

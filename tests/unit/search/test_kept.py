@@ -33,11 +33,34 @@ def test_an_address_is_of_all_that_the_answer_depends_on_and_nothing_else(
     # A texture moves no prediction, and a prediction draws no samples.
     assert own == address(dataclasses.replace(POINT, options={"voltage": 20.0}, samples=32))
     assert own == address(dataclasses.replace(POINT, display=load_display("biet2008-stator")))
-    known: dict[int, object] = {}
+    known: dict[object, object] = {}
     assert own == address(POINT, known)
     assert own == address(POINT, known)
     monkeypatch.setattr(kept, "__version__", "9.9")
     assert address(POINT) != own
+
+
+def test_a_file_that_was_edited_is_another_question(tmp_path: Path) -> None:
+    """Of a texture and of a motion; the same content has the same address, wherever it lies."""
+    texture, motion = tmp_path / "mine.toml", tmp_path / "path.csv"
+
+    def written(period: str, end: float) -> Point:
+        pattern = f'pattern = {{ type = "square_wave", spatial_period = "{period}" }}'
+        levels = "low = 0.5\nhigh = 0.9\n"
+        texture.write_text(f'[texture]\ntype = "relative_friction"\n{levels}{pattern}\n')
+        motion.write_text(f"time_s,x_m\n0,0\n1,{end}\n")
+        return Point(STATOR, {"texture": str(texture), "motion": str(motion)}, "render")
+
+    own = address(written("2 mm", 0.04))
+    assert address(written("3 mm", 0.04)) != own
+    assert address(written("2 mm", 0.05)) != own
+    assert address(written("2 mm", 0.04)) == own
+    known: dict[object, object] = {}
+    again = written("2 mm", 0.04)
+    assert address(again, known) == own
+    texture.unlink()
+    # Read once a run.
+    assert address(again, known) == own
 
 
 def test_answers_are_there_again_and_a_line_that_was_cut_off_is_not(tmp_path: Path) -> None:

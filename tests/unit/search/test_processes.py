@@ -1,6 +1,7 @@
 """Processes of this machine: each answers one task at a time; one that dies costs its own task."""
 
 import multiprocessing
+import time
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,20 @@ def test_one_that_dies_costs_its_own_task_which_is_tried_once_more(tmp_path: Pat
         found = dict(pool.answers(deadly, {k: (tmp_path, k) for k in range(8, 20)}))
     assert found == {k: k * k for k in range(8, 20) if k != 13} | {13: Lost()}
     assert lines(tmp_path, "begun") == {k: 2 if k == 13 else 1 for k in range(8, 20)}
+
+
+def test_one_that_dies_while_it_has_nothing_to_do_is_replaced() -> None:
+    before = set(multiprocessing.active_children())
+    with Processes(2) as pool:
+        assert dict(pool.answers(whose, {k: (k, 0.2) for k in range(2)}))  # both have begun
+        idle = set(multiprocessing.active_children()) - before
+        for process in idle:
+            process.kill()
+            process.join(20)
+        time.sleep(0.5)  # the pool's thread notices it; where it has not yet, a task is tried again
+        found = dict(pool.answers(whose, {k: (k,) for k in range(4)}))
+    assert set(found) == set(range(4))
+    assert Lost() not in found.values()
 
 
 def test_what_a_task_raises_is_raised_and_no_process_is_left() -> None:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import re
 from pathlib import Path
 from typing import Any
 
@@ -103,18 +104,16 @@ def test_progress_says_how_many_are_done_and_how_long_it_takes() -> None:
     told: list[str] = []
     sweep(STATOR, vary=VOLTS, ask="relative_friction", progress=told.append)
     assert told[0] == "0 of 3 points"
-    assert told[1].startswith("1 of 3 points, about ")
+    assert re.fullmatch(r"1 of 3 points, (about \d+ s|less than 1 s) left", told[1])
     assert told[-1] == "3 of 3 points"
-    assert [sweeps._duration(one) for one in (0.2, 60, 600, 7200)] == [
-        "1 s", "60 s", "10 min", "2.0 h",
-    ]  # fmt: skip
 
 
 def test_several_displays_are_an_axis_and_answers_of_one_question_are_shared() -> None:
     found = sweep([STATOR, STATOR], vary=VOLTS, ask="relative_friction")
     assert found.shape == (2, 3)
     assert found.settings()["display"][::3] == [f"{STATOR} (1)", f"{STATOR} (2)"]
-    assert found.computed == 3
+    # Those of the second display are copies made now, and not taken from before.
+    assert (found.computed, found.kept) == (3, 0)
     first, second = found.grid("relative_friction")
     assert first.tolist() == second.tolist()
 

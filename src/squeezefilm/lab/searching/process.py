@@ -42,14 +42,15 @@ class SearchProcess(ToldProcess):
 
 
 class Pace:
-    """How long a stage of a search goes on, by how fast it went until now."""
+    """How long the screening or the solving goes on, by how fast its stage went until now."""
 
     def __init__(self, screened: int, solved: int) -> None:
         self._every = screened, solved
         self._stage, self._began, self._first = "", 0.0, 0
 
     def left(self, seen: Glimpse) -> str:
-        """What is left of the stage, in words; "" while nobody knows."""
+        """How long it takes until all designs are screened, or as many are solved as may be, in
+        words; "" while nobody knows."""
         screens = seen.stage.startswith("screening")
         every, done = self._every[not screens], seen.screened if screens else seen.solved
         now = time.monotonic()
@@ -142,11 +143,11 @@ def _found(
         with stop.held():
             tell({"type": "search found", "left": left, **shown.glimpse(requirements, seen)})
 
-    found = search_until_stopped(
+    found, stopped = search_until_stopped(
         SearchRequest(requirements, out=out, progress=say, watch=watch, **how)
     )
-    return {"failed": False, "message": _ending(found.stopped), "result": shown.result(found)}
+    return {"failed": False, "message": _ending(stopped), "result": shown.result(found)}
 
 
-def _ending(stopped: bool) -> str:
+def _ending(stopped: str) -> str:
     return SearchProcess.stopped if stopped else "finished"

@@ -73,13 +73,15 @@ def _thinned(points: Sequence[Sequence[float]]) -> list[list[float]]:
 
 
 def reference(requirements: Requirements, one: Evaluated | None) -> dict[str, Any] | None:
-    """The display that the front is set beside, and which limits it breaks."""
+    """The display that the front is set beside, which limits it breaks, and why it could not be
+    judged ("" where it was)."""
     if one is None:
         return None
     return {
         "name": Path(requirements.compare_with).stem,
         "objectives": list(one.objectives(requirements.objectives)),
         "breaks": [breach.sentence for breach in one.broken],
+        "reason": one.reason,
     }
 
 

@@ -250,20 +250,21 @@ def _chosen_sections(found: DesignSearch, fabrication: str) -> Iterator[str]:
 
 
 def _criteria_rows(found: DesignSearch, member: FrontMember) -> Iterator[tuple[str, ...]]:
-    """Every criterion of a plate: value, limit, margin, interval of those made."""
+    """Every criterion of a plate that is known or was asked for: value, limit, margin, interval of
+    those made."""
     bounds = {one.key: bound for one, bound in bounded(found.requirements.limits)}
     left = margins(found.requirements, member.evaluated)
     made = {} if member.made is None else member.made.intervals
     for key, one in CRITERIA.items():
-        value = member.evaluated.numbers.get(key)
-        if value is None or math.isnan(value) or (key == "highest_frequency" and key not in bounds):
+        value = member.evaluated.numbers.get(key, math.nan)
+        if key not in bounds and (math.isnan(value) or key == "highest_frequency"):
             continue
         limit = one.bound_said(bounds[key]) if key in bounds else ""
         yield (
             one.said,
             criterion_words(key, value),
             limit,
-            margin_words(left[key]) if key in left else "",
+            margin_words(left[key]) if key in left else "not judged" if limit else "",
             " to ".join(criterion_words(key, end) for end in made[key]) if key in made else "",
         )
 

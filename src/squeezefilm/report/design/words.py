@@ -10,7 +10,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.report.kit.numbers import changed, shown, signed
 from squeezefilm.search.design.candidate import Design, Evaluated
-from squeezefilm.search.design.criteria import CRITERIA, bounded, criterion_of
+from squeezefilm.search.design.criteria import CRITERIA, OF_SOLVED, bounded, criterion_of
 from squeezefilm.search.design.found import DesignSearch, FrontMember
 from squeezefilm.search.design.reasons import gains_in_words, limit_in_words, margins
 from squeezefilm.search.design.requirements import Requirements
@@ -333,12 +333,17 @@ def rank_sentences(found: DesignSearch) -> list[str]:
 
 
 def limit_sentences(found: DesignSearch) -> list[str]:
-    """What each limit does to the screened designs, those that none breaks in one sentence."""
+    """What each limit does to the screened designs; those that none breaks in one sentence, those
+    that none was asked in another."""
     count = len(found.screened)
     said = [limit_in_words(one, count) for one in found.limits if one.broken]
-    idle = [limit_words(one.key, one.limit) for one in found.limits if not one.broken]
-    if idle:
-        said.append(f"No screened design breaks: {'; '.join(idle)}.")
+    idle = [one for one in found.limits if not one.broken]
+    for head, those in (
+        ("No screened design breaks", [one for one in idle if one.key not in OF_SOLVED]),
+        ("Asked of solved plates only", [one for one in idle if one.key in OF_SOLVED]),
+    ):
+        if those:
+            said.append(f"{head}: {'; '.join(limit_words(o.key, o.limit) for o in those)}.")
     return said or ["No limit was asked for."]
 
 

@@ -29,6 +29,7 @@ from squeezefilm.report.sweep.effect_figures import (
 )
 from squeezefilm.report.sweep.figures import sweep_figure
 from squeezefilm.report.sweep.words import labelled, name_of, scaled
+from squeezefilm.search.answers import FOLLOWED
 from squeezefilm.search.effects import Effects, Varied, effects_of, varied_values
 from squeezefilm.search.swept import Sweep, counted
 from squeezefilm.search.tradeoffs import non_dominated
@@ -45,12 +46,20 @@ def wishes(
     """Of which answers less is better (1) or more (-1), by their columns' names; `asked` are those
     there are, with their units.
 
-    Raises `InputError` for one that was not asked for, or is named twice.
+    Raises `InputError` for one that was not asked for, is named twice, or is of followed modes.
     """
+    asked = [(name, unit) for name, unit in asked if name.partition(".")[0] != FOLLOWED]
     by_name = {key: name for name, unit in asked for key in (name, name.removesuffix(unit.suffix))}
     found: dict[str, int] = {}
     for option, texts, sign in (("less", less, 1), ("more", more, -1)):
         for name in (part.strip() for text in texts for part in text.split(",")):
+            if name.partition(".")[0] == FOLLOWED:
+                raise InputError(
+                    f"--{option} {name} is of modes that have names only once they are solved, so "
+                    "that nothing can be wished of them; name another number, like "
+                    "resonance_frequency, and --ask for it",
+                    quantity=option,
+                )
             if name not in by_name:
                 raise InputError(
                     f"--{option} {name} was not asked for.{si.did_you_mean(name, by_name)} There "

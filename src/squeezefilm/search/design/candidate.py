@@ -38,11 +38,6 @@ _SCREENING: Mapping[str, PlateTheory | None] = {
 """By which theory a shape is screened; None: as it is solved, since a ring's solver is quick."""
 
 
-def screening_theory(requirements: Requirements, design: Design) -> PlateTheory | None:
-    """By which theory a design is screened; a bimorph's upper ceramics are known to beams only."""
-    return _SCREENING[requirements.shapes[design.shape].type]
-
-
 @dataclass(frozen=True)
 class Design:
     """What is chosen: the number of the shape in the requirements, and a value for each of its
@@ -76,7 +71,7 @@ def design_of(shape: int, values: Mapping[str, Setting]) -> Design:
 class Evaluated:
     """What a design does: its criteria by key (SI), whether by the screening theory or solved in
     three dimensions, the limits that it breaks, why it cannot be built ("" where it can), and what
-    it took (s)."""
+    it took (s). `lasting` is what would be the same another time."""
 
     design: Design
     level: Level
@@ -85,6 +80,7 @@ class Evaluated:
     reason: str = ""
     seconds: float = field(default=0.0, compare=False)
     warnings: tuple[str, ...] = ()
+    lasting: bool = field(default=True, compare=False)
 
     @property
     def is_feasible(self) -> bool:
@@ -132,7 +128,7 @@ def evaluate(requirements: Requirements, design: Design, level: Level) -> Evalua
     except Exception as error:
         # One design of thousands: a fault of ours is told, and the others are not lost.
         reason = f"not foreseen: {type(error).__name__}: {error}"
-        return Evaluated(design, level, {}, reason=reason, seconds=_since(began))
+        return Evaluated(design, level, {}, reason=reason, seconds=_since(began), lasting=False)
     if found is not None and found.mode.solid is None and found.mode.disc is None:
         return Evaluated(design, level, {}, reason=found.objections[-1], seconds=_since(began))
     return Evaluated(
@@ -155,7 +151,8 @@ def evaluate_all(
 def screened(requirements: Requirements, display: Display, design: Design) -> dict[str, float]:
     """The criteria of a display by the theory by which its design is screened."""
     with across_frequencies():
-        found = predict(display, theory=screening_theory(requirements, design))
+        theory = _SCREENING[requirements.shapes[design.shape].type]
+        found = predict(display, theory=theory)
         return _judged(requirements, display, found, design)
 
 

@@ -95,7 +95,10 @@ CRITERIA: Mapping[str, Criterion] = dict(
         _one("surest_friction", "1", "µ′/µ with 95 % confidence"),
     )
 )
-"""By key, in the order in which they are told. The last four are known of solved plates alone."""
+"""By key, in the order in which they are told."""
+
+OF_SOLVED = ("neighbour", "area", "sound_level", "surest_friction")
+"""The keys of those that are known of solved plates alone."""
 
 
 def criterion_of(objective: str) -> Criterion:

@@ -14,6 +14,7 @@ from squeezefilm.search.design.candidate import Design, Evaluated, design_of
 from squeezefilm.search.design.criteria import bounded, excess_of
 from squeezefilm.search.design.journal import journal
 from squeezefilm.search.design.requirements import Requirements
+from squeezefilm.search.design.store import asked_hash, requirements_hash
 
 if TYPE_CHECKING:
     import optuna
@@ -28,7 +29,7 @@ _NONE = 1e6
 # Optuna's own name for it, beside a trial: above 0 where a limit is not kept.
 _EXCESS = "constraints"
 _GENERATION = "NSGAIISampler:generation"
-_MEMBER, _NUMBER = "member", "number"
+_MEMBER = "member"
 
 
 class Proposals:
@@ -63,8 +64,10 @@ class Proposals:
         self._others, self._published, self._told = 0, 0, 0
         if folder is not None:
             kind = "solved" if dear else "screened"
+            # A folder may have answers to other requirements, of which these values are none.
+            whose = f"{asked_hash(requirements)} {requirements_hash(requirements)[:16]}"
             self._shared = optuna.create_study(
-                study_name=f"{self._space.shape}, {kind}, seed {seed}",
+                study_name=f"{self._space.shape}, {kind}, seed {seed}, {whose}",
                 storage=journal(folder / JOURNAL),
                 directions=directions,
                 load_if_exists=True,
@@ -110,8 +113,8 @@ class Proposals:
             self._told += 1
             # What a search that was stopped has published is there.
             if self._shared is not None and self._told > self._published:
-                attrs = {_MEMBER: self._member, _NUMBER: self._told}
-                self._shared.add_trial(_trial(trial.params, values, excess, attrs))
+                own = {_MEMBER: self._member}
+                self._shared.add_trial(_trial(trial.params, values, excess, own))
 
     def _sampler(self, batch: int) -> optuna.samplers.BaseSampler:
         import optuna

@@ -91,8 +91,8 @@ class DesignSearch(Result):
     @functools.cached_property
     def beats_reference(self) -> tuple[FrontMember, ...]:
         """The plates that are better than the reference in every objective or in one with none
-        worse."""
-        if self.reference is None:
+        worse; none where it could not be judged."""
+        if self.reference is None or self.reference.reason:
             return ()
         own = np.array(self.reference.objectives(self.requirements.objectives))
         return tuple(

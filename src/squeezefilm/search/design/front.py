@@ -8,9 +8,9 @@ from squeezefilm import quantities as si
 from squeezefilm.search.tradeoffs import non_dominated
 
 
-@si.checked_numbers
 def dominates(a: si.FloatArray, b: si.FloatArray) -> bool:
-    """Whether `a` is at least as small as `b` in everything and smaller in something."""
+    """Whether `a` is at least as small as `b` in everything and smaller in something; either may
+    be infinite."""
     return bool(np.all(a <= b) and np.any(a < b))
 
 

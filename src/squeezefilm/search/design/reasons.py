@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -118,11 +119,12 @@ def _part(variable: Number | Step | Choice, settings: Mapping[str, float | int |
 
 
 def margins(requirements: Requirements, one: Evaluated) -> dict[str, si.Dimensionless]:
-    """How far a design stays from each limit, as a share of it, the nearest first."""
+    """How far a design stays from each limit that it could be judged by, as a share of it, the
+    nearest first."""
     found = {
-        criterion.key: -excess_of(criterion, one.numbers[criterion.key], bound)
+        criterion.key: -excess_of(criterion, value, bound)
         for criterion, bound in bounded(requirements.limits)
-        if criterion.key in one.numbers
+        if not math.isnan(value := one.numbers.get(criterion.key, math.nan))
     }
     return dict(sorted(found.items(), key=lambda item: item[1]))
 

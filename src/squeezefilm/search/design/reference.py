@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
+from squeezefilm.errors import SqueezefilmError
 from squeezefilm.search.design.candidate import Design, Evaluated
 from squeezefilm.search.design.criteria import (
     breaches,
@@ -14,12 +15,16 @@ from squeezefilm.search.design.criteria import (
 )
 from squeezefilm.search.design.requirements import Requirements
 
+_NONE = Design(0, ())
+"""In place of a design, since nobody chose it."""
+
 
 def reference_of(requirements: Requirements) -> Evaluated:
     """What the display of `compare_with` does at the requirements' voltage, under their finger, on
     their surface, cooled as theirs are; solved in three dimensions.
 
-    It has no class of cost, since nobody says what it is built from. Raises what `predict` raises.
+    It has no class of cost, since nobody says what it is built from. Where it cannot be judged, its
+    reason says why.
     """
     base = requirements.base
     display = replace(
@@ -30,8 +35,17 @@ def reference_of(requirements: Requirements) -> Evaluated:
         thermal=base.thermal,
         active_area=None,
     )
-    found = predict(display, voltage=requirements.drive.voltage)
-    numbers = numbers_of_prediction(requirements, display, found)
-    numbers |= numbers_of_solved(requirements, display, found)
+    try:
+        found = predict(display, voltage=requirements.drive.voltage)
+        if found.mode.solid is None and found.mode.disc is None:
+            return _not_judged(found.objections[-1])
+        numbers = numbers_of_prediction(requirements, display, found)
+        numbers |= numbers_of_solved(requirements, display, found)
+    except SqueezefilmError as error:
+        return _not_judged(str(error))
     del numbers["cost"]
-    return Evaluated(Design(0, ()), "solved", numbers, breaches(numbers, requirements.limits))
+    return Evaluated(_NONE, "solved", numbers, breaches(numbers, requirements.limits))
+
+
+def _not_judged(reason: str) -> Evaluated:
+    return Evaluated(_NONE, "solved", {}, reason=reason)

@@ -181,19 +181,10 @@ class Requirements:
                 "there is no front to choose from",
                 quantity="objectives",
             )
-        for key in ("start_from", "compare_with"):
-            name = getattr(self, key)
-            try:
-                _ = load_display(name) if name else None
-            except ConfigError as error:
-                raise InputError(f"{key} = '{name}': {error}", quantity=key) from error
+        self._require_plate("start_from")
+        if self.compare_with:
+            self._require_plate("compare_with")
         base = self.base
-        if not isinstance(base.actuator, RectangularPlate | DiscPlate):
-            raise InputError(
-                f"start_from = '{self.start_from}' is a measured ring, of which no material is "
-                "known; start from a plate or a disc",
-                quantity="start_from",
-            )
         base.surface(self.touch.surface)
         volts = self.drive.least_voltage
         if volts is not None and volts > self.drive.voltage:
@@ -203,6 +194,20 @@ class Requirements:
             )
         # So that what cannot be chosen is refused here, before anything is computed.
         _ = self.spaces
+
+    def _require_plate(self, key: str) -> None:
+        """Refuse a display that is none, or of which no material is known."""
+        name = getattr(self, key)
+        try:
+            display = load_display(name)
+        except ConfigError as error:
+            raise InputError(f"{key} = '{name}': {error}", quantity=key) from error
+        if not isinstance(display.actuator, RectangularPlate | DiscPlate):
+            raise InputError(
+                f"{key} = '{name}' is a measured ring, of which no material is known; give a "
+                "plate or a disc",
+                quantity=key,
+            )
 
     @functools.cached_property
     def base(self) -> Display:

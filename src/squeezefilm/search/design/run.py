@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, WorkersError
 from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
 from squeezefilm.progress import SayProgress, about
-from squeezefilm.results import config_hash, stamp
+from squeezefilm.results import stamp
 from squeezefilm.search.design.candidate import (
     Design,
     Evaluated,
@@ -32,9 +30,9 @@ from squeezefilm.search.design.found import DesignSearch, FrontMember
 from squeezefilm.search.design.front import front_of
 from squeezefilm.search.design.reasons import empty_corners, limit_reasons
 from squeezefilm.search.design.reference import reference_of
-from squeezefilm.search.design.requirements import NamedRequirements, Requirements
+from squeezefilm.search.design.requirements import NamedRequirements
 from squeezefilm.search.design.space import Space
-from squeezefilm.search.design.store import DesignStore
+from squeezefilm.search.design.store import DesignStore, requirements_hash
 from squeezefilm.search.design.tolerance import Made, made_of
 from squeezefilm.search.design.worth_solving import Seen, objectives_of, worth_solving
 from squeezefilm.search.tasks import Lost, Workers
@@ -107,12 +105,21 @@ def search_designs(asked: SearchRequest) -> DesignSearch:
     return run.result()
 
 
-def search_until_stopped(asked: SearchRequest) -> DesignSearch:
-    """A search that Ctrl-C stops, with what was found until then. Raises as `search_designs`."""
+def search_until_stopped(asked: SearchRequest) -> tuple[DesignSearch, str]:
+    """A search that Ctrl-C or the end of a cluster stops, with what was found until then, and what
+    stopped it (empty where nothing did). Raises as `search_designs`, and `WorkersError` where a
+    cluster cannot be used from the beginning."""
     run = SearchRun(asked)
-    with contextlib.suppress(KeyboardInterrupt):
+    stopped = ""
+    try:
         run.finish()
-    return run.result()
+    except KeyboardInterrupt:
+        stopped = "stopped"
+    except WorkersError as error:
+        stopped = str(error)
+        if not run.result().screened:
+            raise
+    return run.result(), stopped
 
 
 class SearchRun:
@@ -165,10 +172,9 @@ class SearchRun:
                 proposals.tell([(trial, found[design]) for trial, design in asked])
                 self._show()
         if all(one.reason for one in self._seen["screened"].values()):
-            first = next(iter(self._seen["screened"].values()), None)
+            first = next(iter(self._seen["screened"].values()))
             raise InputError(
-                "none of the screened designs can be built, for example: "
-                f"{'none was asked for' if first is None else first.reason}"
+                f"none of the screened designs can be built, for example: {first.reason}"
             )
 
     def _say_screening(self, shape: str, done: int, begun: float) -> None:
@@ -275,7 +281,8 @@ class SearchRun:
         self._stage, solved = f"solving {what}", self._seen["solved"]
         took = [one.seconds for one in solved.values()]
         left = ""
-        if took:
+        # Nobody knows how many workers a cluster has.
+        if took and self._asked.scheduler is None:
             rest = (self._asked.solved - len(solved)) * float(np.mean(took)) / self._asked.jobs
             left = f", {about(rest)} left at most"
         self._tell(
@@ -315,8 +322,10 @@ class SearchRun:
         try:
             for number, answers in pool.answers(evaluate_all, tasks):
                 if isinstance(answers, Lost):
+                    why = answers.reason
                     answers = [
-                        Evaluated(one, level, {}, reason=answers.reason) for one in parts[number]
+                        Evaluated(one, level, {}, reason=why, lasting=False)
+                        for one in parts[number]
                     ]
                 self._store.add(answers)
                 found.update((one.design, one) for one in answers)
@@ -377,13 +386,8 @@ class SearchRun:
             seconds=time.monotonic() - self._began,
             stopped=not self._done,
             provenance=stamp(requirements.base, self._asked.seed)
-            | {"requirements_sha256": _hash(requirements)},
+            | {"requirements_sha256": requirements_hash(requirements)},
         )
-
-
-def _hash(requirements: Requirements) -> str:
-    values: dict[str, Any] = {f.name: getattr(requirements, f.name) for f in fields(requirements)}
-    return config_hash(values)
 
 
 def _parts(designs: list[Design], size: int) -> Iterator[tuple[Design, ...]]:

@@ -8,6 +8,7 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,11 @@ def asked_hash(requirements: Requirements) -> str:
         sort_keys=True,
     )
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def requirements_hash(requirements: Requirements) -> str:
+    """A hash of all that requirements say, limits and objectives, too."""
+    return config_hash({one.name: getattr(requirements, one.name) for one in fields(requirements)})
 
 
 def _made_hash(requirements: Requirements) -> str:
@@ -102,12 +108,13 @@ class DesignStore:
         return self._known.get((design, level))
 
     def add(self, found: Iterable[Evaluated]) -> None:
-        """Keep evaluated designs, together on the disk. A fault of ours is kept in memory only."""
+        """Keep evaluated designs, together on the disk. What might be another one another time is
+        kept in memory only."""
         lines = []
         for one in found:
             self._known[one.design, one.level] = one
             self.computed += 1
-            if not one.reason.startswith("not foreseen"):
+            if one.lasting:
                 lines.append(json.dumps(self._line(one), separators=(",", ":"), allow_nan=False))
         self._append(lines)
 

@@ -71,7 +71,7 @@ def test_a_search_is_made_as_it_was_asked_for_and_its_result_told(
 
     def how(one: SearchRequest) -> Any:
         asked.append(one)
-        return SimpleNamespace(stopped=False, of="all")
+        return SimpleNamespace(of="all"), ""
 
     said = searched(how)
     assert said == [
@@ -99,7 +99,7 @@ def test_what_is_seen_is_told_a_few_times_a_second_and_each_stage_at_once(
         ):  # fmt: skip
             clock.now += after
             one.watch(glimpse(stage, screened))
-        return SimpleNamespace(stopped=False, of="")
+        return SimpleNamespace(of=""), ""
 
     said = searched(how)
     assert said[0] == {"type": "search says", "text": "begins"}
@@ -121,7 +121,7 @@ def test_a_long_front_is_told_less_often(
         for solved in range(9):
             one.watch(Glimpse("solving", 0, solved, (), many, None))
             clock.now += 0.5
-        return SimpleNamespace(stopped=False, of="")
+        return SimpleNamespace(of=""), ""
 
     told = [one["solved"] for one in searched(how) if one["type"] == "search found"]
     assert told == [0, 2, 4, 6, 8]
@@ -200,7 +200,7 @@ def test_a_stop_is_heard_once_and_never_within_what_is_told(searched: Searched) 
         # A second one changes nothing: what was found is being put together.
         os.kill(os.getpid(), signal.SIGINT)
         order.append("put together")
-        return SimpleNamespace(stopped=True, of="some")
+        return SimpleNamespace(of="some"), "stopped"
 
     said: Any = Slow()
     with pytest.MonkeyPatch.context() as patched:

@@ -54,6 +54,7 @@ def test_a_glimpse_has_both_fronts_and_the_reference() -> None:
     assert found["reference"]["name"] == "biet2008-plate"
     assert found["reference"]["objectives"] == [0.5, 0.35e-3]
     assert found["reference"]["breaks"] == ["squeeze number is 9, at least 10 is wanted"]
+    assert found["reference"]["reason"] == ""
     assert shown.glimpse(ASKED, Glimpse("s", 0, 0, (), (), None))["reference"] is None
 
 

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -87,6 +88,21 @@ def test_numbers_and_table_say_the_same(found: DesignSearch, written: Path) -> N
         assert float(row["relative_friction"]) == one["relative_friction"]
         assert float(row["yield"]) == one["made"]["yield"]
         assert row["neighbour"] == ("" if one["neighbour"] is None else str(one["neighbour"]))
+
+
+def test_a_limit_that_nobody_could_judge_has_its_row(tmp_path: Path) -> None:
+    """Its number is not there, or is none."""
+    found = made_search(limits={"most_deflection": 1e-3, "most_sound_level": 90.0})
+    for member in found.front:
+        member.evaluated.numbers["deflection"] = math.nan  # type: ignore[index]
+    text = write_design(found, tmp_path).read_text(encoding="utf-8")
+    plain = re.sub(r"\s", " ", text)
+    for said, limit in (
+        ("deflection when pressed", "at most 1 mm"),
+        ("sound level at 0.5 m", "at most 90 dB"),
+    ):
+        row = f"{said}</th><td>not known</td><td>{limit}</td><td>not judged</td>"
+        assert row in plain
 
 
 def test_the_page_of_an_empty_front_says_so(tmp_path: Path) -> None:

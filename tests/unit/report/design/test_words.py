@@ -8,6 +8,7 @@ from tests.unit.report.design.made_search import made_search, requirements_of
 
 from squeezefilm.report.design import words
 from squeezefilm.search.design.candidate import design_of
+from squeezefilm.search.design.criteria import OF_SOLVED
 from squeezefilm.search.design.found import DesignSearch
 
 
@@ -127,11 +128,21 @@ def test_limits_that_nothing_breaks_share_a_sentence_and_the_dear_one_is_named(
 ) -> None:
     said = words.limit_sentences(found)
     broken = [one for one in found.limits if one.broken]
-    assert len(said) == len(broken) + (len(broken) < len(found.limits))
+    idle = [one for one in found.limits if not one.broken]
+    shared = {one.key in OF_SOLVED for one in idle}
+    assert len(said) == len(broken) + len(shared)
     gain = words.limit_gain(found)
     first = next((one for one in found.limits if one.best_without), None)
     assert bool(gain) == (first is not None)
     assert "screened, not solved" in gain or first is None
+
+
+def test_a_limit_that_no_screened_design_was_asked_is_not_said_to_be_kept() -> None:
+    found = made_search(limits={"least_neighbour": 3.0, "most_sound_level": 90.0})
+    said = words.limit_sentences(found)
+    asked = "half-bandwidths to a neighbour at least 3; sound level at 0.5 m at most 90 dB"
+    assert said[-1] == f"Asked of solved plates only: {asked}."
+    assert not any("neighbour" in one for one in said[:-1])
 
 
 def test_too_few_solved_plates_say_so() -> None:

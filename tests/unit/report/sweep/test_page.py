@@ -72,3 +72,12 @@ def test_wishes_are_of_what_was_asked_once() -> None:
         wishes(ASKED, ["amplitud"], [])
     with pytest.raises(InputError, match="twice"):
         wishes(ASKED, ["amplitude"], ["amplitude_m"])
+
+
+def test_nothing_is_wished_of_followed_modes_which_have_no_names_yet() -> None:
+    asked = [*ASKED, ("followed.frequency_Hz", si.Unit("Hz"))]
+    for name in ("followed.frequency_Hz", "followed.(8,0).frequency_Hz"):
+        with pytest.raises(InputError, match="names only once they are solved"):
+            wishes(asked, [name], [])
+    with pytest.raises(InputError, match=r"There are: relative_friction, amplitude_m$"):
+        wishes(asked, ["amplitud"], [])

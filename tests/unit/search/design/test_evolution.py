@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -72,6 +73,24 @@ def test_hosts_that_share_a_folder_propose_different_designs_and_learn_from_each
     assert len(_published(tmp_path)) == len(first) + len(second)
     alone = _run(Proposals(wanted, 0, None, 1, member=1), range(2))
     assert second != alone
+
+
+def test_a_folder_used_again_for_other_requirements_learns_nothing_from_the_first(
+    tmp_path: Path,
+) -> None:
+    """Other limits have other excesses, and three objectives are no two."""
+    own = requirements()
+    _run(Proposals(own, 0, tmp_path, 1), range(1), 20)
+    strict = replace(own, limits=replace(own.limits, most_power=1.0))
+    third = replace(own, objectives=(*own.objectives, "mass"))
+    for wanted in (strict, third):
+        alone = Proposals(wanted, 0, None, 1, member=1)
+        beside = Proposals(wanted, 0, tmp_path, 1, member=1)
+        for batch in range(2):
+            first, second = alone.ask(20, batch), beside.ask(20, batch)
+            assert [one for _, one in first] == [one for _, one in second]
+            for asked, who in ((first, alone), (second, beside)):
+                who.tell([(trial, formula(wanted, d, "screened")) for trial, d in asked])
 
 
 def test_the_dear_sampler_learns_from_what_others_solved() -> None:

@@ -59,3 +59,11 @@ def test_the_knee_is_between_the_ends() -> None:
     rows = np.array([[0.0, 1.0], [0.2, 0.2], [1.0, 0.0]])
     assert knee_of(rows) == 1
     assert knee_of(rows[:1]) == 0
+
+
+def test_what_is_infinite_is_dominated_like_any_number() -> None:
+    """A reference whose gratings nobody feels has an infinite objective."""
+    good, none = np.array([0.3, 1e-3]), np.array([0.3, np.inf])
+    assert dominates(good, none)
+    assert not dominates(none, good)
+    assert not dominates(none, none)

@@ -1,8 +1,14 @@
 from __future__ import annotations
 
-import pytest
+from dataclasses import replace
 
-from squeezefilm.chain.prediction import predict
+import pytest
+from tests.unit.report.design.made_search import made_search
+from tests.unit.search.design.made_up import requirements
+
+from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.errors import GeometryError
+from squeezefilm.search.design import reference
 from squeezefilm.search.design.reference import reference_of
 from squeezefilm.search.design.requirements import load_requirements
 
@@ -16,3 +22,24 @@ def test_the_papers_plate_is_judged_by_the_questions_of_the_search() -> None:
     assert "cost" not in found.numbers
     # It keeps every limit that was set by it, so that what beats it beats it at equal ones.
     assert found.broken == ()
+
+
+def test_a_reference_that_cannot_be_judged_says_why_and_nothing_beats_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    wanted = requirements(**{'compare_with = ""': 'compare_with = "biet2008-plate"'})
+
+    def refused(*_: object, **__: object) -> Prediction:
+        raise GeometryError("too thin to be solved")
+
+    monkeypatch.setattr(reference, "predict", refused)
+    found = reference_of(wanted)
+    assert (found.reason, found.numbers) == ("too thin to be solved", {})
+    monkeypatch.undo()
+    screened = predict("biet2008-plate", theory="timoshenko")
+    screened = replace(screened, objections=("not solved: too large",))
+    monkeypatch.setattr(reference, "predict", lambda *_, **__: screened)
+    assert reference_of(wanted).reason == "not solved: too large"
+    plates = made_search()
+    assert plates.beats_reference
+    assert replace(plates, reference=found).beats_reference == ()

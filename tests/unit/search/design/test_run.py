@@ -1,20 +1,26 @@
 from __future__ import annotations
 
+import contextlib
+import math
 import warnings
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from tests.unit.search.design.made_up import evaluated_by_formula, requirements
+from tests.unit.search.design.made_up import evaluated_by_formula, random_designs, requirements
 
 import squeezefilm.search.design.run as run
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.errors import ConfigError, InputError, WorkersError
 from squeezefilm.results import config_hash
+from squeezefilm.search.design import candidate
 from squeezefilm.search.design.candidate import Evaluated
 from squeezefilm.search.design.found import DesignSearch
 from squeezefilm.search.design.reasons import limit_in_words, margins
 from squeezefilm.search.design.tolerance import Made
+from squeezefilm.search.tasks import Lost
 
 
 def _made(wanted: object, one: Evaluated) -> Made:
@@ -78,14 +84,92 @@ def test_a_search_that_was_stopped_goes_on(
         return evaluated_by_formula(*args)  # type: ignore[arg-type]
 
     monkeypatch.setattr(run, "evaluate_all", stopping)
-    stopped = run.search_until_stopped(
+    stopped, why = run.search_until_stopped(
         run.SearchRequest(requirements(), screened=400, solved=60, out=tmp_path)
     )
-    assert stopped.stopped
+    assert (stopped.stopped, why) == (True, "stopped")
     monkeypatch.setattr(run, "evaluate_all", evaluated_by_formula)
     found = _search(tmp_path)
     assert not found.stopped
     assert [one.evaluated for one in found.front] == [one.evaluated for one in whole.front]
+
+
+class _Deadly:
+    """Workers of which one dies of every eighth task."""
+
+    def answers(
+        self, function: Callable[..., Any], tasks: dict[Any, Any], alike: object = None
+    ) -> Iterator[tuple[Any, Any]]:
+        for number, (key, arguments) in enumerate(tasks.items()):
+            yield key, Lost() if number % 8 == 0 else function(*arguments)
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_designs_that_a_process_died_of_are_asked_again_another_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as dying:
+        dying.setattr(run, "workers", lambda **_: contextlib.nullcontext(_Deadly()))
+        lost = _search(tmp_path)
+    assert any(one.reason == Lost().reason for one in lost.screened)
+    again = _search(tmp_path)
+    assert again.computed > 0
+    assert not any(one.reason for one in again.screened)
+
+
+def test_a_fault_of_ours_is_told_and_may_be_mended_another_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def faulty(*_: object) -> None:
+        raise KeyError("x")
+
+    wanted = requirements()
+    monkeypatch.setattr(candidate, "display_of", faulty)
+    found = candidate.evaluate(wanted, random_designs(wanted, 1)[0], "screened")
+    assert found.reason == "not foreseen: KeyError: 'x'"
+    assert not found.lasting
+
+
+class _Gone:
+    """Workers of a cluster whose scheduler dies after so many tasks."""
+
+    def __init__(self, left: int) -> None:
+        self.left = left
+
+    def answers(
+        self, function: Callable[..., Any], tasks: dict[Any, Any], alike: object = None
+    ) -> Iterator[tuple[Any, Any]]:
+        for key, arguments in tasks.items():
+            if not self.left:
+                raise WorkersError("the scheduler answers no more; start it")
+            self.left -= 1
+            yield key, function(*arguments)
+
+
+@pytest.mark.usefixtures("by_formula")
+def test_a_cluster_that_is_gone_leaves_what_was_found_and_why_it_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    asked = run.SearchRequest(
+        requirements(), screened=200, solved=40, scheduler="tcp://there:1", progress=told.append,
+        out=tmp_path,
+    )  # fmt: skip
+    with monkeypatch.context() as clustered:
+        gone = _Gone(60)
+        clustered.setattr(run, "workers", lambda **_: contextlib.nullcontext(gone))
+        found, why = run.search_until_stopped(asked)
+        assert (found.stopped, why) == (True, "the scheduler answers no more; start it")
+        assert found.front
+        solving = [one for one in told if one.startswith("solving")]
+        assert solving
+        # How many solve at once is not known.
+        assert not any("left" in one for one in solving)
+        with pytest.raises(WorkersError):
+            run.search_designs(requirements(), screened=20, scheduler="tcp://there:1")
+        # Without anything found there is nothing to show.
+        with pytest.raises(WorkersError):
+            run.search_until_stopped(replace(asked, out=None))
 
 
 def _made_of_low_voltages(wanted: object, one: Evaluated) -> Made:
@@ -129,6 +213,15 @@ def test_the_reasons_name_the_limits_and_what_they_cost() -> None:
     corner = [one for one in found.corners if "nodal lines 5" in one.where]
     assert corner
     assert corner[0].key == "resonance_frequency"
+
+
+def test_the_nearest_limits_come_first_whatever_is_not_known() -> None:
+    wanted = requirements()
+    wanted = replace(wanted, limits=replace(wanted.limits, most_deflection=1e-3, most_mass=0.1))
+    one = evaluated_by_formula(wanted, tuple(random_designs(wanted, 1)), "solved")[0]
+    near = margins(wanted, replace(one, numbers={**one.numbers, "deflection": math.nan}))
+    assert set(near) == {"relative_friction", "resonance_frequency", "temperature_rise"}
+    assert list(near.values()) == sorted(near.values())
 
 
 @pytest.mark.usefixtures("by_formula")

@@ -241,7 +241,9 @@ class SearchView {
     this.foundBox.hidden = !(plates.length || screened.length || search.reference);
     if (this.foundBox.hidden) return;
     const { objectives } = search.asked;
-    this.front.set({ objectives, screened, plates, reference: search.reference, chosen: search.chosen });
+    // What is not finite comes as null, and has no place in the figure.
+    const reference = search.reference?.objectives.every((one) => one !== null) ? search.reference : null;
+    this.front.set({ objectives, screened, plates, reference, chosen: search.chosen });
     this.frontNote.textContent = plates.length ? "Less is better in both directions. Press a point to open that plate in Design."
       : search.end ? "No solved plate meets all limits." : "Less is better in both directions. No plate has been solved yet that meets all limits.";
     this.showRows(plates, search);
@@ -317,7 +319,7 @@ class SearchView {
     const ranks = Object.entries(search.ranks).map(([name, value]) => `${name}: ${plain(value, 2)}`).join("; ");
     const facts = [`${search.screened} designs screened, ${search.solved} solved; ${search.computed} answers computed, ${search.kept} known from before`,
       `The front holds ${plain(100 * search.hypervolume, 3)} % of the objectives' box`,
-      ...(search.reference ? [search.beats.length ? `${search.beats.length} of its plates ${search.beats.length === 1 ? "beats" : "beat"} ${search.reference.name} by the same questions` : `None of its plates beats ${search.reference.name} by the same questions`,
+      ...(search.reference?.reason ? [`${search.reference.name} could not be judged: ${search.reference.reason}`] : search.reference ? [search.beats.length ? `${search.beats.length} of its plates ${search.beats.length === 1 ? "beats" : "beat"} ${search.reference.name} by the same questions` : `None of its plates beats ${search.reference.name} by the same questions`,
         ...search.reference.breaks.map((text) => `${search.reference.name} itself breaks a limit: ${text}`)] : []),
       ...(ranks ? [`Screened and solved plates have the same order with a rank correlation of ${ranks}`] : [])];
     this.reasons.replaceChildren(list("In short", facts, ""), list("What each limit costs", search.limits, "No limit was broken."),
