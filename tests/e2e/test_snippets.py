@@ -26,6 +26,8 @@ def _snippets(page: Path) -> list[tuple[int, bool, str]]:
 
 
 WITH_SNIPPETS = [page for page in PAGES if _snippets(page)]
+# Those that play in real time.
+PLAYED = ("front-door.md", "psychopy.md", "twin.md")
 
 
 def _run(page: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, *, heavy: bool) -> None:
@@ -46,11 +48,13 @@ def test_the_snippets_of_a_page_run(
 
 
 @pytest.mark.nightly
-@pytest.mark.realtime
 @pytest.mark.parametrize(
     "page",
-    [page for page in WITH_SNIPPETS if any(heavy for _, heavy, _ in _snippets(page))],
-    ids=lambda page: page.name,
+    [
+        pytest.param(page, id=page.name, marks=[pytest.mark.realtime] * (page.name in PLAYED))
+        for page in WITH_SNIPPETS
+        if any(heavy for _, heavy, _ in _snippets(page))
+    ],
 )
 def test_the_heavy_snippets_run_too(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
