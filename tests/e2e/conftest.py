@@ -23,7 +23,7 @@ _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _kept_within_a_run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+def kept_within_a_run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What whole verbs and pages solve is kept from one test to the next, as it is for people, but
     not from one run of the tests to the next: it is solved by the source that is tested."""
     base = tmp_path_factory.getbasetemp()

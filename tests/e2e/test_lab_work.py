@@ -17,6 +17,11 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.chromium
 
 
+@pytest.fixture(scope="module", autouse=True)
+def kept_within_a_run() -> None:
+    """Nothing is kept: what is looked at here is how a solve shows itself while it lasts."""
+
+
 class Held:
     """Keeps the lab's answers to computations of some qualities until they are let go."""
 
