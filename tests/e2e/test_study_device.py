@@ -129,8 +129,9 @@ def test_a_session_on_a_twin_behind_a_port(store: StudyStore) -> None:
     rows = store.rows("SELECT * FROM response")
     assert len(rows) == 2
     for row in rows:
-        # A stroke of 80 mm/s on average for a second.
-        assert row["mean_speed_m_per_s"] == pytest.approx(0.08, rel=0.4)
+        # A second of strokes of 80 mm/s on average: of all of one, or where the machine held the
+        # trial up of its middle alone, in which a sine is faster by π/2.
+        assert 0.04 < row["mean_speed_m_per_s"] < 0.13
         assert row["path_length_m"] > 0.04
         assert row["device_sha256"]
         assert row["calibration_sha256"]
