@@ -17,7 +17,7 @@ from squeezefilm.study.tasks.analyze import analyze_answers
 from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions
 from squeezefilm.study.tasks.methods import methods_text
-from squeezefilm.study.tasks.same_different import same_different_on_grid
+from squeezefilm.study.tasks.same_different import false_alarms, same_different_on_grid
 from squeezefilm.study.tasks.two_interval import comparisons, differences, on_grid, t_interval
 
 SHARP = Person(0.02, 0.9, 0.0)
@@ -192,3 +192,41 @@ def test_methods_name_what_was_done_and_cite_it() -> None:
     assert "Moscatelli" in text
     constant, _ = group("constant", 2)
     assert "in the order of a Williams square" in methods_text(constant, 0)
+
+
+def test_somebody_without_a_same_trial_has_no_share_in_false_alarms() -> None:
+    made, _ = group("same-different", 4)
+    lacking = made.take((made.participant != 0) | (made.first != made.second))
+    others = made.take(made.participant != 0)
+    assert false_alarms(lacking.main(0), 0.95) == false_alarms(others.main(0), 0.95)
+    (found,) = analyze_answers(lacking, "lacking").values()
+    assert isinstance(found, TaskAnalysis)
+    assert all(math.isfinite(one.value) for one in found.more.values())
+
+
+def test_the_same_twice_has_response_times_of_its_own() -> None:
+    made, _ = group("same-different")
+    times = np.where(made.first == made.second, 2.0, 1.0)
+    (found,) = analyze_answers(dataclasses.replace(made, response_time=times), "timed").values()
+    assert isinstance(found, TaskAnalysis)
+    medians = {one.name: one.median for one in found.response_times}
+    assert medians.pop("the same") == 2.0
+    assert set(medians.values()) == {1.0}
+
+
+def test_place_in_the_session_is_the_order_of_answers_and_not_their_numbers() -> None:
+    """What was asked again has a late number; a foreign file may number all trials alike."""
+    made, _ = group("constant")
+    main = made.main(0)
+    late = dataclasses.replace(main, number=main.number[::-1])
+    alike = dataclasses.replace(main, number=np.ones_like(main.number))
+    wanted = drift(main, main.correct, "right")
+    assert wanted is not None
+    assert drift(late, main.correct, "right") == wanted == drift(alike, main.correct, "right")
+
+
+def test_people_without_a_line_are_counted() -> None:
+    made, _ = group("magnitude")
+    few = made.take((made.participant != 0) | (np.cumsum(made.participant == 0) <= 2))
+    (found,) = analyze_answers(few, "few").values()
+    assert any(note.startswith("1 person has no line of their own") for note in found.notes)

@@ -10,6 +10,7 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import conditions
 from squeezefilm.study.psychometric.discrimination import differencing_rates
 from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.simulated.planned_precision import person_values
 from squeezefilm.study.tasks.analyze import analyze_answers
 from squeezefilm.study.tasks.unlike_surfaces import MEASURE, unlike_conditions
 
@@ -86,3 +87,11 @@ def test_one_person_has_the_interval_of_their_trials() -> None:
     found = analyze_answers(answers(1, 20, 8), "shapes")["biet2008-plate"]
     assert found.pooled is not None
     assert found.pooled.method == "Jeffreys, over trials"
+
+
+def test_a_study_of_shapes_is_planned_by_its_sensitivity() -> None:
+    """Surfaces without a scale have no Weber fraction, and its precision is that of d′."""
+    measure, value = person_values(answers(4, 20, 5))
+    assert measure == MEASURE
+    assert value.shape == (4,)
+    assert np.isfinite(value).all()
