@@ -74,7 +74,7 @@ def at_best_place(
     As it is, over an antinode of an even wave, where the shape is not solved (a beam, a measured
     stator), nothing moves, or friction is not known.
     """
-    if mode.solid is None and mode.disc is None:
+    if not mode.has_shape:
         return law
     if drive.amplitude == 0 or law.kind.film != "shared" or law.kind.limit != "own":
         return law

@@ -49,6 +49,9 @@ Store = Annotated[Path, typer.Argument(metavar="STUDY.sqlite", help="The study's
 NewStore = Annotated[Path, written_to("The study's file; made if not there.")]
 Consent = Annotated[bool, typer.Option("--consent", help="The participant has consented.")]
 Seed = Annotated[int, typer.Option(help="Of all orders.")]
+SeedOfFile = Annotated[
+    int | None, typer.Option(help="Of all orders of a new file; one that is there has its own.")
+]
 Display = Annotated[
     str | None,
     typer.Option(help="One of the design's, or any other by name or file, like mine.toml."),
@@ -248,10 +251,7 @@ def rehearse(
     store: NewStore,
     participants: Annotated[int, typer.Option(help="How many simulated people.")] = 3,
     observer: Observer = "fingertip",
-    seed: Annotated[
-        int | None,
-        typer.Option(help="Of all orders, for a file that is not there yet; 0 without it."),
-    ] = None,
+    seed: SeedOfFile = None,
 ) -> None:
     """Let simulated participants do every trial of a study's file, to try analysis and exports."""
     from squeezefilm.perception.observer import load_observer
@@ -292,9 +292,7 @@ class RunOptions:
         bool,
         typer.Option("--acknowledge-ultrasound", help="The exposure was read and acknowledged."),
     ] = False
-    seed: Annotated[
-        int | None, typer.Option(help="Of all orders of a new file; one that is there has its own.")
-    ] = None
+    seed: SeedOfFile = None
     by_hand: Annotated[
         str,
         typer.Option(

@@ -90,6 +90,11 @@ class WorkingMode:
     disc: AnnularMode | None = None
 
     @property
+    def has_shape(self) -> bool:
+        """Whether the shape of the vibration is solved: not of a beam, nor of a measured stator."""
+        return self.solid is not None or self.disc is not None
+
+    @property
     def neighbour(self) -> Neighbour | None:
         """The driven mode that adds most at this one's resonance, where the plate was solved."""
         return None if self.solid is None else self.solid.neighbour

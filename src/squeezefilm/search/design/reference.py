@@ -37,7 +37,7 @@ def reference_of(requirements: Requirements) -> Evaluated:
     )
     try:
         found = predict(display, voltage=requirements.drive.voltage)
-        if found.mode.solid is None and found.mode.disc is None:
+        if not found.mode.has_shape:
             return _not_judged(found.objections[-1])
         numbers = numbers_of_prediction(requirements, display, found)
         numbers |= numbers_of_solved(requirements, display, found)

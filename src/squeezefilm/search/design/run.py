@@ -116,9 +116,10 @@ def search_until_stopped(asked: SearchRequest) -> tuple[DesignSearch, str]:
     except KeyboardInterrupt:
         stopped = "stopped"
     except WorkersError as error:
-        stopped = str(error)
-        if not run.result().screened:
+        found = run.result()
+        if not found.screened:
             raise
+        return found, str(error)
     return run.result(), stopped
 
 

@@ -27,6 +27,7 @@ from squeezefilm.results import to_json
 from squeezefilm.study.conduct.again import COUNTED, restart_block
 from squeezefilm.study.conduct.study_device import DeviceVerification, StudyDevice
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
+from squeezefilm.study.record.tables import PLACED
 
 _LONGEST_TEXT = 200
 
@@ -185,12 +186,10 @@ def display_wanted(store: StudyStore, participant: str) -> str | None:
 def next_planned(store: StudyStore, participant: str) -> Row | None:
     """The row of a participant's next trial without an answer, with its `presentations` so far.
 
-    Block by block in the order of their beginnings, and within one by number: what is asked again
-    has a late number, and comes at the end of its block.
+    Trials come as `PLACED` says.
     """
     found = store.rows(
-        "WITH mine AS (SELECT *, min(number) OVER (PARTITION BY display, block) AS begun "
-        "FROM trial WHERE participant = ?) "
+        f"WITH mine AS ({PLACED} WHERE participant = ?) "
         "SELECT t.*, (SELECT count(*) FROM presentation p WHERE p.trial = t.uuid) AS presentations "
         "FROM mine t LEFT JOIN response r ON r.trial = t.uuid "
         f"WHERE r.trial IS NULL AND {COUNTED} ORDER BY t.begun, t.number LIMIT 1",

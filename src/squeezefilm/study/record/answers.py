@@ -14,7 +14,7 @@ from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.explored_trials import MEASURES
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.tables import Cell, origin_of, trial_table
+from squeezefilm.study.record.tables import Cell, is_chosen, origin_of, presented, trial_table
 
 EXPLORED = ("mean_speed_m_per_s", "mean_normal_force_N", "path_length_m", *MEASURES)
 
@@ -100,23 +100,16 @@ def recorded_answers(store: StudyStore) -> Answers:
 def answers_of(design: StudyDesign, table: Sequence[Mapping[str, Cell]], origin: str) -> Answers:
     """The same of a table with the keys of `COLUMNS` that answers need, whoever wrote it."""
     rows = [row for row in table if row["phase"] != "familiarisation" and not row["set_aside"]]
-    own = {one.name for one in (*design.stimuli, *(one.stimulus for one in design.catch))}
     known: dict[tuple[str, object], int] = {}
     surfaces: list[Stimulus] = []
 
-    def surface(name: str, row: Mapping[str, object]) -> int:
+    def surface(name: str, row: Mapping[str, Cell]) -> int:
         if not name:
             return -1
-        # What is not one of the design's an adaptive series chose, by its intensity.
-        chosen = name not in own and row["adaptive_series"]
-        key = name, row["intensity"] if chosen else None
+        key = name, row["intensity"] if is_chosen(design, name, row) else None
         if key not in known:
-            if chosen:
-                found = design.comparison(design.series(str(chosen)), float(str(row["intensity"])))
-            else:
-                found = design.stimulus(name)
             known[key] = len(surfaces)
-            surfaces.append(found)
+            surfaces.append(presented(design, name, row))
         return known[key]
 
     people = tuple(dict.fromkeys(str(row["participant_id"]) for row in rows))

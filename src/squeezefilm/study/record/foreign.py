@@ -15,10 +15,9 @@ from pathlib import Path
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.traces import text_of_file
 from squeezefilm.hard_limits import FOREIGN_TRIALS, require_within
-from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import EXPLORED, Answers, answers_of
-from squeezefilm.study.record.tables import Cell, unguarded
+from squeezefilm.study.record.tables import Cell, presented, unguarded
 
 NUMBERS = ("intensity", "estimate", "response_time_s", *EXPLORED)
 WORDS = (
@@ -173,24 +172,12 @@ def _row(
         raise refused("estimate", f"'{words['estimate']}' is not above 0, and has no logarithm")
     pair = [str(found[key]) for key in ("stimulus", "second_stimulus") if found[key]]
     try:
-        surfaces = [_surface(design, one, found) for one in pair]
+        surfaces = [presented(design, one, found) for one in pair]
     except InputError as error:
         raise refused(error.quantity or "", str(error)) from error
     if "answer" not in words:
         found["answer"] = design.answer_to(*surfaces)
     return found
-
-
-def _surface(design: StudyDesign, name: str, row: Mapping[str, Cell]) -> Stimulus:
-    """A surface of the design, or beside its reference what an adaptive series chose. Raises
-    `InputError`."""
-    series, intensity = str(row["adaptive_series"]), float(str(row["intensity"]))
-    if not series or name == design.reference:
-        return design.stimulus(name)
-    chosen = design.series(series)
-    if not math.isfinite(intensity):
-        raise InputError("say how much more than the reference it had", quantity="intensity")
-    return design.comparison(chosen, intensity)
 
 
 def _number(path: str | Path, line: int, column: str, text: str) -> float:

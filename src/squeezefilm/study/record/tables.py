@@ -12,12 +12,13 @@ import io
 import json
 import math
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from squeezefilm.errors import ConfigError
+from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.explored_trials import NO_MEASURES, ExploredTrials
 from squeezefilm.study.record.store import StudyStore
 
@@ -84,12 +85,12 @@ COLUMNS = (
 )
 """What every export holds, in this order."""
 
-# In the order in which they were asked: what was asked again has a late number, and comes at the
-# end of its block.
-_QUERY = """
-WITH placed AS (
-    SELECT *, min(number) OVER (PARTITION BY participant, display, block) AS begun FROM trial
-)
+PLACED = "SELECT *, min(number) OVER (PARTITION BY participant, display, block) AS begun FROM trial"
+"""Trials, which come in the order of `begun, number`: block by block as they begin, and within one
+by number, so that what is asked again, with a late number, comes at the end of its block."""
+
+_QUERY = f"""
+WITH placed AS ({PLACED})
 SELECT r.*, p.uuid AS participant_id, p.number AS participant_number, r.session AS session_id,
     coalesce(a.reason, '') AS set_aside,
     t.display, t.number AS trial, t.block, t.phase, t.adaptive AS adaptive_series, t.answer,
@@ -109,8 +110,6 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
     """
     design = store.design
     gratings = {one.name: one for one in design.alternatives}
-    stimuli = {one.name: one for one in design.stimuli}
-    stimuli |= {one.stimulus.name: one.stimulus for one in design.catch}
     found: list[dict[str, Cell]] = []
     explored, surfaces = ExploredTrials(store), _Surfaces()
     for row in store.rows(_QUERY):
@@ -123,13 +122,28 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
         for prefix, name in zip(("stimulus", "second_stimulus"), (*names, None), strict=False):
             row[prefix] = name or ""
             felt = row["phase"] == "familiarisation" and gratings
-            one: Any = (gratings if felt else stimuli).get(name)
-            if name is not None and one is None and row["adaptive_series"]:
-                series = design.series(row["adaptive_series"])
-                one = design.comparison(series, row["intensity"])
+            one: Stimulus | Grating | None = None
+            if name is not None:
+                one = gratings.get(name) if felt else presented(design, name, row)
             row |= {f"{prefix}_{key}": value for key, value in surfaces.cells(one).items()}
         found.append({column.name: row[column.name] for column in COLUMNS})
     return found
+
+
+def is_chosen(design: StudyDesign, name: str, row: Mapping[str, Any]) -> bool:
+    """Whether the surface of that name in a row is what an adaptive series chose."""
+    return bool(row["adaptive_series"]) and name != design.reference
+
+
+def presented(design: StudyDesign, name: str, row: Mapping[str, Any]) -> Stimulus:
+    """The surface of that name in a row: the design's own, or what an adaptive series chose beside
+    the reference, by its intensity. Raises `InputError` where there is none."""
+    if not is_chosen(design, name, row):
+        return design.stimulus(name)
+    series = design.series(row["adaptive_series"])
+    if not math.isfinite(row["intensity"]):
+        raise InputError("say how much more than the reference it had", quantity="intensity")
+    return design.comparison(series, row["intensity"])
 
 
 class _Surfaces:
