@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 import time
 from pathlib import Path
+from unittest import mock
 
 from tests.unit.search.design.made_up import formula, requirements
 
@@ -29,9 +30,12 @@ def searched(folder: Path, pause: float = 0.0) -> DesignSearch:
             there.write("".join(f"{one.address} {level}\n" for one in designs))
         return [formula(wanted, one, level) for one in designs]
 
-    run.evaluate_all = counted  # type: ignore[assignment]
-    run.made_of = lambda wanted, one: Made(64, 1.0, {}, {}, {})  # type: ignore[assignment]
-    return run.search_designs(requirements(), screened=300, solved=50, out=folder)
+    # Put back afterwards: a test calls this in its own process, where others come after it.
+    with (
+        mock.patch.object(run, "evaluate_all", counted),
+        mock.patch.object(run, "made_of", lambda wanted, one: Made(64, 1.0, {}, {}, {})),
+    ):
+        return run.search_designs(requirements(), screened=300, solved=50, out=folder)
 
 
 if __name__ == "__main__":
