@@ -33,7 +33,7 @@ def searched(folder: Path, pause: float = 0.0) -> DesignSearch:
     # Put back afterwards: a test calls this in its own process, where others come after it.
     with (
         mock.patch.object(run, "evaluate_all", counted),
-        mock.patch.object(run, "made_of", lambda wanted, one: Made(64, 1.0, {}, {}, {})),
+        mock.patch.object(run, "made_of", return_value=Made(64, 1.0, {}, {}, {})),
     ):
         return run.search_designs(requirements(), screened=300, solved=50, out=folder)
 

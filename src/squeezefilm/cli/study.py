@@ -304,8 +304,13 @@ class RunOptions:
         bool,
         typer.Option("--lsl", help="Markers for the lab streaming layer; needs squeezefilm[lsl]."),
     ] = False
-    station: Annotated[int, typer.Option(help="Which station this is, from 0.")] = 0
-    stations: Annotated[int, typer.Option(help="How many stations there are.")] = 1
+    station: Annotated[
+        int | None,
+        typer.Option(help="Which station this is, from 0; a file that is there knows its own."),
+    ] = None
+    stations: Annotated[
+        int | None, typer.Option(help="How many stations there are; 1 in a new file unless given.")
+    ] = None
 
 
 @study.command()

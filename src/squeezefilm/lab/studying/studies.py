@@ -16,7 +16,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.results import to_json
-from squeezefilm.study.conduct.again import COUNTED
+from squeezefilm.study.conduct.again import COUNTED, why_begun_again
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import (
     Exposure,
@@ -109,7 +109,11 @@ class Studies:
                 for one in store.participants()
             ],
             "sittings": [
-                {**_shown(one), "by_hand": self._by_hand(one)}
+                {
+                    **_shown(one),
+                    "begun_again": why_begun_again(store, one.session) if one.session else "",
+                    "by_hand": self._by_hand(one),
+                }
                 for one in self.sittings.of_study(study)
             ],
             "confusion": self.confusion(study),

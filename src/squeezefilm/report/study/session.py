@@ -33,8 +33,8 @@ class SessionRequest:
     consent: bool = False
     acknowledge: Callable[[str], bool] = ask_acknowledgement
     seed: int | None = None
-    station: int = 0
-    stations: int = 1
+    station: int | None = None
+    stations: int | None = None
     tell: Callable[[str], None] = print
     progress: Callable[[], AbstractContextManager[Callable[[str], None]]] | None = None
     by_hand: str = "terminal"

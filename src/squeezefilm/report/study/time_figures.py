@@ -31,9 +31,14 @@ def response_times(analysis: StudyAnalysis) -> Figure:
         return style.message_figure("No response times", "No response time was given.")
     slow = max(found, key=lambda item: item.geometric_mean)
     quick = min(found, key=lambda item: item.geometric_mean)
+    title = f"{style.plain(slow.name, 16)} takes {slow.geometric_mean:.2g} s"
+    if len(found) > 1:
+        title = (
+            f"{style.plain(slow.name, 16)} takes longest, {slow.geometric_mean:.2g} s; "
+            f"{style.plain(quick.name, 16)} shortest, {quick.geometric_mean:.2g} s"
+        )
     figure = style.new_figure(
-        f"{style.plain(slow.name, 16)} takes longest, {slow.geometric_mean:.2g} s; "
-        f"{style.plain(quick.name, 16)} shortest, {quick.geometric_mean:.2g} s",
+        title,
         f"{data_of(analysis)}; geometric means over people with {100 * slow.level:g} % t intervals",
         4.0,
     )

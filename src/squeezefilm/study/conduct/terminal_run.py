@@ -60,16 +60,23 @@ class Desk:
 
 
 def open_study(
-    path: Path, design: str | Path, seed: int | None, station: int = 0, stations: int = 1
+    path: Path,
+    design: str | Path,
+    seed: int | None,
+    station: int | None = None,
+    stations: int | None = None,
 ) -> StudyStore:
-    """The study's file, created if it is not there, with seed 0 without another.
+    """The study's file, created if it is not there: with seed 0 and for the only station unless
+    others are said.
 
-    The seed of a file that is there is its own; it need not be said again. Raises `InputError` if
-    the file is of another design, or of another seed than was said.
+    Seed and station of a file that is there are its own; they need not be said again. Raises
+    `InputError` if the file is of another design, or of another seed or station than was said.
     """
     wanted = load_design(design)
     if not path.exists():
-        return StudyStore.create(path, wanted, seed or 0, station=station, stations=stations)
+        return StudyStore.create(
+            path, wanted, seed or 0, station=station or 0, stations=stations or 1
+        )
     store = StudyStore.open(path)
     here = store.design.sha256
     own = store.study["seed"]
@@ -79,6 +86,13 @@ def open_study(
         raise InputError(
             f"{path} is of design {here[:12]} with seed {own}; asked for is "
             f"{wanted.sha256[:12]}{said}; leave --seed out, or give another --store"
+        )
+    of, every = store.study["station"], store.study["stations"]
+    if station not in (None, of) or stations not in (None, every):
+        store.close()
+        raise InputError(
+            f"{path} is of station {of} of {every}, which decides the orders of its participants; "
+            "leave --station and --stations out, or give another --store"
         )
     return store
 

@@ -10,6 +10,7 @@ with d′ = 0.954, told in 75 % of them.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import ndtr
@@ -132,7 +133,11 @@ def same_different_numbers(
 
 
 def false_alarms(main: Answers, level: si.Dimensionless) -> dict[str, Estimate]:
-    """The share of "different" where both were the same, over the people who had such a trial."""
+    """The share of "different" where both were the same, over the people who had such a trial.
+
+    Student's interval knows nothing of shares: of few people it would reach beyond 0 and 1, where
+    no share can be, and is cut there.
+    """
     alike = main.first == main.second
     shares = [
         np.mean(main.choice[alike & (main.participant == one)] == 1)
@@ -140,4 +145,7 @@ def false_alarms(main: Answers, level: si.Dimensionless) -> dict[str, Estimate]:
     ]
     if not shares:
         return {}
-    return {"false alarms (same called different)": t_interval(np.array(shares), level)}
+    found = t_interval(np.array(shares), level)
+    # NumPy's keep the NaN of one person.
+    low, high = float(np.maximum(found.low, 0.0)), float(np.minimum(found.high, 1.0))
+    return {"false alarms (same called different)": replace(found, low=low, high=high)}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextvars
 import shutil
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -228,6 +230,32 @@ def test_a_sitting_by_hand_from_consent_to_its_end(lab: Talk) -> None:
     assert lab.say("where", sitting=sitting)["state"] == "ended"
     said = lab.refused("prepare sitting", **of, device="none", consent=AGREED, acknowledged=True)
     assert "has answered every trial" in said
+
+
+def test_the_experimenter_sees_that_a_block_begins_again(lab: Talk) -> None:
+    design = replace(gratings(), familiarisation=0, resume_within=3600.0)
+    file = lab.folder / "studies" / "left.sqlite"
+    StudyStore.create(file, design, 4).close()
+    who = lab.say("enrol", study="left")["participants"][-1]["pseudonym"]
+    of = {"study": "left", "participant": who}
+    first = prepared(lab, **of)
+    lab.say("consent", sitting=first)
+    for _ in range(2):
+        trial = lab.say("next", sitting=first)
+        lab.say("respond", sitting=first, token=trial["token"], choice=trial["alternatives"][0])
+    lab.say("end sitting", sitting=first)
+    late = (datetime.now(UTC) - timedelta(hours=30)).isoformat(timespec="milliseconds")
+    with StudyStore.open(file) as store, store.transaction() as write:
+        write.execute("UPDATE response SET ended_utc = ?", [late])
+    second = prepared(lab, **of)
+    (shown,) = lab.say("study", study="left")["sittings"]
+    assert (shown["id"], shown["begun_again"]) == (second, "")
+    lab.say("consent", sitting=second)
+    (shown,) = lab.say("study", study="left")["sittings"]
+    assert shown["begun_again"] == (
+        "the block was left for about 30 h, and may be for 60 min; it begins again: "
+        "2 answers are set aside"
+    )
 
 
 @pytest.mark.parametrize(

@@ -97,6 +97,17 @@ def test_times_of_no_distribution_leave_its_place_empty(analysis: Identification
     assert [one.get_text() for one in right.texts] == ["no ex-Gaussian: too few times"]
 
 
+def test_of_one_stimulus_no_time_is_the_longest(analysis: IdentificationAnalysis) -> None:
+    times = analysis.response_times
+    one, two = (
+        " ".join(study_time_figures.response_times(few).get_suptitle().split())
+        for few in (replace(analysis, response_times=times[:count]) for count in (1, 2))
+    )
+    assert "takes longest" in two
+    assert "shortest" in two
+    assert one == f"{times[0].name} takes {times[0].geometric_mean:.2g} s"
+
+
 def test_power_is_drawn_with_what_is_needed() -> None:
     curve = power_curve(
         DirichletParticipants(ordered_observer(1.5), 3, 20.0),

@@ -204,6 +204,18 @@ def test_somebody_without_a_same_trial_has_no_share_in_false_alarms() -> None:
     assert all(math.isfinite(one.value) for one in found.more.values())
 
 
+def test_no_interval_of_false_alarms_reaches_beyond_what_a_share_can_be() -> None:
+    """Of two people, Student's would: here from -5.85 to 6.85."""
+    made, _ = group("same-different", 2)
+    same = made.first == made.second
+    choice = np.where(same, np.where(made.participant == 0, 0, 1), made.choice)
+    (found,) = false_alarms(dataclasses.replace(made, choice=choice).main(0), 0.95).values()
+    assert (found.low, found.value, found.high) == (0.0, 0.5, 1.0)
+    (alone,) = false_alarms(made.take(made.participant == 0).main(0), 0.95).values()
+    assert math.isnan(alone.low)
+    assert math.isnan(alone.high)
+
+
 def test_the_same_twice_has_response_times_of_its_own() -> None:
     made, _ = group("same-different")
     times = np.where(made.first == made.second, 2.0, 1.0)

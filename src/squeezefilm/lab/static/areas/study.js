@@ -193,6 +193,7 @@ class StudyView {
     return element("tr", { "data-participant": one.pseudonym }, element("td", {}, element("code", { text: one.pseudonym })),
       element("td", { class: "nowrap" }, element("progress", { value: one.answered, max: one.planned, "aria-label": "answered" }), element("span", { class: "count", text: ` ${one.answered} of ${one.planned}` })),
       element("td", { text: one.display ?? "finished" }), element("td", {}, sitting ? (sitting.begun ? "running" : "prepared") : "–",
+        sitting?.begun_again ? element("p", { class: "warning", text: sitting.begun_again }) : "",
         element("div", { class: "byhand" }, ...byHand(this.study, one.pseudonym))), element("td", {}, actions));
   }
 
