@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm import __version__
-from squeezefilm.errors import InputError
 from squeezefilm.results import config_hash, to_json
+from squeezefilm.search.lines import Lines
 from squeezefilm.search.options import OPTIONS
 from squeezefilm.search.points import Answer, Point
 from squeezefilm.search.verbs import VERBS
@@ -66,23 +66,13 @@ class Kept:
     """
 
     def __init__(self, folder: Path | None) -> None:
-        self._file = None if folder is None else folder / FILE
+        self._lines = None if folder is None else Lines(folder / FILE)
         self._answers: dict[str, Answer] = {}
-        if self._file is None:
-            return
-        try:
-            self._file.parent.mkdir(parents=True, exist_ok=True)
-            lines = self._file.read_bytes().splitlines() if self._file.exists() else []
-        except OSError as error:
-            raise InputError(
-                f"cannot use {self._file}: {error.strerror}; choose another folder"
-            ) from error
-        for line in lines:
-            try:
-                read = json.loads(line)
-                self._answers[read["address"]] = _answer(read)
-            except (ValueError, KeyError, TypeError):
-                continue  # the last line of a sweep that was killed: computed again
+        if self._lines is not None:
+            self._lines.read(self._take)
+
+    def _take(self, read: Any) -> None:
+        self._answers[read["address"]] = _answer(read)
 
     def __len__(self) -> int:
         return len(self._answers)
@@ -94,7 +84,7 @@ class Kept:
     def add(self, at: str, point: Point, answer: Answer) -> None:
         """Keep an answer; what might be another one another time is kept in memory only."""
         self._answers[at] = answer
-        if self._file is None or not answer.lasting:
+        if self._lines is None or not answer.lasting:
             return
         kept = {
             "address": at,
@@ -105,24 +95,7 @@ class Kept:
             "seconds": answer.seconds,
             "modes": answer.modes,
         }
-        line = json.dumps(kept, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-        try:
-            # A line that was cut off before must not swallow this one.
-            with self._file.open("ab+") as file:
-                if file.tell() and not _ends_line(self._file):
-                    file.write(b"\n")
-                file.write(line.encode() + b"\n")
-        except OSError as error:
-            raise InputError(
-                f"cannot write {self._file}: {error.strerror}; free space or choose another "
-                "folder, and the sweep goes on from there"
-            ) from error
-
-
-def _ends_line(file: Path) -> bool:
-    with file.open("rb") as there:
-        there.seek(-1, 2)
-        return there.read() == b"\n"
+        self._lines.append([kept])
 
 
 def _answer(read: dict[str, Any]) -> Answer:

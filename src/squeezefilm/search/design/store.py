@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm import __version__
-from squeezefilm.errors import InputError
 from squeezefilm.results import config_hash, to_json
 from squeezefilm.search.design.candidate import Design, Evaluated, Level
 from squeezefilm.search.design.criteria import breaches
 from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.tolerance import DRAWS, Made
+from squeezefilm.search.lines import Lines
 
 FILE = "designs.jsonl"
 """Its name in the folder of a search: a line for every evaluated design."""
@@ -72,33 +72,19 @@ class DesignStore:
 
     def __init__(self, requirements: Requirements, folder: Path | None) -> None:
         self._requirements, self._hash = requirements, asked_hash(requirements)
-        self._file = None if folder is None else folder / FILE
+        self._lines = None if folder is None else Lines(folder / FILE)
         self._known: dict[tuple[Design, Level], Evaluated] = {}
         self._made: dict[Design, Made] = {}
         self._made_hash = _made_hash(requirements)
         self.computed = 0
-        if self._file is not None:
-            self._load(self._file)
+        if self._lines is not None:
+            self._lines.read(self._take)
 
-    def _load(self, file: Path) -> None:
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            lines = file.read_bytes().splitlines() if file.exists() else []
-        except OSError as error:
-            raise InputError(
-                f"cannot use {file}: {error.strerror}; choose another folder"
-            ) from error
-        for line in lines:
-            try:
-                read = json.loads(line)
-                if "kept" in read:
-                    self._read_made(read)
-                    continue
-                known = self._evaluated(read)
-            except (ValueError, KeyError, TypeError, AttributeError):
-                continue  # the last line of a search that was killed: computed again
-            if known is not None:
-                self._known[known.design, known.level] = known
+    def _take(self, read: Any) -> None:
+        if "kept" in read:
+            self._take_made(read)
+        elif (known := self._evaluated(read)) is not None:
+            self._known[known.design, known.level] = known
 
     def __len__(self) -> int:
         return len(self._known)
@@ -115,7 +101,7 @@ class DesignStore:
             self._known[one.design, one.level] = one
             self.computed += 1
             if one.lasting:
-                lines.append(json.dumps(self._line(one), separators=(",", ":"), allow_nan=False))
+                lines.append(self._line(one))
         self._append(lines)
 
     def made(self, design: Design) -> Made | None:
@@ -126,9 +112,9 @@ class DesignStore:
         """Keep what is made of a design's drawing."""
         self._made[design] = made
         head = {"asked": self._made_hash, "shape": design.shape, "values": design.settings}
-        self._append([json.dumps(head | to_json(made), separators=(",", ":"), allow_nan=False)])
+        self._append([head | to_json(made)])
 
-    def _read_made(self, read: Mapping[str, Any]) -> None:
+    def _take_made(self, read: Mapping[str, Any]) -> None:
         if read["asked"] != self._made_hash:
             return
         design = Design(int(read["shape"]), tuple(read["values"].items()))
@@ -139,18 +125,9 @@ class DesignStore:
             read["draws"], read["kept"], read["broken"], intervals, read["effects"]
         )
 
-    def _append(self, lines: list[str]) -> None:
-        if self._file is None or not lines:
-            return
-        try:
-            # In one write, that lines of several hosts do not mix; a cut-off line before ends here.
-            with self._file.open("ab") as file:
-                file.write(("\n" + "\n".join(lines) + "\n").encode())
-        except OSError as error:
-            raise InputError(
-                f"cannot write {self._file}: {error.strerror}; free space or choose another "
-                "folder, and the search goes on from there"
-            ) from error
+    def _append(self, lines: list[dict[str, Any]]) -> None:
+        if self._lines is not None:
+            self._lines.append(lines)
 
     def _line(self, one: Evaluated) -> dict[str, Any]:
         return {
