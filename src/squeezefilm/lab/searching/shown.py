@@ -91,7 +91,7 @@ def result(found: DesignSearch) -> dict[str, Any]:
     asked, chosen = found.requirements, found.chosen
     return {
         "screened": len(found.screened),
-        "solved": len(found.solved),
+        "solved": found.plates_solved,
         "front": [plate(asked, one.evaluated, one.made) for one in found.front],
         "reference": reference(asked, found.reference),
         "chosen": None if chosen is None else chosen.name,

@@ -12,6 +12,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.report.design.words import (
     criterion_words,
+    front_words,
     limit_words,
     setting_words,
 )
@@ -88,9 +89,8 @@ def _front_title(found: DesignSearch) -> str:
             for end in (float(found.objectives[:, k].min()), float(found.objectives[:, k].max()))
         )
         spans.append(f"{one.said} {low}" if low == high else f"{one.said} from {low} to {high}")
-    count = len(found.front)
-    plates = "1 plate is the front" if count == 1 else f"{count} plates are the front"
-    return f"{plates}: {', '.join(spans)}"
+    verb = "is" if found.plates_on_front == 1 else "are"
+    return f"{front_words(found)} {verb} the front: {', '.join(spans)}"
 
 
 def _front_axes(

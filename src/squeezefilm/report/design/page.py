@@ -145,9 +145,9 @@ def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
         yield (
             kind,
             f"{requirements.compare_with} has {said}; "
-            f"{len(found.beats_reference) or 'none'} of the front's plates "
-            f"{'are' if len(found.beats_reference) > 1 else 'is'} better in an objective and worse "
-            "in none.",
+            f"{found.plates_better or 'none'} of the front's plates "
+            f"{'are' if found.plates_better > 1 else 'is'} better in an objective and worse in "
+            "none.",
         )
     if gain := limit_gain(found):
         yield "limit", gain

@@ -91,7 +91,7 @@ def _show_front(console: Console, found: DesignSearch) -> None:
         made_of = [[one.name, chosen_words(requirements, one.evaluated.design)] for one in members]
         table(console, ("", ""), made_of, fixed=(0,))
         if len(found.front) > len(members):
-            console.print(f"{len(found.front) - len(members)} more plates stand in front.csv")
+            console.print(f"{len(found.front) - len(members)} more rows stand in front.csv")
     heading(console, "The plate to build")
     _say(console, chosen_sentences(found))
     assert found.chosen is not None, "there is a front"

@@ -118,20 +118,28 @@ def asked_sentences(requirements: Requirements) -> list[str]:
 
 def counts_sentence(found: DesignSearch) -> str:
     """How many designs were looked at, and what is left of them."""
-    screened, solved = len(found.screened), len(found.solved)
+    screened, several = len(found.screened), len(found.solved) > found.plates_solved
     feasible = sum(one.is_feasible for one in found.screened)
-    kept = sum(one.is_feasible for one in found.solved)
     failed = sum(bool(one.reason) for one in found.screened)
     return (
         f"{many(screened, 'design')} screened, of which {feasible} keep all limits"
         + (f" and {failed} cannot be built or computed" if failed else "")
-        + f"; {many(solved, 'plate')} solved in three dimensions, of which {kept} keep them; "
+        + f"; {many(found.plates_solved, 'plate')} solved in three dimensions"
+        + (", each judged at several voltages" if several else "")
+        + f", of which {found.plates_feasible} keep them; "
         + (
-            f"{many(len(found.front), 'plate')} that none other beats: the front."
+            f"{front_words(found)} that none other beats: the front."
             if found.front
             else "the front is empty."
         )
     )
+
+
+def front_words(found: DesignSearch) -> str:
+    """How many plates the front has, and at how many voltages in all where these are more."""
+    plates = many(found.plates_on_front, "plate")
+    count = len(found.front)
+    return plates if count == found.plates_on_front else f"{plates}, at {count} voltages in all,"
 
 
 def many(count: int, word: str) -> str:
@@ -278,9 +286,9 @@ def reference_sentences(found: DesignSearch) -> list[str]:
     if not found.front:
         return [*said, "No plate was found to set beside it."]
     said += [_left(found, k, own) for k in range(len(goals))]
-    better = len(found.beats_reference)
+    better = found.plates_better
     said.append(
-        f"Of {many(len(found.front), 'plate')} of the front {better} beat it: better in an "
+        f"Of {many(found.plates_on_front, 'plate')} of the front {better} beat it: better in an "
         "objective and worse in none."
         if better
         else "No plate of the front is better than it in an objective and worse in none."

@@ -25,7 +25,7 @@ from squeezefilm.search.design.criteria import (
     numbers_of_solved,
 )
 from squeezefilm.search.design.requirements import Requirements
-from squeezefilm.search.design.space import Setting
+from squeezefilm.search.design.space import VOLTAGE, Setting
 
 Level = Literal["screened", "solved"]
 
@@ -56,6 +56,15 @@ class Design:
         """A short name that no other design has."""
         text = json.dumps([self.shape, sorted(self.values)])
         return hashlib.sha256(text.encode()).hexdigest()[:10]
+
+    @property
+    def plate(self) -> Design:
+        """What is built and solved, whatever voltage drives it: the design without its voltage."""
+        return Design(self.shape, tuple(one for one in self.values if one[0] != VOLTAGE))
+
+    def at_voltage(self, voltage: si.Volt) -> Design:
+        """The same plate driven with another voltage (V)."""
+        return design_of(self.shape, {**self.settings, VOLTAGE: voltage})
 
 
 def design_of(shape: int, values: Mapping[str, Setting]) -> Design:
@@ -105,7 +114,7 @@ def display_of(requirements: Requirements, design: Design) -> Display:
         name=f"{requirements.name}-{design.address}",
         title=f"{requirements.title}: {shape.type} {design.address}",
         actuator=body,
-        drive=replace(base.drive, voltage=float(settings["voltage"])),
+        drive=replace(base.drive, voltage=float(settings[VOLTAGE])),
         provenance={},
     )
 

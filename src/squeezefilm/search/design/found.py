@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -43,8 +43,9 @@ class DesignSearch(Result):
     """A search: every design that was looked at, and what follows.
 
     `front` are the feasible solved designs that none other beats, the best in the first objective
-    first. `reference` is the display of `compare_with`, judged by the same questions. `corrections`
-    are by shape what solved plates taught the screening. `stopped` says that not all was done.
+    first; one plate may stand there at several voltages. `reference` is the display of
+    `compare_with`, judged by the same questions. `corrections` are by shape what solved plates
+    taught the screening. `stopped` says that not all was done.
     """
 
     requirements: Requirements
@@ -77,6 +78,27 @@ class DesignSearch(Result):
     def chosen_name(self) -> str:
         """Its short name."""
         return "none" if self.chosen is None else self.chosen.name
+
+    @functools.cached_property
+    def plates_solved(self) -> int:
+        """How many plates were solved in three dimensions; `solved` has each at several voltages
+        where there are any to choose."""
+        return _plates(self.solved)
+
+    @functools.cached_property
+    def plates_feasible(self) -> int:
+        """How many of the solved plates keep all limits at one voltage or more."""
+        return _plates(one for one in self.solved if one.is_feasible)
+
+    @functools.cached_property
+    def plates_on_front(self) -> int:
+        """How many plates the front has, each at one voltage or more."""
+        return _plates(one.evaluated for one in self.front)
+
+    @property
+    def plates_better(self) -> int:
+        """How many plates of the front beat the reference at one voltage or more."""
+        return _plates(one.evaluated for one in self.beats_reference)
 
     @functools.cached_property
     def worst(self) -> si.FloatArray:
@@ -151,8 +173,9 @@ class DesignSearch(Result):
             "objectives": list(self.requirements.objectives),
             "screened": len(self.screened),
             "screened_feasible": sum(one.is_feasible for one in self.screened),
-            "solved": len(self.solved),
-            "solved_feasible": sum(one.is_feasible for one in self.solved),
+            "plates_solved": self.plates_solved,
+            "plates_feasible": self.plates_feasible,
+            "plates_on_front": self.plates_on_front,
             "front": [_row(self.requirements, one) for one in self.front],
             "chosen": None if chosen is None else chosen.name,
             "reference": None
@@ -185,6 +208,10 @@ class DesignSearch(Result):
 
     def _table(self) -> Any:
         return [_row(self.requirements, one) for one in self.front]
+
+
+def _plates(designs: Iterable[Evaluated]) -> int:
+    return len({one.design.plate for one in designs})
 
 
 def _numbers(one: Evaluated) -> dict[str, Any]:

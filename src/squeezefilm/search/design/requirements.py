@@ -19,7 +19,7 @@ from squeezefilm.from_text import ReadBy
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.search.design.shape import Body, Room
 from squeezefilm.search.design.shapes import AnyShape
-from squeezefilm.search.design.space import Space, number
+from squeezefilm.search.design.space import VOLTAGE, Space, number
 from squeezefilm.search.design.stock import OWN
 
 Objective = Literal[
@@ -244,7 +244,7 @@ class Requirements:
     def spaces(self) -> tuple[Space, ...]:
         """What may be chosen, shape by shape. Raises `InputError` for ranges that are none."""
         least = self.drive.least_voltage or self.drive.voltage
-        volts = number("voltage", least, self.drive.voltage, "V")
+        volts = number(VOLTAGE, least, self.drive.voltage, "V")
         names = [one.type for one in self.shapes]
         return tuple(
             Space(

@@ -31,15 +31,18 @@ from squeezefilm.search.design.front import front_of
 from squeezefilm.search.design.reasons import empty_corners, limit_reasons
 from squeezefilm.search.design.reference import reference_of
 from squeezefilm.search.design.requirements import NamedRequirements
-from squeezefilm.search.design.space import Space
+from squeezefilm.search.design.space import VOLTAGE, Space
 from squeezefilm.search.design.store import DesignStore, requirements_hash
 from squeezefilm.search.design.tolerance import Made, made_of
 from squeezefilm.search.design.worth_solving import Seen, objectives_of, worth_solving
 from squeezefilm.search.tasks import Lost, Workers
 from squeezefilm.search.workers import workers
 
-# Designs to a task: a screened one takes some ten milliseconds, a solved one up to seconds.
-_TOGETHER: Mapping[Level, int] = {"screened": 8, "solved": 1}
+# Screened designs to a task: one takes some ten milliseconds.
+_TOGETHER = 8
+# Voltages, from the least to the most, at which a plate that was solved is judged beside its own: a
+# tenth of the time of solving another, but where an interval is asked of each.
+_VOLTAGES: Mapping[str, int] = {"nominal": 5, "95 %": 3}
 _BATCH = 16
 # The share of the solved designs that the Bayesian sampler proposes.
 _DEAR = 0.25
@@ -88,7 +91,8 @@ def search_designs(asked: SearchRequest) -> DesignSearch:
         requirements: what is asked of a display; a preset's name, or a TOML file.
         screened: designs that are looked at by the screening theory before any is solved; beside
             the front some hundreds more are, between one batch of solved plates and the next.
-        solved: designs that are solved in three dimensions, at most.
+        solved: plates that are solved in three dimensions, at most; each is judged at voltages
+            from the least to the most.
         seed: of everything that is drawn.
         jobs: processes; more than one in a script needs ``if __name__ == "__main__":``.
         scheduler: of a Dask cluster that computes in place of processes, "tcp://host:8786".
@@ -148,8 +152,10 @@ class SearchRun:
         with workers(jobs=asked.jobs, scheduler=asked.scheduler, tell=self._tell) as pool:
             self._compare()
             self._screen(pool)
-            self._solve_the_best(pool)
+            every = self._asked.solved
+            self._solve_the_best(pool, every - round(_DEAR * every))
             self._propose_dear(pool)
+            self._solve_the_best(pool, every)
             self._make(pool)
         self._done = True
 
@@ -193,11 +199,10 @@ class SearchRun:
             self.requirements, shape, self._folder, asked.seed, member=asked.member, dear=dear
         )
 
-    def _solve_the_best(self, pool: Workers) -> None:
+    def _solve_the_best(self, pool: Workers, most: int) -> None:
         """Solve the designs that the screening, corrected by what was solved, takes for the best,
-        until none is left that might enter the front."""
-        most = round((1 - _DEAR) * self._asked.solved)
-        while (left := most - len(self._seen["solved"])) > 0:
+        until none is left that might enter the front, or `most` plates are solved."""
+        while (left := most - len(self._plates_solved())) > 0:
             self._learn()
             self._screen_beside_the_front(pool)
             chosen = worth_solving(
@@ -206,8 +211,23 @@ class SearchRun:
             if not chosen:
                 return
             self._say_solving("the best that were screened")
-            self._evaluated(pool, chosen, "solved")
+            self._solve(pool, chosen)
             self._show()
+
+    def _plates_solved(self) -> set[Design]:
+        return {one.plate for one in self._seen["solved"]}
+
+    def _solve(self, pool: Workers, designs: Iterable[Design]) -> Mapping[Design, Evaluated]:
+        """Solve designs, and judge their plates at other voltages, too."""
+        asked = [each for one in designs for each in (one, *self._at_other_voltages(one))]
+        return self._evaluated(pool, asked, "solved")
+
+    def _at_other_voltages(self, design: Design) -> list[Design]:
+        volts = self.requirements.spaces[design.shape].variable(VOLTAGE)
+        if volts.is_fixed:
+            return []
+        shares = np.linspace(0, 1, _VOLTAGES[self.requirements.limits.confidence]).tolist()
+        return [design.at_voltage(float(volts.at(one, {}))) for one in shares]
 
     def _screen_beside_the_front(self, pool: Workers) -> None:
         """Look by the screening theory at what differs a little from the solved front, and from
@@ -222,7 +242,8 @@ class SearchRun:
         self._screen_near(pool, ends, Space.beside)
         draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
         for _ in range(_GENERATIONS):
-            known = [front[k].design for k in draw.permutation(len(front))[:_FROM]]
+            plates = {front[k].design.plate: front[k].design for k in draw.permutation(len(front))}
+            known = list(plates.values())[:_FROM]
             expected = worth_solving(self.requirements, self._seen, self._corrections, _FROM)
             self._screen_near(
                 pool,
@@ -237,12 +258,12 @@ class SearchRun:
         near: Callable[[Space, Mapping[str, float]], Iterable[Mapping[str, float]]],
     ) -> None:
         """Screen what lies near designs, by places that their space gives."""
-        found = []
+        found, solved = list[Design](), self._plates_solved()
         for one in designs:
             space = self.requirements.spaces[one.shape]
             places = near(space, space.places(one.settings))
             found += [design_of(one.shape, space.at(there)) for there in places]
-        self._evaluated(pool, found, "screened")
+        self._evaluated(pool, [one for one in found if one.plate not in solved], "screened")
 
     def _learn(self) -> None:
         solved = list(self._seen["solved"].values())
@@ -259,10 +280,10 @@ class SearchRun:
         for shape in shapes:
             studies[shape] = self._proposals(shape, dear=True)
             studies[shape].known([one for one in solved.values() if one.design.shape == shape])
-        while shapes and len(solved) < self._asked.solved:
-            before = len(solved)
+        while shapes and (before := len(self._plates_solved())) < self._asked.solved:
             for shape in shapes:
-                count = min(_BATCH // len(shapes) or 1, self._asked.solved - len(solved))
+                left = self._asked.solved - len(self._plates_solved())
+                count = min(_BATCH // len(shapes) or 1, left)
                 if count <= 0:
                     break
                 self._say_solving("what lies beside the front")
@@ -270,25 +291,26 @@ class SearchRun:
                 fresh = list(dict.fromkeys(design for _, design in asked))
                 # Where it lies beside its screened number is asked, too.
                 self._evaluated(pool, fresh, "screened")
-                found = self._evaluated(pool, fresh, "solved")
+                found = self._solve(pool, fresh)
                 studies[shape].tell([(trial, found[design]) for trial, design in asked])
                 self._show()
             batch += 1
-            if len(solved) == before:
-                return  # it proposes nothing new
+            if len(self._plates_solved()) == before:
+                break  # it proposes nothing new
         self._learn()
 
     def _say_solving(self, what: str) -> None:
-        self._stage, solved = f"solving {what}", self._seen["solved"]
-        took = [one.seconds for one in solved.values()]
+        self._stage, solved = f"solving {what}", len(self._plates_solved())
         left = ""
         # Nobody knows how many workers a cluster has.
-        if took and self._asked.scheduler is None:
-            rest = (self._asked.solved - len(solved)) * float(np.mean(took)) / self._asked.jobs
+        if solved and self._asked.scheduler is None:
+            took = sum(one.seconds for one in self._seen["solved"].values()) / solved
+            rest = (self._asked.solved - solved) * took / self._asked.jobs
             left = f", {about(rest)} left at most"
+        on_front = len({one.design.plate for one in self._front()})
         self._tell(
-            f"solving {what}: {len(solved)} of at most {self._asked.solved} plates, "
-            f"{len(self._front())} on the front{left}"
+            f"solving {what}: {solved} of at most {self._asked.solved} plates, "
+            f"{on_front} on the front{left}"
         )
 
     def _make(self, pool: Workers) -> None:
@@ -318,7 +340,7 @@ class SearchRun:
                 missing[design] = None
             else:
                 found[design] = known
-        parts = list(_parts(list(missing), _TOGETHER[level]))
+        parts = _by_plate(missing) if level == "solved" else list(_parts(missing, _TOGETHER))
         tasks = {number: (self.requirements, part, level) for number, part in enumerate(parts)}
         try:
             for number, answers in pool.answers(evaluate_all, tasks):
@@ -365,7 +387,7 @@ class SearchRun:
         feasible = [one for one in seen["screened"].values() if one.is_feasible]
         rows = objectives_of(self.requirements, feasible)
         screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows))
-        counts = len(seen["screened"]), len(seen["solved"])
+        counts = len(seen["screened"]), len({one.plate for one in seen["solved"]})
         front = tuple(self._front(seen))
         self._asked.watch(Glimpse(self._stage, *counts, screened, front, self._reference))
 
@@ -391,7 +413,15 @@ class SearchRun:
         )
 
 
-def _parts(designs: list[Design], size: int) -> Iterator[tuple[Design, ...]]:
+def _by_plate(designs: Iterable[Design]) -> list[tuple[Design, ...]]:
+    """Designs of one plate together: whoever solves it has it for all its voltages."""
+    found: dict[Design, list[Design]] = {}
+    for one in designs:
+        found.setdefault(one.plate, []).append(one)
+    return [tuple(one) for one in found.values()]
+
+
+def _parts(designs: Iterable[Design], size: int) -> Iterator[tuple[Design, ...]]:
     each = iter(designs)
     while part := tuple(itertools.islice(each, size)):
         yield part

@@ -16,6 +16,9 @@ _GRAINS_BESIDE = (-10, -3, -1, 1, 3, 10)
 # How far a neighbour moves along a range, and how often it takes another step or name.
 _STEP, _JUMP, _NEAR_BY = 0.06, 0.12, 0.2
 
+VOLTAGE = "voltage"
+"""The one variable, of every shape, that is set and not built."""
+
 Setting = float | int | str
 Values = Mapping[str, Setting]
 
@@ -128,6 +131,10 @@ class Space:
     def free(self) -> tuple[Variable, ...]:
         """The variables with something to choose."""
         return tuple(one for one in self.variables if not one.is_fixed)
+
+    def variable(self, name: str) -> Variable:
+        """The variable of a name, which there is."""
+        return next(one for one in self if one.name == name)
 
     def at(self, shares: Mapping[str, float]) -> dict[str, Setting]:
         """The values at shares (0 to 1) by name; what is fixed needs none."""

@@ -13,6 +13,7 @@ from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate, turned
+from squeezefilm.plausibility.checks import checked_before
 from squeezefilm.search.design.candidate import (
     Design,
     Evaluated,
@@ -111,8 +112,9 @@ def _numbers(
     """The screened criteria of a design as made, so many standard deviations off; empty where it
     cannot be."""
     try:
-        display = as_made(requirements, design, deviations)
-        return screened(requirements, display, design)
+        with checked_before():
+            display = as_made(requirements, design, deviations)
+            return screened(requirements, display, design)
     except SqueezefilmError:
         return {}
 

@@ -38,9 +38,10 @@ def worth_solving(
     corrections: Sequence[Correction | None],
     count: int,
 ) -> list[Design]:
-    """At most `count` designs not solved yet, of all shapes together, that might enter the front:
-    those expected to add most to what it dominates, each beside those chosen before it; then, since
-    what is expected errs, layer by layer, of a layer too large those far apart."""
+    """At most `count` designs of plates not solved yet, of all shapes together, that might enter
+    the front: those expected to add most to what it dominates, at all voltages that were screened
+    of a plate, each beside those chosen before it; then, since what is expected errs, layer by
+    layer, of a layer too large those far apart. No two are of one plate."""
     pool = list(_expected(requirements, seen, corrections))
     rows = objectives_of(requirements, pool)
     solved = [one for one in seen["solved"].values() if one.is_feasible]
@@ -49,11 +50,15 @@ def worth_solving(
     nearest = rows * (1 - _error(requirements, corrections))
     might = np.array([not np.any(np.all(known <= row, axis=1)) for row in nearest], dtype=bool)
     at = np.flatnonzero(might)
+    worst = worst_corner(requirements, rows[at])
+    plates = _numbered([pool[k].design.plate for k in at])
     first = at[:0]
     # Of a screening that no solved plate has corrected, the most is expected of what cannot be.
     if all(corrections[pool[k].design.shape] is not None for k in at):
-        first = at[_adding_most(rows[at], known, worst_corner(requirements, rows[at]), count)]
-    left, room = np.setdiff1d(at, first), count - first.size
+        first = at[_adding_most(rows[at], known, worst, count, plates)]
+    others = ~np.isin(plates, plates[np.isin(at, first)])
+    left, room = at[others], count - first.size
+    left = left[_one_each(plates[others], rows[left] / worst)]
     taken = left[layers_of(rows[left], room)]
     if taken.size > room:
         taken = _far_apart(rows, taken, room)
@@ -75,11 +80,30 @@ def worst_corner(requirements: Requirements, rows: si.FloatArray) -> si.FloatArr
     return np.array(found)
 
 
+def _numbered(plates: Sequence[Design]) -> si.IntArray:
+    """A number for each plate, equal for equal ones."""
+    numbers: dict[Design, int] = {}
+    return np.array([numbers.setdefault(one, len(numbers)) for one in plates], dtype=np.intp)
+
+
+def _one_each(plates: si.IntArray, shares: si.FloatArray) -> si.IntArray:
+    """Of the rows of each plate the one whose objectives, as shares of the worst, add up to the
+    least."""
+    order = np.argsort(shares.sum(axis=1), kind="stable")
+    _, first = np.unique(plates[order], return_index=True)
+    return np.sort(order[first])
+
+
 def _adding_most(
-    rows: si.FloatArray, known: si.FloatArray, worst: si.FloatArray, count: int
+    rows: si.FloatArray,
+    known: si.FloatArray,
+    worst: si.FloatArray,
+    count: int,
+    plates: si.IntArray,
 ) -> si.IntArray:
-    """At most so many rows that dominate most of what known rows do not, one after the other, by
-    points spread evenly over the box from the best of all to the worst corner."""
+    """At most so many rows, each of another plate, that dominate most of what known rows do not,
+    one after the other, by points spread evenly over the box from the best of all to the worst
+    corner. Of a plate all rows count: it is solved once for all of them."""
     if not rows.size:
         return np.array([], dtype=np.intp)
     best = np.min(np.concatenate((rows, known)), axis=0)
@@ -89,26 +113,31 @@ def _adding_most(
     for one in known:
         free &= ~np.all(one <= points, axis=1)
     reached = np.array([np.all(one <= points, axis=1) for one in rows])
+    together = np.zeros((plates.max() + 1, _POINTS), dtype=bool)
+    np.logical_or.at(together, plates, reached)
     chosen: list[int] = []
     while len(chosen) < count:
-        gain = reached[:, free].sum(axis=1)
+        gain = together[:, free].sum(axis=1)
         most = int(np.argmax(gain))
         if gain[most] == 0:
             break
-        chosen.append(most)
-        free &= ~reached[most]
+        own = np.flatnonzero(plates == most)
+        chosen.append(int(own[np.argmax(reached[own][:, free].sum(axis=1))]))
+        free &= ~together[most]
     return np.array(chosen, dtype=np.intp)
 
 
 def _expected(
     requirements: Requirements, seen: Seen, corrections: Sequence[Correction | None]
 ) -> Iterator[Evaluated]:
-    """The screened designs not solved yet that may keep the limits, with corrected numbers."""
+    """The screened designs of plates not solved yet that may keep the limits, with corrected
+    numbers."""
+    known = {one.plate for one in seen["solved"]}
     for shape, correction in enumerate(corrections):
         here = [
             one
             for one in seen["screened"].values()
-            if one.design.shape == shape and not one.reason and one.design not in seen["solved"]
+            if one.design.shape == shape and not one.reason and one.design.plate not in known
         ]
         numbers: list[Mapping[str, float]] = [one.numbers for one in here]
         slack = _DOUBT

@@ -47,7 +47,7 @@ def test_the_front_is_feasible_and_nobody_beats_it() -> None:
     first = found.objectives[:, 0]
     assert np.all(np.diff(first) > 0)
     assert np.all(np.diff(found.objectives[:, 1]) < 0)
-    assert len(found.solved) <= 60
+    assert found.plates_solved <= 60
     assert found.ranks["relative_friction"] > 0.9
     assert 0 < found.hypervolume < 1
 
@@ -193,7 +193,7 @@ def test_what_comes_to_the_front_for_a_plate_of_a_low_yield_is_asked_for_its_own
 def test_whoever_watches_sees_the_front_grow() -> None:
     seen: list[run.Glimpse] = []
     found = run.search_designs(requirements(), screened=200, solved=40, watch=seen.append)
-    assert seen[-1].solved == len(found.solved)
+    assert seen[-1].solved == found.plates_solved
     assert seen[0].screened_front
     assert list(seen[-1].front) == [one.evaluated for one in found.front]
 

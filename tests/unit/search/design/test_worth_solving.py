@@ -65,10 +65,12 @@ def test_what_adds_most_beside_what_is_known_is_chosen_first() -> None:
     known = np.array([[0.5, 0.5]])
     # Behind the known one; a little before it; far along; a twin of that, which adds nothing more.
     rows = np.array([[0.6, 0.6], [0.48, 0.5], [0.1, 0.7], [0.1, 0.7]])
-    chosen = _adding_most(rows, known, np.array([1.0, 1.0]), 4)
-    assert chosen.tolist() == [2, 1]
-    assert _adding_most(rows[:1], known, np.array([1.0, 1.0]), 4).size == 0
-    assert _adding_most(rows[:0], known, np.array([1.0, 1.0]), 4).size == 0
+    plates, worst = np.arange(4), np.array([1.0, 1.0])
+    assert _adding_most(rows, known, worst, 4, plates).tolist() == [2, 1]
+    assert _adding_most(rows[:1], known, worst, 4, plates[:1]).size == 0
+    assert _adding_most(rows[:0], known, worst, 4, plates[:0]).size == 0
+    # Of one plate whatever it does at any voltage counts, and it is chosen once.
+    assert _adding_most(rows, known, worst, 4, np.array([0, 1, 1, 0])).tolist() == [2]
 
 
 def test_what_cannot_be_built_is_never_chosen() -> None:
