@@ -16,9 +16,10 @@ import squeezefilm.search.design.run as run
 from squeezefilm.errors import ConfigError, InputError, WorkersError
 from squeezefilm.results import config_hash
 from squeezefilm.search.design import candidate
-from squeezefilm.search.design.candidate import Evaluated
+from squeezefilm.search.design.candidate import Design, Evaluated, Level
 from squeezefilm.search.design.found import DesignSearch
 from squeezefilm.search.design.reasons import limit_in_words, margins
+from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.tolerance import Made
 from squeezefilm.search.tasks import Lost
 
@@ -50,6 +51,31 @@ def test_the_front_is_feasible_and_nobody_beats_it() -> None:
     assert found.plates_solved <= 60
     assert found.ranks["relative_friction"] > 0.9
     assert 0 < found.hypervolume < 1
+
+
+def test_a_plate_is_one_task_with_voltages_over_the_whole_range(
+    by_formula: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tasks: list[tuple[Design, ...]] = []
+
+    def noted(wanted: Requirements, designs: tuple[Design, ...], level: Level) -> list[Evaluated]:
+        if level == "solved":
+            tasks.append(designs)
+        return evaluated_by_formula(wanted, designs, level)
+
+    monkeypatch.setattr(run, "evaluate_all", noted)
+    found = _search()
+    assert all(len({one.plate for one in task}) == 1 for task in tasks)
+    assert len(found.front) > found.plates_on_front > 8
+    assert found.plates_solved <= 60 < len(found.solved)
+    volts: dict[Design, set[float]] = {}
+    for one in found.solved:
+        volts.setdefault(one.design.plate, set()).add(float(one.design.settings["voltage"]))
+    assert all({5.0, 7.5, 10.0, 12.5, 15.0} <= every for every in volts.values())
+    # Where no voltage may be chosen each plate is one design.
+    fixed = requirements(**{', least_voltage = "5 V"': ""})
+    alone = run.search_designs(fixed, screened=200, solved=30)
+    assert len(alone.solved) == alone.plates_solved
 
 
 @pytest.mark.usefixtures("by_formula")
