@@ -191,7 +191,7 @@ def test_a_session_is_given_every_option(
     assert capsys.readouterr().err == ""
     assert named == {
         "drive": "none", "amplitude_per_pickup": None, "conditions": None, "consent": False,
-        "acknowledge": ask_acknowledgement, "seed": None, "station": 0, "stations": 1,
+        "acknowledge": ask_acknowledgement, "seed": None, "station": None, "stations": None,
         "tell": typer.echo, "by_hand": "terminal", "lsl": False,
     }  # fmt: skip
 
