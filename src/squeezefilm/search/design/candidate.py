@@ -6,7 +6,7 @@ import hashlib
 import json
 import time
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -65,6 +65,16 @@ class Design:
     def at_voltage(self, voltage: si.Volt) -> Design:
         """The same plate driven with another voltage (V)."""
         return design_of(self.shape, {**self.settings, VOLTAGE: voltage})
+
+
+def plates_of(designs: Iterable[Design]) -> dict[Design, tuple[Design, ...]]:
+    """The plates of designs, each with its designs in their order: whoever solves a plate has it
+    for all its voltages."""
+    found: dict[Design, tuple[Design, ...]] = {}
+    for one in designs:
+        plate = one.plate
+        found[plate] = (*found.get(plate, ()), one)
+    return found
 
 
 def design_of(shape: int, values: Mapping[str, Setting]) -> Design:

@@ -14,7 +14,7 @@ from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.results import Result, to_json
-from squeezefilm.search.design.candidate import Evaluated, display_of
+from squeezefilm.search.design.candidate import Evaluated, display_of, plates_of
 from squeezefilm.search.design.correction import Correction
 from squeezefilm.search.design.criteria import CRITERIA
 from squeezefilm.search.design.front import dominates, hypervolume, knee_of
@@ -211,7 +211,7 @@ class DesignSearch(Result):
 
 
 def _plates(designs: Iterable[Evaluated]) -> int:
-    return len({one.design.plate for one in designs})
+    return len(plates_of(one.design for one in designs))
 
 
 def _numbers(one: Evaluated) -> dict[str, Any]:

@@ -23,6 +23,7 @@ from squeezefilm.search.design.candidate import (
     Level,
     design_of,
     evaluate_all,
+    plates_of,
 )
 from squeezefilm.search.design.correction import Correction, learned
 from squeezefilm.search.design.evolution import POPULATION, Proposals
@@ -214,8 +215,8 @@ class SearchRun:
             self._solve(pool, chosen)
             self._show()
 
-    def _plates_solved(self) -> set[Design]:
-        return {one.plate for one in self._seen["solved"]}
+    def _plates_solved(self) -> Mapping[Design, tuple[Design, ...]]:
+        return plates_of(self._seen["solved"])
 
     def _solve(self, pool: Workers, designs: Iterable[Design]) -> Mapping[Design, Evaluated]:
         """Solve designs, and judge their plates at other voltages, too."""
@@ -242,8 +243,8 @@ class SearchRun:
         self._screen_near(pool, ends, Space.beside)
         draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
         for _ in range(_GENERATIONS):
-            plates = {front[k].design.plate: front[k].design for k in draw.permutation(len(front))}
-            known = list(plates.values())[:_FROM]
+            plates = plates_of(front[k].design for k in draw.permutation(len(front)))
+            known = [one[-1] for one in plates.values()][:_FROM]
             expected = worth_solving(self.requirements, self._seen, self._corrections, _FROM)
             self._screen_near(
                 pool,
@@ -307,7 +308,7 @@ class SearchRun:
             took = sum(one.seconds for one in self._seen["solved"].values()) / solved
             rest = (self._asked.solved - solved) * took / self._asked.jobs
             left = f", {about(rest)} left at most"
-        on_front = len({one.design.plate for one in self._front()})
+        on_front = len(plates_of(one.design for one in self._front()))
         self._tell(
             f"solving {what}: {solved} of at most {self._asked.solved} plates, "
             f"{on_front} on the front{left}"
@@ -340,7 +341,8 @@ class SearchRun:
                 missing[design] = None
             else:
                 found[design] = known
-        parts = _by_plate(missing) if level == "solved" else list(_parts(missing, _TOGETHER))
+        together = plates_of(missing).values() if level == "solved" else _parts(missing, _TOGETHER)
+        parts = list(together)
         tasks = {number: (self.requirements, part, level) for number, part in enumerate(parts)}
         try:
             for number, answers in pool.answers(evaluate_all, tasks):
@@ -387,7 +389,7 @@ class SearchRun:
         feasible = [one for one in seen["screened"].values() if one.is_feasible]
         rows = objectives_of(self.requirements, feasible)
         screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows))
-        counts = len(seen["screened"]), len({one.plate for one in seen["solved"]})
+        counts = len(seen["screened"]), len(plates_of(seen["solved"]))
         front = tuple(self._front(seen))
         self._asked.watch(Glimpse(self._stage, *counts, screened, front, self._reference))
 
@@ -411,14 +413,6 @@ class SearchRun:
             provenance=stamp(requirements.base, self._asked.seed)
             | {"requirements_sha256": requirements_hash(requirements)},
         )
-
-
-def _by_plate(designs: Iterable[Design]) -> list[tuple[Design, ...]]:
-    """Designs of one plate together: whoever solves it has it for all its voltages."""
-    found: dict[Design, list[Design]] = {}
-    for one in designs:
-        found.setdefault(one.plate, []).append(one)
-    return [tuple(one) for one in found.values()]
 
 
 def _parts(designs: Iterable[Design], size: int) -> Iterator[tuple[Design, ...]]:

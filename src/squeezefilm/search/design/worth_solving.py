@@ -9,7 +9,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from squeezefilm import quantities as si
-from squeezefilm.search.design.candidate import Design, Evaluated, Level
+from squeezefilm.search.design.candidate import Design, Evaluated, Level, plates_of
 from squeezefilm.search.design.correction import Correction
 from squeezefilm.search.design.criteria import breaches, criterion_of
 from squeezefilm.search.design.front import layers_of
@@ -132,7 +132,7 @@ def _expected(
 ) -> Iterator[Evaluated]:
     """The screened designs of plates not solved yet that may keep the limits, with corrected
     numbers."""
-    known = {one.plate for one in seen["solved"]}
+    known = plates_of(seen["solved"])
     for shape, correction in enumerate(corrections):
         here = [
             one
