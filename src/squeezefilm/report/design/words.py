@@ -216,10 +216,12 @@ def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]
         return ["How many plates made of its drawing keep the limits was not computed."]
     breaks = sorted(made.broken.items(), key=lambda one: -one[1])
     told = ", ".join(f"{CRITERIA[key].said} by {count}" for key, count in breaks)
-    unasked = " and ".join(requirements.limits.unasked_of_made)
+    alone = requirements.limits.unasked_of_made
+    unasked = " and ".join(one.said for one, _ in bounded(requirements.limits)
+                           if one.limit in alone or one.key == "surest_friction")  # fmt: skip
     return [
         f"Of {made.draws} plates made with the tolerances {si.percent(made.kept)} keep all limits"
-        + (f" but {unasked}, which cannot be asked of them" if unasked else "")
+        + (f" but those on {unasked}, which only a solved plate can be asked" if unasked else "")
         + (f"; broken are {told}." if told else ".")
     ]
 

@@ -125,6 +125,7 @@ def test_a_stopped_search_and_one_without_limits_are_written(tmp_path: Path) -> 
             "most_temperature_rise",
             "most_stress",
             "most_deflection",
+            "least_neighbour",
         )
     )
     found = made_search(screened=40, solved=14, limits=bare)  # type: ignore[arg-type]

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from tests.unit.report.design.made_search import made_search, requirements_of
@@ -10,6 +11,7 @@ from squeezefilm.report.design import words
 from squeezefilm.search.design.candidate import design_of
 from squeezefilm.search.design.criteria import OF_SOLVED
 from squeezefilm.search.design.found import DesignSearch
+from squeezefilm.search.design.requirements import Requirements
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +97,8 @@ def test_the_chosen_plate_is_told_with_its_nearest_limits_and_its_yield(
     said = " ".join(words.chosen_sentences(found))
     assert said.startswith(found.chosen_name)
     assert "Its nearest limits: " in said
-    assert "53 % keep all limits; broken are temperature rise by 30" in said
+    assert "53 % keep all limits but those on half-bandwidths to a neighbour" in said
+    assert "; broken are temperature rise by 30" in said
     member = replace(found.front[0], made=None)
     assert words.made_sentences(found.requirements, member) == [
         "How many plates made of its drawing keep the limits was not computed."
@@ -104,15 +107,20 @@ def test_the_chosen_plate_is_told_with_its_nearest_limits_and_its_yield(
 
 
 def test_a_yield_names_the_limits_that_it_does_not_ask_of_what_is_made(found: DesignSearch) -> None:
-    own = found.requirements
-    assert own.limits.unasked_of_made == ()
-    limits = replace(own.limits, least_neighbour=3.0, confidence="95 %")
-    asked = replace(own, limits=limits)
-    (said,) = words.made_sentences(asked, found.front[0])
-    left_out = "least_neighbour and most_relative_friction"
-    assert f"keep all limits but {left_out}, which cannot be asked of them" in said
-    assert sum("the yield asks nothing of" in one for one in asked.assumed) == 2
-    assert not any("yield" in one for one in own.assumed)
+    limits = found.requirements.limits
+
+    def asking(**changed: Any) -> Requirements:
+        return replace(found.requirements, limits=replace(limits, **changed))
+
+    plain = asking(least_neighbour=None)
+    (said,) = words.made_sentences(plain, found.front[0])
+    assert "keep all limits;" in said
+    assert not any("yield" in one for one in plain.assumed)
+    sure = asking(least_neighbour=3.0, confidence="95 %")
+    (said,) = words.made_sentences(sure, found.front[0])
+    left_out = "µ′/µ with 95 % confidence and half-bandwidths to a neighbour"
+    assert f"keep all limits but those on {left_out}, which only a solved plate" in said
+    assert sum("the yield asks nothing of" in one for one in sure.assumed) == 2
 
 
 def test_effects_of_tolerances_have_their_size_and_sign(found: DesignSearch) -> None:
