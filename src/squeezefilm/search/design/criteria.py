@@ -89,7 +89,7 @@ CRITERIA: Mapping[str, Criterion] = dict(
         _one("stress", "Pa", "stress in the ceramic", "most_stress"),
         _one("deflection", "m", "deflection when pressed", "most_deflection"),
         _one("cost", "1", "class of cost", "most_cost"),
-        _one("neighbour", "1", "half-bandwidths to a neighbour", "least_neighbour"),
+        _one("neighbour", "1", "half-bandwidths to the nearest mode", "least_neighbour"),
         _one("area", "1", "share of the area that reaches µ′/µ", "least_area"),
         _one("sound_level", "dB", "sound level at 0.5 m", "most_sound_level"),
         _one("surest_friction", "1", "µ′/µ with 95 % confidence"),

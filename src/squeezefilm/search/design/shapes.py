@@ -217,3 +217,10 @@ def _rim(gasket: Gasket, length: si.Metre, width: si.Metre) -> tuple[FoamSupport
 
 
 AnyShape = Strips | EdgeStrips | Disc | Ring
+
+
+def shape_called(shape: AnyShape) -> str:
+    """What people call a shape."""
+    if isinstance(shape, Strips):
+        return f"strips on {'both faces' if shape.both_faces else 'one face'}"
+    return shape.type.replace("_", " ")

@@ -36,7 +36,7 @@ def test_what_is_asked_for_is_said_before_anything_is_computed(tmp_path: Path) -
     ]
     assert "temperature rise: at most 75 K" in found["limits"]
     assert "squeeze number: at least 10" in found["limits"]
-    assert found["shapes"][0]["name"] == "strips"
+    assert found["shapes"][0]["name"] == "strips on one face"
     assert "nodal lines" in found["shapes"][0]["chosen"]
     # What has one value only is not chosen.
     assert "voltage" not in found["shapes"][0]["chosen"]

@@ -97,7 +97,7 @@ def test_the_chosen_plate_is_told_with_its_nearest_limits_and_its_yield(
     said = " ".join(words.chosen_sentences(found))
     assert said.startswith(found.chosen_name)
     assert "Its nearest limits: " in said
-    assert "53 % keep all limits but those on half-bandwidths to a neighbour" in said
+    assert "53 % keep all limits but those on half-bandwidths to the nearest mode" in said
     assert "; broken are temperature rise by 30" in said
     member = replace(found.front[0], made=None)
     assert words.made_sentences(found.requirements, member) == [
@@ -118,7 +118,7 @@ def test_a_yield_names_the_limits_that_it_does_not_ask_of_what_is_made(found: De
     assert not any("yield" in one for one in plain.assumed)
     sure = asking(least_neighbour=3.0, confidence="95 %")
     (said,) = words.made_sentences(sure, found.front[0])
-    left_out = "µ′/µ with 95 % confidence and half-bandwidths to a neighbour"
+    left_out = "µ′/µ with 95 % confidence and half-bandwidths to the nearest mode"
     assert f"keep all limits but those on {left_out}, which only a solved plate" in said
     assert sum("the yield asks nothing of" in one for one in sure.assumed) == 2
 
@@ -148,7 +148,7 @@ def test_limits_that_nothing_breaks_share_a_sentence_and_the_dear_one_is_named(
 def test_a_limit_that_no_screened_design_was_asked_is_not_said_to_be_kept() -> None:
     found = made_search(limits={"least_neighbour": 3.0, "most_sound_level": 90.0})
     said = words.limit_sentences(found)
-    asked = "half-bandwidths to a neighbour at least 3; sound level at 0.5 m at most 90 dB"
+    asked = "half-bandwidths to the nearest mode at least 3; sound level at 0.5 m at most 90 dB"
     assert said[-1] == f"Asked of solved plates only: {asked}."
     assert not any("neighbour" in one for one in said[:-1])
 
