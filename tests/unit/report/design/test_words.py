@@ -9,7 +9,7 @@ from tests.unit.report.design.made_search import made_search, requirements_of
 
 from squeezefilm.report.design import words
 from squeezefilm.search.design.candidate import design_of
-from squeezefilm.search.design.criteria import OF_SOLVED
+from squeezefilm.search.design.criteria import CRITERIA, OF_SOLVED
 from squeezefilm.search.design.found import DesignSearch
 from squeezefilm.search.design.requirements import Requirements
 
@@ -20,14 +20,14 @@ def found() -> DesignSearch:
 
 
 def test_values_that_are_none_are_said_in_words() -> None:
-    assert words.criterion_words("finest_period", math.inf) == "none is felt"
-    assert words.criterion_words("neighbour", math.inf) == "none is near"
-    assert words.criterion_words("power", None) == "not known"
-    assert words.criterion_words("deflection", math.nan) == "not known"
-    assert words.criterion_words("area", 0.984) == "98 %"
-    assert words.criterion_words("resonance_frequency", 21325.1) == "21.3 kHz"
-    assert words.limit_words("squeeze_number", 10.0) == "squeeze number at least 10"
-    assert words.limit_words("temperature_rise", 75.0) == "temperature rise at most 75 K"
+    assert CRITERIA["finest_period"].shown(math.inf) == "none"
+    assert CRITERIA["neighbour"].shown(math.inf) == "none takes part"
+    assert CRITERIA["power"].shown(None) == "not known"
+    assert CRITERIA["deflection"].shown(math.nan) == "not known"
+    assert CRITERIA["area"].shown(0.984) == "98 %"
+    assert CRITERIA["resonance_frequency"].shown(21325.1) == "21.3 kHz"
+    assert CRITERIA["squeeze_number"].limit_said(10.0) == "squeeze number at least 10"
+    assert CRITERIA["temperature_rise"].limit_said(75.0) == "temperature rise at most 75 K"
 
 
 def test_what_was_chosen_has_every_free_setting_with_its_unit(found: DesignSearch) -> None:
