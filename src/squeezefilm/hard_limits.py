@@ -175,7 +175,7 @@ DESIGNS_SCREENED = HardLimit(
     "designs screened in a search", 1, 1_000_000, "each takes some ten milliseconds and a line"
 )
 DESIGNS_SOLVED = HardLimit(
-    "designs solved in a search", 0, 100_000, "each takes a second or more, and a line"
+    "plates solved in a search", 0, 100_000, "each takes a second or more, and a line"
 )
 ASPECT = HardLimit("an aspect ratio", 1e-6, 1e6, "beyond, a strip is the same film")
 MOTION_SAMPLES = HardLimit(

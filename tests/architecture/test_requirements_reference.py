@@ -48,4 +48,4 @@ def test_the_file_of_the_how_to_is_one() -> None:
     assert found is not None
     read = config.load_text(wanted.Requirements, found[1])
     assert read.name == "mine"
-    assert [one.shape for one in read.spaces] == ["strips"]
+    assert [one.shape for one in read.spaces] == ["strips on one face"]

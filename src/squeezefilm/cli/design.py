@@ -47,7 +47,11 @@ class DesignOptions:
     jobs: Jobs = None
     scheduler: Scheduler = None
     member: Annotated[
-        int, typer.Option(help="Tells hosts apart that search in one folder: 0, 1, …")
+        int,
+        typer.Option(
+            help="Number of this host where several search in one folder at once: 0, 1, … Each "
+            "ends with what all have solved."
+        ),
     ] = 0
     quick: Annotated[
         bool,

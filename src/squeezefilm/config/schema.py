@@ -9,8 +9,8 @@ from __future__ import annotations
 import dataclasses
 import types
 import typing
-from collections.abc import Callable
-from typing import Annotated, Any, Literal, Union
+from collections.abc import Callable, Iterator
+from typing import Annotated, Any, Literal, NamedTuple, Union
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
@@ -137,3 +137,29 @@ def _build_model(cls: type[Any]) -> type[BaseModel]:
         _IN_THE_MAKING.pop()
     _UNFINISHED.append(model)
     return model
+
+
+class Leaf(NamedTuple):
+    """One value of a description: where it stands, its annotation, its field."""
+
+    path: tuple[str | int, ...]
+    value: Any
+    hint: Any
+    field: dataclasses.Field[Any]
+
+
+def leaves(node: Any, path: tuple[str | int, ...] = ()) -> Iterator[Leaf]:
+    """Every value below a dataclass that a file may describe it by, in order; none for one left
+    out."""
+    hints = typing.get_type_hints(type(node), include_extras=True)
+    for field in dataclasses.fields(node):
+        if field.metadata.get("loader") or field.metadata.get("found"):
+            continue
+        value, here = getattr(node, field.name), (*path, field.name)
+        if dataclasses.is_dataclass(value):
+            yield from leaves(value, here)
+        elif isinstance(value, tuple):
+            for index, item in enumerate(value):
+                yield from leaves(item, (*here, index))
+        elif value is not None:
+            yield Leaf(here, value, hints[field.name], field)

@@ -12,11 +12,11 @@ from collections.abc import Callable
 from typing import Any
 
 from squeezefilm import quantities as si
+from squeezefilm.config.schema import leaves
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.hard_limits import HardLimit
 from squeezefilm.lab.designing.form import choices, display_of, stated
-from squeezefilm.report.kit.numbers import leaves
 
 _FAR = 1e9
 """Times the value up to which a limit is looked for."""

@@ -16,10 +16,10 @@ from tomlkit.exceptions import TOMLKitError
 from squeezefilm import config, presets
 from squeezefilm import quantities as si
 from squeezefilm.config.provenance import UNSTATED
+from squeezefilm.config.schema import leaves
 from squeezefilm.config.stated import changed_from
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
-from squeezefilm.report.kit.numbers import leaves
 
 LONGEST_VALUE = 2000
 """Characters of one value in the form."""

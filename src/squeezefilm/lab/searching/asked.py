@@ -13,10 +13,10 @@ import tomlkit
 
 from squeezefilm import config, presets
 from squeezefilm.config.scan import require_quick_toml
-from squeezefilm.config.write import text_of
 from squeezefilm.errors import ConfigError
 from squeezefilm.lab.files import existing
-from squeezefilm.search.design.candidate import Design, display_of
+from squeezefilm.report.design.plates import plate_file
+from squeezefilm.search.design.candidate import Design
 from squeezefilm.search.design.criteria import bounded, criterion_of
 from squeezefilm.search.design.requirements import Requirements
 
@@ -70,7 +70,7 @@ def asked_of(text: str, folder: Path) -> dict[str, Any]:
             }
             for one in map(criterion_of, asked.objectives)
         ],
-        "limits": [f"{one.said}: {one.bound_said(bound)}" for one, bound in bounded(asked.limits)],
+        "limits": [one.limit_said(bound) for one, bound in bounded(asked.limits)],
         "shapes": [
             {"name": space.shape, "chosen": [one.name.replace("_", " ") for one in space.free]}
             for space in asked.spaces
@@ -87,8 +87,7 @@ def display_text(text: str, folder: Path, shape: int, values: Mapping[str, Any])
     asked = requirements_of(text, folder)
     if not 0 <= shape < len(asked.shapes):
         raise ConfigError(f"the requirements have no shape {shape + 1}")
-    display = display_of(asked, Design(shape, tuple(values.items())))
-    return f"# A plate that a design search found for “{asked.name}”.\n\n{text_of(display)}"
+    return plate_file(asked, Design(shape, tuple(values.items())))
 
 
 def folder_of(name: str, text: str) -> str:

@@ -11,7 +11,7 @@ from squeezefilm.report.design.words import setting_words
 from squeezefilm.search.design.candidate import Evaluated
 from squeezefilm.search.design.criteria import CRITERIA, criterion_of
 from squeezefilm.search.design.found import DesignSearch
-from squeezefilm.search.design.reasons import EmptyCorner, limit_in_words
+from squeezefilm.search.design.reasons import corner_in_words, limit_in_words
 from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.run import Glimpse
 from squeezefilm.search.design.tolerance import Made
@@ -51,7 +51,7 @@ def numbers(one: Evaluated) -> list[list[str]]:
     return [
         [key, CRITERIA[key].said, CRITERIA[key].shown(value)]
         for key, value in one.numbers.items()
-        if key in CRITERIA and key not in ("highest_frequency", "cost")
+        if key in CRITERIA and key != "cost"
     ]
 
 
@@ -96,6 +96,7 @@ def result(found: DesignSearch) -> dict[str, Any]:
         "reference": reference(asked, found.reference),
         "chosen": None if chosen is None else chosen.name,
         "beats": [one.name for one in found.beats_reference],
+        "plates_better": found.plates_better,
         "limits": [limit_in_words(one, len(found.screened)) for one in found.limits if one.broken],
         "corners": [corner_in_words(one) for one in found.corners[:_ALL_WORDS]],
         "hypervolume": found.hypervolume,
@@ -105,12 +106,3 @@ def result(found: DesignSearch) -> dict[str, Any]:
         "kept": found.kept,
         "stopped": found.stopped,
     }
-
-
-def corner_in_words(one: EmptyCorner) -> str:
-    """A part of the space without a feasible design, in a sentence."""
-    of = f"{one.shape}, {one.where}: none of {one.designs} screened designs is feasible"
-    if not one.key:
-        return f"{of}; {100 * one.share:.0f} % cannot be built, for example: {one.example}"
-    said = CRITERIA[one.key].said
-    return f"{of}; {100 * one.share:.0f} % of them break the limit of {said} ({one.example})"

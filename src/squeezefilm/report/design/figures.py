@@ -11,9 +11,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.report.design.words import (
-    criterion_words,
     front_words,
-    limit_words,
     setting_words,
 )
 from squeezefilm.report.kit import style
@@ -85,7 +83,7 @@ def _front_title(found: DesignSearch) -> str:
     spans = []
     for k, one in enumerate(goals):
         low, high = (
-            criterion_words(one.key, end)
+            one.shown(end)
             for end in (float(found.objectives[:, k].min()), float(found.objectives[:, k].max()))
         )
         spans.append(f"{one.said} {low}" if low == high else f"{one.said} from {low} to {high}")
@@ -187,7 +185,11 @@ def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
 def limits(found: DesignSearch) -> Figure:
     """How many screened designs break each limit, and how many of them no other."""
     every, reasons = len(found.screened), found.limits[::-1]
-    if not reasons or not every:
+    if not every:
+        return style.message_figure(
+            "No design was screened", "The search was stopped before the first."
+        )
+    if not reasons:
         return style.message_figure(
             "No limit was asked for", "Every design that can be built keeps the requirements."
         )
@@ -209,7 +211,7 @@ def limits(found: DesignSearch) -> Figure:
     for row, one in enumerate(reasons):
         alone_too = f", {one.alone} alone" if one.alone else ""
         axes.text(one.broken, row, f" {one.broken}{alone_too}", va="center", fontsize=9)
-    axes.set_yticks(at, [limit_words(one.key, one.limit) for one in reasons])
+    axes.set_yticks(at, [CRITERIA[one.key].limit_said(one.limit) for one in reasons])
     axes.set(xlabel=f"designs, of {every} screened", xlim=(0, 1.22 * max(most.broken, 1)))
     axes.grid(visible=False, axis="y")
     style.legend_below(axes, gap=0.9 / max(len(reasons), 3) + 0.1)

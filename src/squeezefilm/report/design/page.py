@@ -16,7 +16,6 @@ from squeezefilm.report.design.words import (
     chosen_sentences,
     chosen_words,
     counts_sentence,
-    criterion_words,
     effect_head,
     effect_rows,
     front_head,
@@ -62,7 +61,8 @@ def write_design(found: DesignSearch, folder: Path, *, fabrication: str = "") ->
     """
     folder = require_folder(folder)
     files: dict[str, str | bytes] = {
-        f"{PLATES}/{member.name}.toml": plate_file(found, member) for member in found.front
+        f"{PLATES}/{one.name}.toml": plate_file(found.requirements, one.evaluated.design)
+        for one in found.front
     }
     files |= {DATA: json_text(found.summary()), TABLE: front_csv(found)}
     files[PAGE] = design_page(found, fabrication=fabrication)
@@ -71,7 +71,7 @@ def write_design(found: DesignSearch, folder: Path, *, fabrication: str = "") ->
 
 
 def front_csv(found: DesignSearch) -> str:
-    """The front as CSV: a row for each plate, SI numbers with the unit in the column's name."""
+    """The front as CSV: a row for each plate at a voltage, SI numbers, units in columns' names."""
     rows = []
     for row in found.summary()["front"]:
         made = row.pop("made") or {}
@@ -139,7 +139,7 @@ def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
         kind = "good" if better else "limit"
         own = found.reference.objectives(requirements.objectives)
         said = " and ".join(
-            f"{criterion_of(name).said} {criterion_words(criterion_of(name).key, value)}"
+            f"{criterion_of(name).said} {criterion_of(name).shown(value)}"
             for name, value in zip(requirements.objectives, own, strict=True)
         )
         yield (
@@ -256,16 +256,16 @@ def _criteria_rows(found: DesignSearch, member: FrontMember) -> Iterator[tuple[s
     left = margins(found.requirements, member.evaluated)
     made = {} if member.made is None else member.made.intervals
     for key, one in CRITERIA.items():
-        value = member.evaluated.numbers.get(key, math.nan)
-        if key not in bounds and (math.isnan(value) or key == "highest_frequency"):
+        value = one.value(member.evaluated.numbers)
+        if key not in bounds and (math.isnan(value) or one.of):
             continue
         limit = one.bound_said(bounds[key]) if key in bounds else ""
         yield (
             one.said,
-            criterion_words(key, value),
+            one.shown(value),
             limit,
             margin_words(left[key]) if key in left else "not judged" if limit else "",
-            " to ".join(criterion_words(key, end) for end in made[key]) if key in made else "",
+            " to ".join(one.shown(end) for end in made[key]) if key in made else "",
         )
 
 
@@ -278,11 +278,11 @@ def _reference_section(found: DesignSearch) -> Iterator[str]:
         rows = [
             (
                 one.said,
-                criterion_words(key, reference.numbers[key]),
-                criterion_words(key, chosen.evaluated.numbers.get(key)),
+                one.shown(reference.numbers[key]),
+                one.shown(chosen.evaluated.numbers.get(key)),
             )
             for key, one in CRITERIA.items()
-            if key in reference.numbers and key != "highest_frequency"
+            if key in reference.numbers
         ]
         head = ("criterion", found.requirements.compare_with, f"{chosen.name}, to build")
         table = text_table("Both, judged in the same way", head, rows)
@@ -314,8 +314,6 @@ def _errors(found: DesignSearch) -> str:
     rows = []
     for space, one in zip(found.requirements.spaces, found.corrections, strict=True):
         for key, raw in {} if one is None else one.raw.items():
-            if key == "highest_frequency":
-                continue
             after = one.errors[key] if one is not None else raw
             what = f"{space.shape}: {CRITERIA[key].said}"
             rows.append((what, si.percent(raw, 1), si.percent(after, 1)))

@@ -24,6 +24,7 @@ from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.terminal import bullets, heading, plain_console, table
 from squeezefilm.report.sweep.terminal import in_lines
 from squeezefilm.search.design.found import DesignSearch
+from squeezefilm.search.design.reasons import corner_in_words
 from squeezefilm.search.design.requirements import load_requirements
 from squeezefilm.search.swept import counted
 
@@ -58,10 +59,7 @@ def show_design(found: DesignSearch) -> None:
         heading(console, "Where nothing keeps the limits")
         _say(
             console,
-            [
-                f"{one.shape}, {one.where}: none of {one.designs} designs, {one.example}."
-                for one in found.corners[:_CORNERS]
-            ],
+            [f"{corner_in_words(one)}." for one in found.corners[:_CORNERS]],
         )
         if len(found.corners) > _CORNERS:
             console.print(f"{len(found.corners) - _CORNERS} more stand in the files of --out")

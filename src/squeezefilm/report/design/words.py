@@ -23,27 +23,13 @@ _LEAST = 0.001  # smaller changes of a friction are said to be so
 _TOLERANCES = {
     "thickness": "thickness of the sheet",
     "ceramic_thickness": "thickness of the ceramics",
-    "sides": "length",
+    "sides": "length or diameter",
     "young_modulus": "Young's modulus of the sheet",
     "ceramic_stiffness": "stiffness of the ceramic",
     "charge_coefficient": "charge coefficient of the ceramic",
     "quality_factor": "quality factor of the assembly",
 }
 _LENGTHS = ("thickness", "ceramic_thickness", "sides")
-
-
-def criterion_words(key: str, value: float | None) -> str:
-    """The value of a criterion (SI) in words."""
-    if value is None or math.isnan(value):
-        return "not known"
-    if math.isinf(value):
-        return {"finest_period": "none is felt", "neighbour": "none is near"}.get(key, "no limit")
-    return CRITERIA[key].shown(value)
-
-
-def limit_words(key: str, bound: float) -> str:
-    """A criterion with its limit (SI) in words."""
-    return f"{CRITERIA[key].said} {CRITERIA[key].bound_said(bound)}"
 
 
 def setting_words(variable: Variable, design: Design, requirements: Requirements) -> str:
@@ -102,7 +88,7 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     if drive.least_voltage not in (None, drive.voltage):
         volts = f"{shown(float(drive.least_voltage or 0), si.Unit('V'))} to {volts}"
     goals = " and ".join(criterion_of(one).said for one in requirements.objectives)
-    bounds = [limit_words(one.key, bound) for one, bound in bounded(requirements.limits)]
+    bounds = [one.limit_said(bound) for one, bound in bounded(requirements.limits)]
     if requirements.limits.least_yield is not None:
         bounds.append(f"yield at least {si.percent(requirements.limits.least_yield)}")
     shapes = ", ".join(one.shape for one in requirements.spaces)
@@ -148,7 +134,7 @@ def many(count: int, word: str) -> str:
 
 
 def front_head(requirements: Requirements) -> list[str]:
-    """The headings of `front_rows`, without the name."""
+    """The headings of `front_row`, without the name."""
     return [*(criterion_of(one).said for one in requirements.objectives), *_others(requirements),
             "yield"]  # fmt: skip
 
@@ -171,7 +157,7 @@ def front_row(requirements: Requirements, member: FrontMember) -> list[str]:
 
 def row_of(requirements: Requirements, one: Evaluated) -> list[str]:
     """The criteria of a front's table, of any evaluated design."""
-    return [criterion_words(key, one.numbers.get(key)) for key in _told(requirements)]
+    return [CRITERIA[key].shown(one.numbers.get(key)) for key in _told(requirements)]
 
 
 def chosen_sentences(found: DesignSearch) -> list[str]:
@@ -182,11 +168,10 @@ def chosen_sentences(found: DesignSearch) -> list[str]:
         return []
     goals = [criterion_of(one) for one in found.requirements.objectives]
     has = " and ".join(
-        f"{one.said} {criterion_words(one.key, chosen.evaluated.numbers.get(one.key))}"
-        for one in goals
+        f"{one.said} {one.shown(chosen.evaluated.numbers.get(one.key))}" for one in goals
     )
     best = " and ".join(
-        criterion_words(one.key, float(found.objectives[:, k].min())) for k, one in enumerate(goals)
+        one.shown(float(found.objectives[:, k].min())) for k, one in enumerate(goals)
     )
     said = [
         f"{chosen.name} has {has}. Of the front it is nearest to the best of every objective "
@@ -216,13 +201,15 @@ def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]
         return ["How many plates made of its drawing keep the limits was not computed."]
     breaks = sorted(made.broken.items(), key=lambda one: -one[1])
     told = ", ".join(f"{CRITERIA[key].said} by {count}" for key, count in breaks)
+    failed = f"; {made.failed} could not be computed" if made.failed else ""
     alone = requirements.limits.unasked_of_made
     unasked = " and ".join(one.said for one, _ in bounded(requirements.limits)
                            if one.limit in alone or one.key == "surest_friction")  # fmt: skip
     return [
         f"Of {made.draws} plates made with the tolerances {si.percent(made.kept)} keep all limits"
         + (f" but those on {unasked}, which only a solved plate can be asked" if unasked else "")
-        + (f"; broken are {told}." if told else ".")
+        + (f"; broken are {told}" if told else "")
+        + f"{failed}."
     ]
 
 
@@ -278,8 +265,7 @@ def reference_sentences(found: DesignSearch) -> list[str]:
     own = reference.objectives(requirements.objectives)
     goals = [criterion_of(one) for one in requirements.objectives]
     has = " and ".join(
-        f"{one.said} {criterion_words(one.key, value)}"
-        for one, value in zip(goals, own, strict=True)
+        f"{one.said} {one.shown(value)}" for one, value in zip(goals, own, strict=True)
     )
     said = [f"Judged in the same way, {name} has {has}."]
     said += [f"It breaks a limit: {one.sentence}." for one in reference.broken]
@@ -305,11 +291,11 @@ def _left(found: DesignSearch, k: int, own: tuple[float, ...]) -> str:
     rows = found.objectives
     as_good = np.flatnonzero(np.all(rows[:, others] <= np.array(own)[others], axis=1))
     beside = " and ".join(goals[j].said for j in others)
-    now = criterion_words(goals[k].key, own[k])
+    now = goals[k].shown(own[k])
     if as_good.size:
         best = as_good[np.argmin(rows[as_good, k])]
         if rows[best, k] < own[k]:
-            text = criterion_words(goals[k].key, float(rows[best, k]))
+            text = goals[k].shown(float(rows[best, k]))
             return (
                 f"With {beside} no worse, {goals[k].said} can be {text} in place of {now} "
                 f"({found.front[best].name})."
@@ -336,7 +322,7 @@ def rank_sentences(found: DesignSearch) -> list[str]:
         if told:
             said.append(
                 f"Of {space.shape}, the screened number is off by (one standard deviation, "
-                f"{one.pairs} plates, each left out of what its correction was learned from): "
+                f"{one.plates} plates, each left out of what its correction was learned from): "
                 f"{told}."
             )
     return said or ["Too few plates were solved to say how good the screening was."]
@@ -353,7 +339,7 @@ def limit_sentences(found: DesignSearch) -> list[str]:
         ("Asked of solved plates only", [one for one in idle if one.key in OF_SOLVED]),
     ):
         if those:
-            said.append(f"{head}: {'; '.join(limit_words(o.key, o.limit) for o in those)}.")
+            said.append(f"{head}: {'; '.join(CRITERIA[o.key].limit_said(o.limit) for o in those)}.")
     return said or ["No limit was asked for."]
 
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import re
 import typing
 import unicodedata
-from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 from squeezefilm import quantities as si
+from squeezefilm.config.schema import leaves
 
 if typing.TYPE_CHECKING:
     from squeezefilm.display import Display
@@ -109,32 +107,6 @@ def display_values(display: Display) -> list[Value]:
 def dotted(path: tuple[str | int, ...]) -> str:
     """A path as people read it: list members counted from 1."""
     return ".".join(str(part + 1) if isinstance(part, int) else part for part in path)
-
-
-class Leaf(NamedTuple):
-    """One value of a description: where it stands, its annotation, its field."""
-
-    path: tuple[str | int, ...]
-    value: Any
-    hint: Any
-    field: dataclasses.Field[Any]
-
-
-def leaves(node: Any, path: tuple[str | int, ...] = ()) -> Iterator[Leaf]:
-    """Every value below a dataclass that a file may describe it by, in order; none for one left
-    out."""
-    hints = typing.get_type_hints(type(node), include_extras=True)
-    for field in dataclasses.fields(node):
-        if field.metadata.get("loader") or field.metadata.get("found"):
-            continue
-        value, here = getattr(node, field.name), (*path, field.name)
-        if dataclasses.is_dataclass(value):
-            yield from leaves(value, here)
-        elif isinstance(value, tuple):
-            for index, item in enumerate(value):
-                yield from leaves(item, (*here, index))
-        elif value is not None:
-            yield Leaf(here, value, hints[field.name], field)
 
 
 def lag_rows(judged: FidelityReport, what: str = "Lag") -> list[tuple[str, str, str]]:

@@ -25,6 +25,7 @@ from squeezefilm.search.design.criteria import (
     numbers_of_solved,
 )
 from squeezefilm.search.design.requirements import Requirements
+from squeezefilm.search.design.sources import plate_sources
 from squeezefilm.search.design.space import VOLTAGE, Setting
 
 Level = Literal["screened", "solved"]
@@ -129,16 +130,24 @@ def display_of(requirements: Requirements, design: Design) -> Display:
     )
 
 
+def sourced_display_of(requirements: Requirements, design: Design) -> Display:
+    """As `display_of`, of every number where it is from and, where that is known, within which
+    range it lies: what an interval of its friction rests on."""
+    display = display_of(requirements, design)
+    return replace(display, provenance=plate_sources(requirements, display, design.settings))
+
+
 def evaluate(requirements: Requirements, design: Design, level: Level) -> Evaluated:
     """What a design does, by the screening theory or solved. What is refused is an answer, too."""
     began = time.perf_counter()
     try:
         with in_passing(), warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            display = display_of(requirements, design)
             if level == "screened":
+                display = display_of(requirements, design)
                 found, numbers = None, screened(requirements, display, design)
             else:
+                display = sourced_display_of(requirements, design)
                 found = predict(display)
                 numbers = _judged(requirements, display, found, design)
                 numbers |= numbers_of_solved(requirements, display, found)

@@ -25,7 +25,6 @@ CORRECTED = (
     "relative_friction",
     "finest_period",
     "resonance_frequency",
-    "highest_frequency",
     "squeeze_number",
     "vibration_amplitude",
     "current",
@@ -41,17 +40,17 @@ class Correction:
     """The logarithm of the solved over the screened number, as a smooth function of a design.
 
     `errors` are, by key, the standard deviation of what is left of that logarithm in designs that
-    were left out of the fit (`folds` groups, one after the other), and `raw` what there is without
-    a correction; `pairs` is the number of designs that it was learned from. A thin plate spline
-    with smoothing (SciPy's `RBFInterpolator`) in the shares of the free variables and the ratio of
-    half wavelength to thickness.
+    were left out of the fit with all of their plate (`_FOLDS` groups of plates), and `raw` what
+    there is without a correction; `plates` is the number of those that it was learned from. A thin
+    plate spline with smoothing (SciPy's `RBFInterpolator`) in the shares of the free variables and
+    the ratio of half wavelength to thickness.
     """
 
     space: Space
     fits: Mapping[str, RBFInterpolator]
     errors: Mapping[str, si.Dimensionless]
     raw: Mapping[str, si.Dimensionless]
-    pairs: int
+    plates: int
 
     def of_all(self, screened: Sequence[Evaluated]) -> list[dict[str, float]]:
         """The numbers of screened designs, corrected (SI)."""
@@ -84,6 +83,8 @@ def learned(
     if len(pairs) < LEAST_PAIRS:
         return None
     places = np.array([_features(space, before) for before, _ in pairs])
+    numbers: dict[Design, int] = {}
+    plate = np.array([numbers.setdefault(one.design.plate, len(numbers)) for _, one in pairs])
     fits, errors, raw = {}, {}, {}
     for key in CORRECTED:
         values = np.array(
@@ -95,14 +96,14 @@ def learned(
         x, y = places[good], values[good]
         left = np.empty(y.size)
         for fold in range(_FOLDS):
-            out = np.arange(y.size) % _FOLDS == fold
+            out = plate[good] % _FOLDS == fold
             left[out] = y[out] - _spline(x[~out], y[~out])(x[out])
         errors[key], raw[key] = float(np.std(left)), float(np.sqrt(np.mean(y**2)))
         if errors[key] < raw[key]:
             fits[key] = _spline(x, y)
         else:
             errors[key] = raw[key]
-    return Correction(space, fits, errors, raw, len(pairs))
+    return Correction(space, fits, errors, raw, len(numbers))
 
 
 def _spline(x: si.FloatArray, y: si.FloatArray) -> RBFInterpolator:

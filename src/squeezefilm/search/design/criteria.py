@@ -39,36 +39,51 @@ from squeezefilm.search.design.requirements import Limits, Requirements
 _PERIODS = 251
 
 
+_INFINITE = {"finest_period": "none", "neighbour": "none takes part"}
+
+
 @dataclass(frozen=True)
 class Criterion:
     """A number that designs are judged by: its key, unit, what people call it, and the field of
-    `Limits` that bounds it from above ("most_…") or below ("least_…"); "" where none does."""
+    `Limits` that bounds it from above ("most_…") or below ("least_…"); "" where none does. One that
+    bounds a number which another bounds from the other side has that one's key as `of`."""
 
     key: str
     unit: si.Unit
     said: str
     limit: str = ""
+    of: str = ""
+
+    def value(self, numbers: Mapping[str, float]) -> float:
+        """Its value among a design's numbers (SI); NaN where it is not known."""
+        return numbers.get(self.of or self.key, math.nan)
 
     @property
     def is_floor(self) -> bool:
         """Whether its limit is a least."""
         return self.limit.startswith("least_")
 
-    def shown(self, value: float) -> str:
-        """A value of it, for people."""
-        if not math.isfinite(value):
-            return "none" if value > 0 or math.isnan(value) else "-"
+    def shown(self, value: float | None) -> str:
+        """A value of it (SI), for people."""
+        if value is None or math.isnan(value):
+            return "not known"
+        if math.isinf(value):
+            return _INFINITE.get(self.key, "no limit")
         if self.key == "area":
             return si.percent(value)
         return si.format_quantity(value, self.unit, 3)
 
     def bound_said(self, bound: float) -> str:
-        """A limit on it, for people."""
+        """A limit on it (SI), for people, without its name."""
         return f"at {'least' if self.is_floor else 'most'} {self.shown(bound)}"
 
+    def limit_said(self, bound: float) -> str:
+        """A limit on it (SI), for people."""
+        return f"{self.said} {self.bound_said(bound)}"
 
-def _one(key: str, unit: str, said: str, limit: str = "") -> tuple[str, Criterion]:
-    return key, Criterion(key, si.Unit(unit), said, limit)
+
+def _one(key: str, unit: str, said: str, limit: str = "", of: str = "") -> tuple[str, Criterion]:
+    return key, Criterion(key, si.Unit(unit), said, limit, of)
 
 
 CRITERIA: Mapping[str, Criterion] = dict(
@@ -76,7 +91,7 @@ CRITERIA: Mapping[str, Criterion] = dict(
         _one("relative_friction", "1", "µ′/µ at the best place", "most_relative_friction"),
         _one("finest_period", "m", "finest grating felt", "most_finest_period"),
         _one("resonance_frequency", "Hz", "resonance", "least_frequency"),
-        _one("highest_frequency", "Hz", "resonance", "most_frequency"),
+        _one("highest_frequency", "Hz", "resonance", "most_frequency", "resonance_frequency"),
         _one("squeeze_number", "1", "squeeze number", "least_squeeze_number"),
         _one("vibration_amplitude", "m", "amplitude under the finger"),
         _one("half_wavelength", "m", "half wavelength"),
@@ -89,8 +104,8 @@ CRITERIA: Mapping[str, Criterion] = dict(
         _one("stress", "Pa", "stress in the ceramic", "most_stress"),
         _one("deflection", "m", "deflection when pressed", "most_deflection"),
         _one("cost", "1", "class of cost", "most_cost"),
-        _one("neighbour", "1", "half-bandwidths to a neighbour", "least_neighbour"),
-        _one("area", "1", "share of the area that reaches µ′/µ", "least_area"),
+        _one("neighbour", "1", "half-bandwidths to the nearest mode", "least_neighbour"),
+        _one("area", "1", "share of the area below the wanted µ′/µ", "least_area"),
         _one("sound_level", "dB", "sound level at 0.5 m", "most_sound_level"),
         _one("surest_friction", "1", "µ′/µ with 95 % confidence"),
     )
@@ -141,8 +156,8 @@ def breaches(
     there nothing is said. `slack` lets every limit be exceeded by that share."""
     found = []
     for one, bound in bounded(limits):
-        value = numbers.get(one.key)
-        if value is None or math.isnan(value):
+        value = one.value(numbers)
+        if math.isnan(value):
             continue
         excess = excess_of(one, value, bound)
         if excess > slack:
@@ -169,7 +184,6 @@ def numbers_of_prediction(
         "relative_friction": float(p.relative_friction),
         "finest_period": finest_period_felt(display, p),
         "resonance_frequency": p.mode.resonance_frequency,
-        "highest_frequency": p.mode.resonance_frequency,
         "squeeze_number": p.squeeze_number,
         "vibration_amplitude": p.vibration_amplitude,
         "half_wavelength": p.mode.half_wavelength,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squeezefilm.search.design.candidate import Design, Evaluated, design_of
+from squeezefilm.search.design.candidate import Design, Evaluated, Level, design_of
 from squeezefilm.search.design.criteria import bounded, excess_of
 from squeezefilm.search.design.journal import journal
 from squeezefilm.search.design.requirements import Requirements
@@ -35,39 +35,39 @@ _MEMBER = "member"
 class Proposals:
     """One Optuna study: the designs of one shape, proposed in batches and answered in batches.
 
-    `dear` proposes by a tree-structured Parzen estimator (Ozaki et al. 2020,
-    10.1145/3377930.3389817) in place of NSGA-II (Deb et al. 2002, 10.1109/4235.996017). The seed
-    and the number of the batch decide what is proposed: whoever asks again from the beginning is
-    proposed the same. In a `folder` what was answered is published in a journal; hosts that search
-    there, each with a `member` of its own, learn from each other's answers.
+    What is to be screened is proposed by NSGA-II (Deb et al. 2002, 10.1109/4235.996017), what is to
+    be solved by a tree-structured Parzen estimator (Ozaki et al. 2020, 10.1145/3377930.3389817),
+    since that takes long: the `level`. The seed and the number of the batch decide what is
+    proposed: whoever asks again from the beginning is proposed the same. In a `folder` what was
+    answered is published in a journal; hosts that search there, each with a `member` of its own,
+    learn from each other's answers.
     """
 
     def __init__(
         self,
         requirements: Requirements,
         shape: int,
+        level: Level,
         folder: Path | None,
         seed: int,
         *,
         member: int = 0,
-        dear: bool = False,
     ) -> None:
         import optuna
 
         optuna.logging.set_verbosity(optuna.logging.ERROR)
-        self._requirements, self._shape, self._dear = requirements, shape, dear
-        self._seed, self._member = (seed, member, shape, int(dear)), member
+        self._requirements, self._shape, self._level = requirements, shape, level
+        self._seed, self._member = (seed, member, shape, int(level == "solved")), member
         self._space = requirements.spaces[shape]
         directions = [optuna.study.StudyDirection.MINIMIZE] * len(requirements.objectives)
         self._study = optuna.create_study(directions=directions)
         self._shared: Any = None
         self._others, self._published, self._told = 0, 0, 0
         if folder is not None:
-            kind = "solved" if dear else "screened"
             # A folder may have answers to other requirements, of which these values are none.
-            whose = f"{asked_hash(requirements)} {requirements_hash(requirements)[:16]}"
+            whose = f"{asked_hash(requirements, level)} {requirements_hash(requirements)[:16]}"
             self._shared = optuna.create_study(
-                study_name=f"{self._space.shape}, {kind}, seed {seed}, {whose}",
+                study_name=f"{self._space.shape}, {level}, seed {seed}, {whose}",
                 storage=journal(folder / JOURNAL),
                 directions=directions,
                 load_if_exists=True,
@@ -123,7 +123,7 @@ class Proposals:
         with warnings.catch_warnings():
             # Constraints and multivariate sampling are called experimental; the version is pinned.
             warnings.simplefilter("ignore")
-            if self._dear:
+            if self._level == "solved":
                 return optuna.samplers.TPESampler(
                     seed=seed,
                     multivariate=True,

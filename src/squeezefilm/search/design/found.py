@@ -14,7 +14,7 @@ from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.results import Result, to_json
-from squeezefilm.search.design.candidate import Evaluated, display_of, plates_of
+from squeezefilm.search.design.candidate import Evaluated, plates_of, sourced_display_of
 from squeezefilm.search.design.correction import Correction
 from squeezefilm.search.design.criteria import CRITERIA
 from squeezefilm.search.design.front import dominates, hypervolume, knee_of
@@ -26,8 +26,8 @@ from squeezefilm.search.design.worth_solving import objectives_of, worst_corner
 
 @dataclass(frozen=True)
 class FrontMember:
-    """A plate of the front, solved in three dimensions, and what is made of its drawing (None where
-    it was not asked)."""
+    """A plate of the front at a voltage, solved in three dimensions, and what is made of its
+    drawing (None where it was not asked)."""
 
     evaluated: Evaluated
     made: Made | None = None
@@ -66,7 +66,7 @@ class DesignSearch(Result):
 
     @functools.cached_property
     def objectives(self) -> si.FloatArray:
-        """The objectives of the front (SI), shape (plates, objectives)."""
+        """The objectives of the front (SI), shape (members of the front, objectives)."""
         return objectives_of(self.requirements, [one.evaluated for one in self.front])
 
     @property
@@ -162,7 +162,7 @@ class DesignSearch(Result):
         if name is None and self.chosen is None:
             raise InputError("the front is empty: no plate meets the requirements")
         one = self.member(name or self.chosen_name)
-        return display_of(self.requirements, one.evaluated.design)
+        return sourced_display_of(self.requirements, one.evaluated.design)
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
@@ -195,7 +195,7 @@ class DesignSearch(Result):
             "screening_errors": {
                 space.shape: None
                 if one is None
-                else {"pairs": one.pairs, "raw": dict(one.raw), "corrected": dict(one.errors)}
+                else {"plates": one.plates, "raw": dict(one.raw), "corrected": dict(one.errors)}
                 for space, one in zip(self.requirements.spaces, self.corrections, strict=True)
             },
             "assumed": list(self.requirements.assumed),

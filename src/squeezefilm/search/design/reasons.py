@@ -124,7 +124,7 @@ def margins(requirements: Requirements, one: Evaluated) -> dict[str, si.Dimensio
     found = {
         criterion.key: -excess_of(criterion, value, bound)
         for criterion, bound in bounded(requirements.limits)
-        if not math.isnan(value := one.numbers.get(criterion.key, math.nan))
+        if not math.isnan(value := criterion.value(one.numbers))
     }
     return dict(sorted(found.items(), key=lambda item: item[1]))
 
@@ -133,7 +133,7 @@ def limit_in_words(reason: LimitReason, screened: int) -> str:
     """What a limit does, in a sentence."""
     one = CRITERIA[reason.key]
     said = (
-        f"{one.said} {one.bound_said(reason.limit)}: broken by {reason.broken} of {screened} "
+        f"{one.limit_said(reason.limit)}: broken by {reason.broken} of {screened} "
         f"screened designs, by {reason.alone} as the only limit"
     )
     if reason.best_without:
@@ -145,3 +145,12 @@ def gains_in_words(reason: LimitReason) -> str:
     """The objectives that would be there without a limit."""
     gained = ((criterion_of(name), value) for name, value in reason.best_without.items())
     return " and ".join(f"{one.said} of {one.shown(value)}" for one, value in gained)
+
+
+def corner_in_words(one: EmptyCorner) -> str:
+    """A part of the space without a feasible design, in a sentence."""
+    of = f"{one.shape}, {one.where}: none of {one.designs} screened designs is feasible"
+    if not one.key:
+        return f"{of}; {100 * one.share:.0f} % cannot be built, for example: {one.example}"
+    said = CRITERIA[one.key].said
+    return f"{of}; {100 * one.share:.0f} % of them break the limit of {said} ({one.example})"

@@ -14,6 +14,7 @@ from squeezefilm.search.design.criteria import (
     numbers_of_solved,
 )
 from squeezefilm.search.design.requirements import Requirements
+from squeezefilm.search.design.sources import shared_sources
 
 _NONE = Design(0, ())
 """In place of a design, since nobody chose it."""
@@ -26,14 +27,16 @@ def reference_of(requirements: Requirements) -> Evaluated:
     It has no class of cost, since nobody says what it is built from. Where it cannot be judged, its
     reason says why.
     """
-    base = requirements.base
+    base, own = requirements.base, load_display(requirements.compare_with)
+    of_body = {at: one for at, one in own.provenance.items() if at.startswith("actuator.")}
     display = replace(
-        load_display(requirements.compare_with),
+        own,
         finger=base.finger,
         surfaces=base.surfaces,
         gas=base.gas,
         thermal=base.thermal,
         active_area=None,
+        provenance=shared_sources(requirements) | of_body,
     )
     try:
         found = predict(display, voltage=requirements.drive.voltage)

@@ -18,7 +18,7 @@ from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.from_text import ReadBy
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.search.design.shape import Body, Room
-from squeezefilm.search.design.shapes import AnyShape
+from squeezefilm.search.design.shapes import AnyShape, shape_called
 from squeezefilm.search.design.space import VOLTAGE, Space, number
 from squeezefilm.search.design.stock import OWN
 
@@ -245,7 +245,7 @@ class Requirements:
         """What may be chosen, shape by shape. Raises `InputError` for ranges that are none."""
         least = self.drive.least_voltage or self.drive.voltage
         volts = number(VOLTAGE, least, self.drive.voltage, "V")
-        names = [one.type for one in self.shapes]
+        names = [shape_called(one) for one in self.shapes]
         return tuple(
             Space(
                 name if names.count(name) == 1 else f"{name} {1 + names[:k].count(name)}",

@@ -45,8 +45,8 @@ _TOGETHER = 8
 # tenth of the time of solving another, but where an interval is asked of each.
 _VOLTAGES: Mapping[str, int] = {"nominal": 5, "95 %": 3}
 _BATCH = 16
-# The share of the solved designs that the Bayesian sampler proposes.
-_DEAR = 0.25
+# The share of the plates to solve that the Bayesian sampler proposes.
+_BY_SAMPLER = 0.25
 # Designs near each of so many of the front, and as many expected there, that are screened in each
 # of some generations before the next are solved.
 _NEAR, _FROM, _GENERATIONS = 8, 12, 3
@@ -54,9 +54,9 @@ _NEAR, _FROM, _GENERATIONS = 8, 12, 3
 
 @dataclass(frozen=True)
 class Glimpse:
-    """What a search has so far, for whoever watches: the stage in words, how many of how many
-    designs, the objectives of screened and solved designs that are feasible now, and the display
-    to compare with."""
+    """What a search has so far, for whoever watches: the stage in words, how many designs are
+    screened and how many plates solved, the objectives (SI) of the feasible screened designs that
+    none other beats, the front of the solved ones, and the display to compare with."""
 
     stage: str
     screened: int
@@ -98,7 +98,8 @@ def search_designs(asked: SearchRequest) -> DesignSearch:
         jobs: processes; more than one in a script needs ``if __name__ == "__main__":``.
         scheduler: of a Dask cluster that computes in place of processes, "tcp://host:8786".
         out: a folder that keeps every design as it comes, and has those of before.
-        member: tells hosts apart that search in one folder.
+        member: of several hosts that search in one folder at once, each has a number of its own:
+            0, 1, … They learn from each other, and each ends with what all have solved.
         progress: is told what is being done, and how long it takes.
         watch: is shown what there is after every batch.
 
@@ -136,9 +137,10 @@ class SearchRun:
         require_within(DESIGNS_SOLVED, asked.solved, "solved")
         si.require("jobs", asked.jobs, at_least=1)
         si.require("member", asked.member, at_least=0)
+        si.require("seed", asked.seed, at_least=0)
         self._asked, self.requirements = asked, asked.requirements
         self._folder = None if asked.out is None else Path(asked.out)
-        self._store = DesignStore(self.requirements, self._folder)
+        self._store = DesignStore(self.requirements, self._folder, asked.member)
         self._tell = asked.progress or (lambda _: None)
         self._made: dict[Design, Made] = {}
         self._reference: Evaluated | None = None
@@ -154,9 +156,11 @@ class SearchRun:
             self._compare()
             self._screen(pool)
             every = self._asked.solved
-            self._solve_the_best(pool, every - round(_DEAR * every))
-            self._propose_dear(pool)
+            self._solve_the_best(pool, every - round(_BY_SAMPLER * every))
+            self._propose(pool)
             self._solve_the_best(pool, every)
+            # Only now: what is proposed and solved here depends on the seed alone.
+            self._seen["solved"].update(self._store.solved_by_others())
             self._make(pool)
         self._done = True
 
@@ -171,11 +175,11 @@ class SearchRun:
         share = -(-self._asked.screened // len(spaces))
         begun = time.monotonic()
         for shape, space in enumerate(spaces):
-            proposals = self._proposals(shape, dear=False)
+            proposals = self._proposals(shape, "screened")
             size = min(POPULATION, share)
             for batch in range(-(-share // size)):
                 self._say_screening(space.shape, shape * share + batch * size, begun)
-                asked = proposals.ask(size, batch)
+                asked = proposals.ask(min(size, share - batch * size), batch)
                 found = self._evaluated(pool, [design for _, design in asked], "screened")
                 proposals.tell([(trial, found[design]) for trial, design in asked])
                 self._show()
@@ -194,10 +198,10 @@ class SearchRun:
         feasible = sum(one.is_feasible for one in self._seen["screened"].values())
         self._tell(f"screening {shape}: {done} of {every} designs, {feasible} feasible{left}")
 
-    def _proposals(self, shape: int, *, dear: bool) -> Proposals:
+    def _proposals(self, shape: int, level: Level) -> Proposals:
         asked = self._asked
         return Proposals(
-            self.requirements, shape, self._folder, asked.seed, member=asked.member, dear=dear
+            self.requirements, shape, level, self._folder, asked.seed, member=asked.member
         )
 
     def _solve_the_best(self, pool: Workers, most: int) -> None:
@@ -272,14 +276,14 @@ class SearchRun:
             here = [one for one in solved if one.design.shape == shape]
             self._corrections[shape] = learned(space, self._seen["screened"], here)
 
-    def _propose_dear(self, pool: Workers) -> None:
+    def _propose(self, pool: Workers) -> None:
         """Let a Bayesian sampler propose plates beside the front, and solve them."""
         solved = self._seen["solved"]
         shapes = sorted({one.design.shape for one in self._front()})
         batch = 0
         studies = {}
         for shape in shapes:
-            studies[shape] = self._proposals(shape, dear=True)
+            studies[shape] = self._proposals(shape, "solved")
             studies[shape].known([one for one in solved.values() if one.design.shape == shape])
         while shapes and (before := len(self._plates_solved())) < self._asked.solved:
             for shape in shapes:

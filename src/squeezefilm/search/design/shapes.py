@@ -50,8 +50,8 @@ class Gasket:
 class Strips(Shape):
     """A rectangle with full-width ceramics along its length, `gap` (m) apart, of alternating sign,
     one fewer than its nodal lines; `both_faces` makes it a bimorph, whose upper ceramics, driven
-    against the lower ones, lie under the finger. `least_cover` is the least share of the pitch
-    that a ceramic takes (1: all but the gap)."""
+    against the lower ones, lie under the finger. `least_cover` is the least share of the
+    room between two gaps that a ceramic takes (1: all of it)."""
 
     least_lines: Lines
     most_lines: Lines
@@ -217,3 +217,10 @@ def _rim(gasket: Gasket, length: si.Metre, width: si.Metre) -> tuple[FoamSupport
 
 
 AnyShape = Strips | EdgeStrips | Disc | Ring
+
+
+def shape_called(shape: AnyShape) -> str:
+    """What people call a shape."""
+    if isinstance(shape, Strips):
+        return f"strips on {'both faces' if shape.both_faces else 'one face'}"
+    return shape.type.replace("_", " ")

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from squeezefilm import __version__
 from squeezefilm.results import config_hash, to_json
@@ -24,26 +24,27 @@ FILE = "designs.jsonl"
 """Its name in the folder of a search: a line for every evaluated design."""
 
 
-def asked_hash(requirements: Requirements) -> str:
+def asked_hash(requirements: Requirements, level: Level) -> str:
     """A hash of all that a design's numbers depend on beside the design: version, display,
-    materials and shapes; limits are judged anew."""
-    text = json.dumps(
-        [
-            __version__,
-            config_hash(requirements.base),
-            to_json(requirements.shapes),
-            to_json(requirements.workspace),
-            requirements.assembly_quality,
-            requirements.limits.press,
-            # What is computed of solved plates only where it is asked for.
-            requirements.limits.most_relative_friction,
-            requirements.limits.confidence,
-            requirements.limits.least_area is None,
-            requirements.limits.most_sound_level is None,
-            sorted(requirements.objectives),
-        ],
-        sort_keys=True,
-    )
+    materials and shapes, and what is computed of solved plates only where a limit asks for it. That
+    the limits are kept is judged anew."""
+    limits = requirements.limits
+    asked = [
+        __version__,
+        config_hash(requirements.base),
+        to_json(requirements.shapes),
+        to_json(requirements.workspace),
+        requirements.assembly_quality,
+        limits.press,
+    ]
+    if level == "solved":
+        asked += [
+            limits.most_relative_friction,
+            limits.confidence,
+            limits.least_area is None,
+            limits.most_sound_level is None,
+        ]
+    text = json.dumps(asked, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -60,23 +61,26 @@ def _made_hash(requirements: Requirements) -> str:
         requirements.objectives,
         DRAWS,
     ]
-    text = json.dumps([asked_hash(requirements), also], sort_keys=True)
+    text = json.dumps([asked_hash(requirements, "solved"), also], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 class DesignStore:
-    """Evaluated designs by design and level; without a folder in memory only.
+    """Evaluated designs by design and level; without a folder in memory only. `member` tells hosts
+    apart that search in one folder.
 
     Raises `InputError` where the folder's file cannot be read or written.
     """
 
-    def __init__(self, requirements: Requirements, folder: Path | None) -> None:
-        self._requirements, self._hash = requirements, asked_hash(requirements)
+    def __init__(self, requirements: Requirements, folder: Path | None, member: int = 0) -> None:
+        self._requirements, self._member = requirements, member
+        self._hashes = {one: asked_hash(requirements, one) for one in get_args(Level)}
         self._lines = None if folder is None else Lines(folder / FILE)
         self._known: dict[tuple[Design, Level], Evaluated] = {}
         self._made: dict[Design, Made] = {}
         self._made_hash = _made_hash(requirements)
         self.computed = 0
+        self._of_others: dict[Design, Evaluated] = {}
         if self._lines is not None:
             self._lines.read(self._take)
 
@@ -85,6 +89,14 @@ class DesignStore:
             self._take_made(read)
         elif (known := self._evaluated(read)) is not None:
             self._known[known.design, known.level] = known
+            if known.level == "solved" and read["member"] != self._member:
+                self._of_others[known.design] = known
+
+    def solved_by_others(self) -> dict[Design, Evaluated]:
+        """What other hosts that search in the same folder have solved until now."""
+        if self._lines is not None:
+            self._lines.read(self._take)
+        return self._of_others
 
     def __len__(self) -> int:
         return len(self._known)
@@ -122,7 +134,7 @@ class DesignStore:
             key: (float(low), float(high)) for key, (low, high) in read["intervals"].items()
         }
         self._made[design] = Made(
-            read["draws"], read["kept"], read["broken"], intervals, read["effects"]
+            read["draws"], read["kept"], read["broken"], intervals, read["effects"], read["failed"]
         )
 
     def _append(self, lines: list[dict[str, Any]]) -> None:
@@ -131,10 +143,11 @@ class DesignStore:
 
     def _line(self, one: Evaluated) -> dict[str, Any]:
         return {
-            "asked": self._hash,
+            "asked": self._hashes[one.level],
             "shape": one.design.shape,
             "values": one.design.settings,
             "level": one.level,
+            "member": self._member,
             "numbers": {key: _plain(value) for key, value in one.numbers.items()},
             "reason": one.reason,
             "seconds": round(one.seconds, 4),
@@ -142,7 +155,7 @@ class DesignStore:
         }
 
     def _evaluated(self, read: Mapping[str, Any]) -> Evaluated | None:
-        if read["asked"] != self._hash:
+        if read["asked"] != self._hashes[read["level"]]:
             return None
         numbers = {str(key): float(value) for key, value in read["numbers"].items()}
         return Evaluated(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Annotated
@@ -12,6 +14,7 @@ from scipy.stats import norm, qmc
 from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.kept_arrays import in_passing
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate, turned
 from squeezefilm.plausibility.checks import checked_before
 from squeezefilm.search.design.candidate import (
@@ -24,6 +27,8 @@ from squeezefilm.search.design.correction import CORRECTED
 from squeezefilm.search.design.criteria import breaches, criterion_of
 from squeezefilm.search.design.requirements import Requirements, Tolerances
 
+log = logging.getLogger(__name__)
+
 DRAWS = 64
 _NAMES = tuple(one.name for one in fields(Tolerances))
 
@@ -31,8 +36,8 @@ _NAMES = tuple(one.name for one in fields(Tolerances))
 @dataclass(frozen=True)
 class Made:
     """Plates made of one drawing: `draws` in number, the share that keeps the limits (`kept`), how
-    often each limit was broken by key, and the interval of each criterion from the 5 % to the 95 %
-    quantile (SI).
+    often each limit was broken by key, the number that could not be computed (`failed`, which keep
+    none), and the interval of each criterion from the 5 % to the 95 % quantile (SI).
 
     By the screening theory, in proportion to the solved plate as drawn. `effects` are, by tolerance
     and then by objective, by how much one standard deviation more changes the number.
@@ -43,6 +48,7 @@ class Made:
     broken: Mapping[str, int]
     intervals: Mapping[str, tuple[float, float]]
     effects: Mapping[str, Mapping[str, float]]
+    failed: int = 0
 
 
 def made_of(
@@ -67,7 +73,8 @@ def made_of(
         if values.size:
             low, high = np.quantile(values, (0.05, 0.95))
             intervals[key] = float(low), float(high)
-    return Made(draws, kept / draws, broken, intervals, _effects(requirements, solved, nominal))
+    effects = _effects(requirements, solved, nominal)
+    return Made(draws, kept / draws, broken, intervals, effects, found.count({}))
 
 
 def _effects(
@@ -112,10 +119,14 @@ def _numbers(
     """The screened criteria of a design as made, so many standard deviations off; empty where it
     cannot be."""
     try:
-        with checked_before():
+        with checked_before(), in_passing(), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
             display = as_made(requirements, design, deviations)
             return screened(requirements, display, design)
     except SqueezefilmError:
+        return {}
+    except Exception:  # a fault of ours in one of thousands does not end a search
+        log.exception("plate %s as made", design.address)
         return {}
 
 

@@ -52,3 +52,15 @@ def test_a_panel_that_is_kept_is_the_one_solved(
         assert (table.error, table.solved) == (alone.error, alone.solved)
         for one, other in zip(table.compiled, alone.compiled, strict=True):
             np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize("frequency", [4e3, 30e3])
+def test_films_err_too_little_for_a_panel_to_need_more_nodes(frequency: float) -> None:
+    """With films to a third of the tolerance the deepest panels of 4 kHz took all nodes that there
+    are, for minutes, and missed the tolerance still: what was to be met was noise of the films."""
+    table = FilmTable(frequency, 120e-6, AIR)
+    first = table.compiled.panels.shape
+    for panel in range(12):
+        table.build(panel)
+    assert table.compiled.panels.shape == first
+    assert table.relative_error < 0.8 * table.tolerance

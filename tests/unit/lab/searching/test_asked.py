@@ -18,6 +18,7 @@ from squeezefilm.lab.searching.asked import (
     folder_of,
     requirements_of,
 )
+from squeezefilm.report.design.plates import plate_file
 from squeezefilm.search.design.candidate import display_of
 from squeezefilm.search.design.criteria import criterion_of
 
@@ -34,9 +35,9 @@ def test_what_is_asked_for_is_said_before_anything_is_computed(tmp_path: Path) -
         {"key": "relative_friction", "said": "µ′/µ at the best place", "unit": ""},
         {"key": "finest_period", "said": "finest grating felt", "unit": "m"},
     ]
-    assert "temperature rise: at most 75 K" in found["limits"]
-    assert "squeeze number: at least 10" in found["limits"]
-    assert found["shapes"][0]["name"] == "strips"
+    assert "temperature rise at most 75 K" in found["limits"]
+    assert "squeeze number at least 10" in found["limits"]
+    assert found["shapes"][0]["name"] == "strips on one face"
     assert "nodal lines" in found["shapes"][0]["chosen"]
     # What has one value only is not chosen.
     assert "voltage" not in found["shapes"][0]["chosen"]
@@ -109,7 +110,7 @@ def test_a_plate_that_was_found_is_a_display_that_design_opens(tmp_path: Path) -
     asked = requirements()
     design = evaluated(asked, 0.4).design
     text = display_text(TEXT, tmp_path, design.shape, design.settings)
-    assert text.startswith("# A plate that a design search found for “biet2008-plate”.")
+    assert text == plate_file(asked, design)
     assert config.load_text(Display, text) == display_of(asked, design)
     assert opened(text)["name"] == f"biet2008-plate-{design.address}"
     with pytest.raises(ConfigError, match="no shape 2"):

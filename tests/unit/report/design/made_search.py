@@ -102,7 +102,6 @@ def _evaluated(
         "relative_friction": friction,
         "finest_period": 0.33e-3 * (1 + 1.2e4 / frequency),
         "resonance_frequency": frequency,
-        "highest_frequency": frequency,
         "squeeze_number": frequency / 2e3,
         "vibration_amplitude": motion,
         "half_wavelength": 0.083 / lines,

@@ -6,8 +6,8 @@ from tests.unit.report.design.made_search import made_search
 from tests.unit.report.drawn import labelled, words
 
 from squeezefilm.report.design import figures
-from squeezefilm.report.design.words import limit_words
 from squeezefilm.report.kit.style import png
+from squeezefilm.search.design.criteria import CRITERIA
 from squeezefilm.search.design.found import DesignSearch
 
 KINDS = {
@@ -66,7 +66,7 @@ def test_bars_are_as_long_as_limits_are_broken(found: DesignSearch) -> None:
     reasons = found.limits[::-1]
     assert widths == [one.broken for one in reasons] + [one.alone for one in reasons]
     labels = [text.get_text() for text in axes.get_yticklabels()]
-    assert labels == [limit_words(one.key, one.limit) for one in reasons]
+    assert labels == [CRITERIA[one.key].limit_said(one.limit) for one in reasons]
 
 
 def test_screened_and_solved_numbers_are_set_against_each_other(found: DesignSearch) -> None:

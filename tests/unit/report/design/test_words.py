@@ -9,7 +9,7 @@ from tests.unit.report.design.made_search import made_search, requirements_of
 
 from squeezefilm.report.design import words
 from squeezefilm.search.design.candidate import design_of
-from squeezefilm.search.design.criteria import OF_SOLVED
+from squeezefilm.search.design.criteria import CRITERIA, OF_SOLVED
 from squeezefilm.search.design.found import DesignSearch
 from squeezefilm.search.design.requirements import Requirements
 
@@ -20,14 +20,14 @@ def found() -> DesignSearch:
 
 
 def test_values_that_are_none_are_said_in_words() -> None:
-    assert words.criterion_words("finest_period", math.inf) == "none is felt"
-    assert words.criterion_words("neighbour", math.inf) == "none is near"
-    assert words.criterion_words("power", None) == "not known"
-    assert words.criterion_words("deflection", math.nan) == "not known"
-    assert words.criterion_words("area", 0.984) == "98 %"
-    assert words.criterion_words("resonance_frequency", 21325.1) == "21.3 kHz"
-    assert words.limit_words("squeeze_number", 10.0) == "squeeze number at least 10"
-    assert words.limit_words("temperature_rise", 75.0) == "temperature rise at most 75 K"
+    assert CRITERIA["finest_period"].shown(math.inf) == "none"
+    assert CRITERIA["neighbour"].shown(math.inf) == "none takes part"
+    assert CRITERIA["power"].shown(None) == "not known"
+    assert CRITERIA["deflection"].shown(math.nan) == "not known"
+    assert CRITERIA["area"].shown(0.984) == "98 %"
+    assert CRITERIA["resonance_frequency"].shown(21325.1) == "21.3 kHz"
+    assert CRITERIA["squeeze_number"].limit_said(10.0) == "squeeze number at least 10"
+    assert CRITERIA["temperature_rise"].limit_said(75.0) == "temperature rise at most 75 K"
 
 
 def test_what_was_chosen_has_every_free_setting_with_its_unit(found: DesignSearch) -> None:
@@ -97,7 +97,7 @@ def test_the_chosen_plate_is_told_with_its_nearest_limits_and_its_yield(
     said = " ".join(words.chosen_sentences(found))
     assert said.startswith(found.chosen_name)
     assert "Its nearest limits: " in said
-    assert "53 % keep all limits but those on half-bandwidths to a neighbour" in said
+    assert "53 % keep all limits but those on half-bandwidths to the nearest mode" in said
     assert "; broken are temperature rise by 30" in said
     member = replace(found.front[0], made=None)
     assert words.made_sentences(found.requirements, member) == [
@@ -118,7 +118,7 @@ def test_a_yield_names_the_limits_that_it_does_not_ask_of_what_is_made(found: De
     assert not any("yield" in one for one in plain.assumed)
     sure = asking(least_neighbour=3.0, confidence="95 %")
     (said,) = words.made_sentences(sure, found.front[0])
-    left_out = "µ′/µ with 95 % confidence and half-bandwidths to a neighbour"
+    left_out = "µ′/µ with 95 % confidence and half-bandwidths to the nearest mode"
     assert f"keep all limits but those on {left_out}, which only a solved plate" in said
     assert sum("the yield asks nothing of" in one for one in sure.assumed) == 2
 
@@ -148,7 +148,7 @@ def test_limits_that_nothing_breaks_share_a_sentence_and_the_dear_one_is_named(
 def test_a_limit_that_no_screened_design_was_asked_is_not_said_to_be_kept() -> None:
     found = made_search(limits={"least_neighbour": 3.0, "most_sound_level": 90.0})
     said = words.limit_sentences(found)
-    asked = "half-bandwidths to a neighbour at least 3; sound level at 0.5 m at most 90 dB"
+    asked = "half-bandwidths to the nearest mode at least 3; sound level at 0.5 m at most 90 dB"
     assert said[-1] == f"Asked of solved plates only: {asked}."
     assert not any("neighbour" in one for one in said[:-1])
 

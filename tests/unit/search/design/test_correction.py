@@ -14,7 +14,7 @@ def test_a_smooth_factor_is_learned_and_its_error_is_told() -> None:
     solved = [formula(wanted, one, "solved") for one in designs[:40]]
     found = learned(wanted.spaces[0], screened, solved)
     assert found is not None
-    assert found.pairs == 40
+    assert found.plates == 40
     assert found.errors["relative_friction"] < 0.3 * found.raw["relative_friction"]
     # Of designs that were not solved it is as wrong as it says.
     unseen = designs[40:]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tests.unit.search.design.made_up import formula, random_designs, requirements
 
-from squeezefilm.search.design.candidate import Design
+from squeezefilm.search.design.candidate import Design, Level
 from squeezefilm.search.design.evolution import JOURNAL, Proposals
 from squeezefilm.search.design.front import hypervolume
 
@@ -25,7 +25,7 @@ def _run(proposals: Proposals, batches: range, size: int = 100) -> list[Design]:
 
 def test_generations_learn_what_is_feasible_and_lose_nothing_to_chance() -> None:
     wanted = requirements()
-    found = _run(Proposals(wanted, 0, None, 1), range(6))
+    found = _run(Proposals(wanted, 0, "screened", None, 1), range(6))
     drawn = random_designs(wanted, 600)
 
     def rows(designs: list[Design]) -> np.ndarray:
@@ -36,15 +36,15 @@ def test_generations_learn_what_is_feasible_and_lose_nothing_to_chance() -> None
     assert hypervolume(rows(found), WORST) > 0.99 * hypervolume(rows(drawn), WORST)
 
 
-@pytest.mark.parametrize("dear", [False, True])
-def test_whoever_asks_again_is_proposed_the_same(tmp_path: Path, dear: bool) -> None:
+@pytest.mark.parametrize("level", ["screened", "solved"])
+def test_whoever_asks_again_is_proposed_the_same(tmp_path: Path, level: Level) -> None:
     """And publishes nothing twice, wherever the first was killed."""
     wanted = requirements()
-    whole = _run(Proposals(wanted, 0, None, 1, dear=dear), range(3), 20)
-    first = _run(Proposals(wanted, 0, tmp_path, 1, dear=dear), range(2), 20)
+    whole = _run(Proposals(wanted, 0, level, None, 1), range(3), 20)
+    first = _run(Proposals(wanted, 0, level, tmp_path, 1), range(2), 20)
     # Asked and never told: the process was killed.
-    Proposals(wanted, 0, tmp_path, 1, dear=dear).ask(20, 0)
-    again = _run(Proposals(wanted, 0, tmp_path, 1, dear=dear), range(3), 20)
+    Proposals(wanted, 0, level, tmp_path, 1).ask(20, 0)
+    again = _run(Proposals(wanted, 0, level, tmp_path, 1), range(3), 20)
     assert first == whole[:40]
     assert again == whole
     assert len(_published(tmp_path)) == 60
@@ -65,13 +65,16 @@ def test_hosts_that_share_a_folder_propose_different_designs_and_learn_from_each
     tmp_path: Path,
 ) -> None:
     wanted = requirements()
-    one, two = Proposals(wanted, 0, tmp_path, 1), Proposals(wanted, 0, tmp_path, 1, member=1)
+    one, two = (
+        Proposals(wanted, 0, "screened", tmp_path, 1),
+        Proposals(wanted, 0, "screened", tmp_path, 1, member=1),
+    )
     first = _run(one, range(2))
     second = _run(two, range(2))
     # It breeds from what the first found, and so meets some of its designs again.
     assert len(set(second) - set(first)) > 0.7 * len(set(second))
     assert len(_published(tmp_path)) == len(first) + len(second)
-    alone = _run(Proposals(wanted, 0, None, 1, member=1), range(2))
+    alone = _run(Proposals(wanted, 0, "screened", None, 1, member=1), range(2))
     assert second != alone
 
 
@@ -80,12 +83,12 @@ def test_a_folder_used_again_for_other_requirements_learns_nothing_from_the_firs
 ) -> None:
     """Other limits have other excesses, and three objectives are no two."""
     own = requirements()
-    _run(Proposals(own, 0, tmp_path, 1), range(1), 20)
+    _run(Proposals(own, 0, "screened", tmp_path, 1), range(1), 20)
     strict = replace(own, limits=replace(own.limits, most_power=1.0))
     third = replace(own, objectives=(*own.objectives, "mass"))
     for wanted in (strict, third):
-        alone = Proposals(wanted, 0, None, 1, member=1)
-        beside = Proposals(wanted, 0, tmp_path, 1, member=1)
+        alone = Proposals(wanted, 0, "screened", None, 1, member=1)
+        beside = Proposals(wanted, 0, "screened", tmp_path, 1, member=1)
         for batch in range(2):
             first, second = alone.ask(20, batch), beside.ask(20, batch)
             assert [one for _, one in first] == [one for _, one in second]
@@ -93,10 +96,10 @@ def test_a_folder_used_again_for_other_requirements_learns_nothing_from_the_firs
                 who.tell([(trial, formula(wanted, d, "screened")) for trial, d in asked])
 
 
-def test_the_dear_sampler_learns_from_what_others_solved() -> None:
+def test_the_sampler_of_what_is_solved_learns_from_what_others_solved() -> None:
     """Told of many designs, it proposes near the best of them: mostly feasible ones."""
     wanted = requirements()
-    proposals = Proposals(wanted, 0, None, 1, dear=True)
+    proposals = Proposals(wanted, 0, "solved", None, 1)
     known = [formula(wanted, d, "solved") for d in random_designs(wanted, 150)]
     proposals.known(known)
     found = [formula(wanted, d, "solved").is_feasible for _, d in proposals.ask(40, 0)]

@@ -96,3 +96,10 @@ def test_lengths_for_some_ceramics_only_are_refused() -> None:
     )
     with pytest.raises(InputError, match="some ceramics have lengths"):
         config.load_text(Requirements, text)
+
+
+def test_people_can_tell_shapes_of_one_type_apart() -> None:
+    names = [one.shape for one in load_requirements("biet2008-plate").spaces]
+    assert names == ["strips on one face", "strips on both faces"]
+    (glass,) = load_requirements("touchpad-glass").spaces
+    assert glass.shape == "edge strips"

@@ -1,12 +1,15 @@
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.unit.search.design.made_up import random_designs, requirements
 
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.search.design import tolerance
 from squeezefilm.search.design.candidate import Design, Evaluated, display_of, evaluate
 from squeezefilm.search.design.requirements import Limits, Requirements
 from squeezefilm.search.design.tolerance import as_made, made_of
@@ -89,3 +92,17 @@ def test_an_effect_on_the_thickness_is_that_of_the_sheet(
     alike = evaluate(thin, solved.design, "screened")
     found = made_of(thin, replace(alike, level="solved"), draws=4)
     assert found.effects["thickness"]["thickness"] == pytest.approx(20e-6)
+
+
+def test_a_fault_of_ours_costs_the_plate_that_has_it_and_no_search(
+    wanted: Requirements, solved: Evaluated, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real, calls = tolerance.screened, itertools.count()
+
+    def at_times(*asked: Any) -> dict[str, float]:
+        if next(calls) == 3:  # the first is the plate as drawn
+            raise ZeroDivisionError("of ours")
+        return real(*asked)
+
+    monkeypatch.setattr(tolerance, "screened", at_times)
+    assert made_of(wanted, solved, draws=8).failed == 1

@@ -318,8 +318,8 @@ class SearchView {
       rows.length ? element("ul", {}, ...rows.map((text) => element("li", { text: sentence(text) }))) : element("p", { class: "muted", text: none }));
     const ranks = Object.entries(search.ranks).map(([name, value]) => `${name}: ${plain(value, 2)}`).join("; ");
     const facts = [`${search.screened} designs screened, ${search.solved} solved; ${search.computed} answers computed, ${search.kept} known from before`,
-      `The front holds ${plain(100 * search.hypervolume, 3)} % of the objectives' box`,
-      ...(search.reference?.reason ? [`${search.reference.name} could not be judged: ${search.reference.reason}`] : search.reference ? [search.beats.length ? `${search.beats.length} of its plates ${search.beats.length === 1 ? "beats" : "beat"} ${search.reference.name} by the same questions` : `None of its plates beats ${search.reference.name} by the same questions`,
+      `The front dominates ${plain(100 * search.hypervolume, 3)} % of the box of all objectives, from nothing to its worst corner: to compare searches for the same requirements by`,
+      ...(search.reference?.reason ? [`${search.reference.name} could not be judged: ${search.reference.reason}`] : search.reference ? [search.plates_better ? `${search.plates_better} of its plates ${search.plates_better === 1 ? "beats" : "beat"} ${search.reference.name} by the same questions` : `None of its plates beats ${search.reference.name} by the same questions`,
         ...search.reference.breaks.map((text) => `${search.reference.name} itself breaks a limit: ${text}`)] : []),
       ...(ranks ? [`Screened and solved plates have the same order with a rank correlation of ${ranks}`] : [])];
     this.reasons.replaceChildren(list("In short", facts, ""), list("What each limit costs", search.limits, "No limit was broken."),
