@@ -40,7 +40,7 @@ def test_a_search_is_watched_finished_and_its_plates_opened(
 ) -> None:
     page, complaints = opened(chromium, running_lab, "search")
     page.get_by_role("button", name="No tour").click()
-    page.locator(".asked li", has_text="temperature rise: at most 75 K").wait_for(
+    page.locator(".asked li", has_text="temperature rise at most 75 K").wait_for(
         state="attached", timeout=SOLVED
     )
     assert page.locator("#requirements").input_value() == PRESET
