@@ -210,9 +210,14 @@ class Requirements:
             )
 
     @functools.cached_property
+    def started_from(self) -> Display:
+        """The display of `start_from`, as its file has it."""
+        return load_display(self.start_from)
+
+    @functools.cached_property
     def base(self) -> Display:
         """The display that the search starts from, with the finger that the requirements name."""
-        display = load_display(self.start_from)
+        display = self.started_from
         touch, finger = self.touch, display.finger
         force = finger.normal_force if touch.normal_force is None else touch.normal_force
         area_at = finger.contact_area_force or finger.normal_force

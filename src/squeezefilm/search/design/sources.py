@@ -9,7 +9,7 @@ from squeezefilm import presets
 from squeezefilm.analysis.parameters import value_at
 from squeezefilm.config.provenance import Provenance, distribution_of, split_provenance
 from squeezefilm.config.schema import Leaf, leaves
-from squeezefilm.display import Display, load_display
+from squeezefilm.display import Display
 from squeezefilm.presets.materials import Kind
 from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.space import VOLTAGE, Setting
@@ -41,7 +41,7 @@ def plate_sources(
             found[path] = _quality(requirements, given)
         elif name not in _PARTS:
             found[path] = chosen
-    base = load_display(requirements.start_from)
+    base = requirements.started_from
     for part, kind in _PARTS.items():
         found |= _of_material(base, part, str(settings[part]), kind, display)
     return found
@@ -50,7 +50,7 @@ def plate_sources(
 def shared_sources(requirements: Requirements) -> dict[str, Provenance]:
     """Where all numbers but those of body and drive are from, which every plate of a search shares:
     finger, gas, surfaces and cooling."""
-    base = load_display(requirements.start_from)
+    base = requirements.started_from
     found = dict(_kept(requirements, base))
     asked = Provenance(f"asked for by the requirements '{requirements.name}'", "assumed")
     found["finger.speed"] = asked
