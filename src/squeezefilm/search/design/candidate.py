@@ -134,7 +134,8 @@ def sourced_display_of(requirements: Requirements, design: Design) -> Display:
     """As `display_of`, of every number where it is from and, where that is known, within which
     range it lies: what an interval of its friction rests on."""
     display = display_of(requirements, design)
-    return replace(display, provenance=plate_sources(requirements, display, design.settings))
+    sources = plate_sources(requirements, display, design.shape, design.settings)
+    return replace(display, provenance=sources)
 
 
 def evaluate(requirements: Requirements, design: Design, level: Level) -> Evaluated:

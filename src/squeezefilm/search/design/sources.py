@@ -21,16 +21,16 @@ _GIVEN = ("glue", "supports")
 
 
 def plate_sources(
-    requirements: Requirements, display: Display, settings: Mapping[str, Setting]
+    requirements: Requirements, display: Display, shape: int, settings: Mapping[str, Setting]
 ) -> dict[str, Provenance]:
-    """Where each number of a plate's display is from, by its dotted path: chosen by the search, as
-    the `settings` by name, asked for or given by the requirements, of the library of materials, or
-    of the display that the search started from."""
+    """Where each number of a plate's display is from, by its dotted path: chosen by the search
+    among what the shape of a number allows (the `settings` by name), asked for or given by the
+    requirements, of the library of materials, or of the display that the search started from."""
     found = shared_sources(requirements)
     own = f"the requirements '{requirements.name}'"
     chosen = Provenance(f"chosen by squeezefilm design for {own}", "derived")
     given = Provenance(f"given by {own}", "assumed")
-    of_fixed = {one.name for space in requirements.spaces for one in space if one.is_fixed}
+    of_fixed = {one.name for one in requirements.spaces[shape] if one.is_fixed}
     found["drive.voltage"] = given if VOLTAGE in of_fixed else chosen
     for leaf in _stated(display):
         name = leaf.path[1]
