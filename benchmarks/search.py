@@ -33,7 +33,7 @@ SMALL, MANY, SECONDS = 1000, 60, 0.1
 OWN, FOLDER = "own_plate.toml", ROOT / "examples"
 QUESTIONS = (
     ("which thickness gives most friction change at 40 kHz?",
-     ["design", "forty_kilohertz.toml", "--screened", "200", "--solved", "12"]),
+     ["design", "forty_kilohertz.toml", "--screened", "150", "--solved", "10"]),
     ("how thick must my plate be for 40 kHz?",
      ["sweep", OWN, "--vary", "actuator.thickness=1.5 mm..2.5 mm:5",
       "--ask", "resonance_frequency,amplitude_per_volt,relative_friction"]),

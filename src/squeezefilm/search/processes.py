@@ -18,17 +18,22 @@ from squeezefilm.search.tasks import A, K, Lost, Shares, computed, grouped, trie
 
 
 class Processes:
-    """`jobs` processes, begun when they have something to do; they end at the end of the block, and
-    with this process."""
+    """`jobs` processes, begun when they have something to do, or at once where it is known what
+    they will be asked (`first`), which takes a second or two to load; they end at the end of the
+    block, and with this process."""
 
-    def __init__(self, jobs: int) -> None:
-        self._jobs = jobs
+    def __init__(self, jobs: int, first: Callable[..., Any] | None = None) -> None:
+        self._jobs, self._first = jobs, first
         # Each its own executor: only so a task goes to the process that has its plate.
         self._executors: list[ProcessPoolExecutor] = []
         self._before: set[Any] = set()
 
     def __enter__(self) -> Processes:
         self._before = set(multiprocessing.active_children())
+        if self._first is not None:
+            self._executors = [_executor() for _ in range(self._jobs)]
+            for one in self._executors:
+                one.submit(callable, self._first)
         return self
 
     def __exit__(

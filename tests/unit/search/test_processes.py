@@ -25,6 +25,15 @@ def test_all_are_answered_once_and_processes_stay_for_the_next_asking(tmp_path: 
     assert len(first | again) == 2
 
 
+def test_processes_that_know_what_they_will_be_asked_begin_at_once() -> None:
+    before = set(multiprocessing.active_children())
+    with Processes(2, whose) as pool:
+        begun = {one.pid for one in set(multiprocessing.active_children()) - before}
+        found = dict(pool.answers(whose, {k: (k, 0.1) for k in range(8)}))
+    assert len(begun) == 2
+    assert {process for _, process in found.values()} == begun
+
+
 def test_those_that_are_alike_are_answered_by_one_process() -> None:
     tasks = {k: (k, 0.1) for k in range(8)}
     with Processes(2) as pool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -39,11 +39,10 @@ def resonant_amplitude_per_volt(
 
 @dataclass(frozen=True, eq=False)
 class BeamResponse(SolvedAgain):
-    """A plate driven as a beam: its modes and how strongly the ceramics drive each.
+    """A plate driven as a beam: its working mode, and how strongly the ceramics drive it.
 
-    `mode` is the working mode, `modes` all that enter the superposition, `modal_force_per_width`
-    the force of one volt on each (N/V per m of width). `beam_width_ratio` is the share of the
-    width that the ceramics drive.
+    `force_per_width` is the force of one volt on the working mode `mode` (N/V per m of width).
+    `modes` are all that enter the superposition, found where they are asked for.
     """
 
     plate: RectangularPlate
@@ -51,10 +50,9 @@ class BeamResponse(SolvedAgain):
     theory: BeamTheory
     cross_section: CrossSection
     mode: BeamMode
-    modes: tuple[BeamMode, ...]
-    modal_force_per_width: tuple[float, ...]
+    force_per_width: float
     _again: Callable[[], BeamResponse] | None = field(repr=False, default=None)
-    _bulk: ClassVar[tuple[str, ...]] = ("mode", "modes")
+    _bulk: ClassVar[tuple[str, ...]] = ("mode",)
 
     @property
     def model(self) -> str:
@@ -64,15 +62,19 @@ class BeamResponse(SolvedAgain):
     @property
     def amplitude_per_volt(self) -> si.MetrePerVolt:
         """Zero-to-peak amplitude at the largest interior lobe, per volt, at resonance (m/V)."""
-        at = self.modes.index(self.mode)
         return abs(
             resonant_amplitude_per_volt(
-                self.modal_force_per_width[at],
+                self.force_per_width,
                 self.mode.modal_mass_per_width,
                 self.mode.frequency,
                 self.plate.quality_factor,
             )
         )
+
+    @property
+    def modes(self) -> tuple[BeamMode, ...]:
+        """The bending modes up to twice the working mode's frequency, or up to the cut-off."""
+        return _superposed(self.section, self.plate.length, self.mode)
 
     @si.checked_numbers
     def amplitude_at(self, frequency: si.HertzArray, position: si.Metre) -> si.MetrePerVoltArray:
@@ -91,7 +93,9 @@ class BeamResponse(SolvedAgain):
         si.require("position", position, si.Unit("m"), axes=1)
         omega2 = (2 * np.pi * frequency[:, None]) ** 2
         total = np.zeros((frequency.size, np.size(position)), dtype=complex)
-        for mode, force in zip(self.modes, self.modal_force_per_width, strict=True):
+        modes = self.modes
+        forces = _forces(self.plate, self.section, self.cross_section, modes)
+        for mode, force in zip(modes, forces, strict=True):
             own = (2 * np.pi * mode.frequency) ** 2
             denominator = own * (1 + 1j / self.plate.quality_factor) - omega2
             total += force / mode.modal_mass_per_width / denominator * mode.deflection_at(position)
@@ -127,19 +131,43 @@ def _driven(
 ) -> BeamResponse:
     section = plate_laminate(plate, cross_section)
     working = free_beam_mode(section, plate.length, plate.nodal_lines, theory)
+    (force,) = _forces(plate, section, cross_section, (working,))
+    return BeamResponse(
+        plate,
+        section,
+        theory,
+        cross_section,
+        working,
+        force,
+        functools.partial(beam_response, plate, theory, cross_section),
+    )
+
+
+@functools.lru_cache(maxsize=8)
+def _superposed(section: Laminate, length: si.Metre, working: BeamMode) -> tuple[BeamMode, ...]:
     modes: list[BeamMode] = []
-    for lines in range(2, 2 * plate.nodal_lines):
+    for lines in range(2, 2 * working.nodal_lines):
         try:
             mode = (
                 working
-                if lines == plate.nodal_lines
-                else free_beam_mode(section, plate.length, lines, theory)
+                if lines == working.nodal_lines
+                else free_beam_mode(section, length, lines, working.theory)
             )
         except OutOfRangeError:
             break
         if mode.frequency > 2 * working.frequency:
             break
         modes.append(mode)
+    return tuple(modes)
+
+
+def _forces(
+    plate: RectangularPlate,
+    section: Laminate,
+    cross_section: CrossSection,
+    modes: Iterable[BeamMode],
+) -> Iterator[float]:
+    """The force of one volt on each mode (N/V per m of width)."""
     moment = {
         face: moment_per_volt(plate, section, cross_section, face)
         for face in {patch.face for patch in plate.patches}
@@ -151,17 +179,8 @@ def _driven(
     )
     begin = np.array([one.x for one in plate.patches])
     end = begin + np.array([one.length for one in plate.patches])
-    forces = [float(pushed @ (mode.rotation_at(end) - mode.rotation_at(begin))) for mode in modes]
-    return BeamResponse(
-        plate,
-        section,
-        theory,
-        cross_section,
-        working,
-        tuple(modes),
-        tuple(forces),
-        functools.partial(beam_response, plate, theory, cross_section),
-    )
+    for mode in modes:
+        yield float(pushed @ (mode.rotation_at(end) - mode.rotation_at(begin)))
 
 
 LEAST_COVERAGE: si.Dimensionless = 0.8

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import time
 import warnings
 from collections.abc import Iterable, Mapping
@@ -16,6 +17,9 @@ from squeezefilm.contact.sharing.gas_table import across_frequencies
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.kept_arrays import in_passing
+from squeezefilm.plate.beam.modes import timoshenko_frequency
+from squeezefilm.plate.laminate import plate_laminate
+from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.search.design.criteria import (
     Breach,
@@ -183,6 +187,21 @@ def screened(requirements: Requirements, display: Display, design: Design) -> di
         theory = _SCREENING[requirements.shapes[design.shape].type]
         found = predict(display, theory=theory)
         return _judged(requirements, display, found, design)
+
+
+def beam_frequency(requirements: Requirements, design: Design) -> si.Hertz:
+    """About the resonance (Hz) of a plate with ceramics on all of its length, by the wave in a beam
+    alone: a fiftieth of the time of screening it. NaN for another shape, and for what cannot be
+    built."""
+    if requirements.shapes[design.shape].type != "strips":
+        return math.nan
+    try:
+        body = display_of(requirements, design).actuator
+    except SqueezefilmError:
+        return math.nan
+    assert isinstance(body, RectangularPlate), "strips are on a plate"
+    half_wavelength = body.length / (body.nodal_lines - 0.5)
+    return float(timoshenko_frequency(half_wavelength, plate_laminate(body)))
 
 
 def _judged(

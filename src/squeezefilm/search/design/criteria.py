@@ -149,18 +149,16 @@ def bounded(limits: Limits) -> Iterator[tuple[Criterion, float]]:
         yield one, float(bound)
 
 
-def breaches(
-    numbers: Mapping[str, float], limits: Limits, *, slack: float = 0.0
-) -> tuple[Breach, ...]:
+def breaches(numbers: Mapping[str, float], limits: Limits) -> tuple[Breach, ...]:
     """The limits that a design's numbers do not keep, the worst first; of numbers that are not
-    there nothing is said. `slack` lets every limit be exceeded by that share."""
+    there nothing is said."""
     found = []
     for one, bound in bounded(limits):
         value = one.value(numbers)
         if math.isnan(value):
             continue
         excess = excess_of(one, value, bound)
-        if excess > slack:
+        if excess > 0:
             found.append(Breach(one.key, value, bound, excess))
     return tuple(sorted(found, key=lambda one: -one.excess))
 

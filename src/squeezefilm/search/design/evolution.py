@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squeezefilm.search.design.candidate import Design, Evaluated, Level, design_of
+from squeezefilm.search.design.candidate import (
+    Design,
+    Evaluated,
+    Level,
+    beam_frequency,
+    design_of,
+)
 from squeezefilm.search.design.criteria import bounded, excess_of
 from squeezefilm.search.design.journal import journal
 from squeezefilm.search.design.requirements import Requirements
@@ -23,6 +29,10 @@ JOURNAL = "journal.log"
 """Its name in the folder of a search."""
 
 POPULATION = 100
+
+# Of so many random designs for each of the first generation those are taken whose frequency is
+# allowed, where it is bounded on both sides: of random plates one in fifty has 40 kHz ± 5 %.
+_LOOKED_AT = 40
 
 # In place of an objective that is infinite or not known, which no sampler takes.
 _NONE = 1e6
@@ -97,11 +107,32 @@ class Proposals:
                 self._study.add_trial(trial)
             self._others = len(others)
         self._study.sampler = self._sampler(batch)
+        if self._level == "screened" and batch == 0:
+            for places in self._aimed(count):
+                self._study.enqueue_trial(places)
         found = []
         for _ in range(count):
             trial = self._study.ask()
             shares = {one.name: trial.suggest_float(one.name, 0.0, 1.0) for one in self._space.free}
             found.append((trial, design_of(self._shape, self._space.at(shares))))
+        return found
+
+    def _aimed(self, count: int) -> list[dict[str, float]]:
+        """Places of at most so many random designs of which the beam has an allowed frequency; none
+        where the frequency is not bounded on both sides."""
+        limits = self._requirements.limits
+        low, high = limits.least_frequency, limits.most_frequency
+        found: list[dict[str, float]] = []
+        if low is None or high is None:
+            return found
+        draw = np.random.default_rng(self._seed)
+        for _ in range(_LOOKED_AT * count):
+            places = {one.name: float(draw.random()) for one in self._space.free}
+            design = design_of(self._shape, self._space.at(places))
+            if low <= beam_frequency(self._requirements, design) <= high:
+                found.append(places)
+            if len(found) == count:
+                break
         return found
 
     def tell(self, answers: Sequence[tuple[Any, Evaluated]]) -> None:

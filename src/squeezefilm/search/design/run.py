@@ -45,8 +45,9 @@ _TOGETHER = 8
 # tenth of the time of solving another, but where an interval is asked of each.
 _VOLTAGES: Mapping[str, int] = {"nominal": 5, "95 %": 3}
 _BATCH = 16
-# The share of the plates to solve that the Bayesian sampler proposes.
-_BY_SAMPLER = 0.25
+# The share of the plates to solve that the Bayesian sampler proposes, where there are enough for it
+# to learn from: of nine it learns nothing, and proposes plates anywhere.
+_BY_SAMPLER, _ENOUGH_FOR_SAMPLER = 0.25, 40
 # Designs near each of so many of the front, and as many expected there, that are screened in each
 # of some generations before the next are solved.
 _NEAR, _FROM, _GENERATIONS = 8, 12, 3
@@ -152,13 +153,17 @@ class SearchRun:
     def finish(self) -> None:
         """All that is left to do. What came is kept where this is interrupted."""
         asked = self._asked
-        with workers(jobs=asked.jobs, scheduler=asked.scheduler, tell=self._tell) as pool:
+        with workers(
+            jobs=asked.jobs, scheduler=asked.scheduler, tell=self._tell, first=evaluate_all
+        ) as pool:
             self._compare()
             self._screen(pool)
-            every = self._asked.solved
-            self._solve_the_best(pool, every - round(_BY_SAMPLER * every))
-            self._propose(pool)
+            every = asked.solved
+            if every >= _ENOUGH_FOR_SAMPLER:
+                self._solve_the_best(pool, every - round(_BY_SAMPLER * every))
+                self._propose(pool)
             self._solve_the_best(pool, every)
+            self._learn()
             # Only now: what is proposed and solved here depends on the seed alone.
             self._seen["solved"].update(self._store.solved_by_others())
             self._make(pool)
@@ -302,7 +307,6 @@ class SearchRun:
             batch += 1
             if len(self._plates_solved()) == before:
                 break  # it proposes nothing new
-        self._learn()
 
     def _say_solving(self, what: str) -> None:
         self._stage, solved = f"solving {what}", len(self._plates_solved())

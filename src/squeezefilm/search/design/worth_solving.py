@@ -15,8 +15,10 @@ from squeezefilm.search.design.criteria import breaches, criterion_of
 from squeezefilm.search.design.front import layers_of
 from squeezefilm.search.design.requirements import Requirements
 
-# A design is solved though the screening says that it breaks a limit by up to this share.
-_DOUBT, _CORRECTED_DOUBT = 0.25, 0.08
+# A design is solved though the screening says that it breaks a limit by up to this share; it tells
+# frequencies better than what depends on losses.
+_DOUBT, _CORRECTED_DOUBT, _OF_FREQUENCY = 0.25, 0.08, 0.08
+_FREQUENCIES = ("resonance_frequency", "highest_frequency")
 # By what share a corrected objective is taken to be off, where nothing or too much is known of it.
 _ERROR, _MOST_ERROR = 0.1, 0.2
 
@@ -140,11 +142,12 @@ def _expected(
             if one.design.shape == shape and not one.reason and one.design.plate not in known
         ]
         numbers: list[Mapping[str, float]] = [one.numbers for one in here]
-        slack = _DOUBT
+        doubt = _DOUBT
         if correction is not None:
-            numbers, slack = list(correction.of_all(here)), _CORRECTED_DOUBT
+            numbers, doubt = list(correction.of_all(here)), _CORRECTED_DOUBT
         for one, expected in zip(here, numbers, strict=True):
-            if not breaches(expected, requirements.limits, slack=slack):
+            broken = breaches(expected, requirements.limits)
+            if all(b.excess <= (_OF_FREQUENCY if b.key in _FREQUENCIES else doubt) for b in broken):
                 yield replace(one, numbers=expected)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tests.unit.search.design.made_up import formula, random_designs, requirements
 
-from squeezefilm.search.design.candidate import Design, Level
+from squeezefilm.search.design.candidate import Design, Level, evaluate
 from squeezefilm.search.design.evolution import JOURNAL, Proposals
 from squeezefilm.search.design.front import hypervolume
 
@@ -34,6 +34,26 @@ def test_generations_learn_what_is_feasible_and_lose_nothing_to_chance() -> None
 
     assert len(rows(found[-100:])) > 2 * len(rows(drawn)) / 6
     assert hypervolume(rows(found), WORST) > 0.99 * hypervolume(rows(drawn), WORST)
+
+
+def test_the_first_generation_aims_at_a_frequency_that_is_bounded_on_both_sides() -> None:
+    """By the beam, which the screening of strips of full length follows within some percent."""
+    own = requirements()
+    limits = replace(own.limits, least_frequency=38e3, most_frequency=42e3)
+    wanted = replace(own, limits=limits)
+    asked = Proposals(wanted, 0, "screened", None, 1).ask(30, 0)
+    drawn = random_designs(wanted, 30)
+
+    def near(designs: list[Design]) -> float:
+        found = [evaluate(wanted, one, "screened").numbers for one in designs]
+        return float(
+            np.mean([37e3 < one.get("resonance_frequency", np.nan) < 43e3 for one in found])
+        )
+
+    assert near([design for _, design in asked]) > 0.9
+    assert near(drawn) < 0.3
+    # One side alone is met by many: nothing is aimed at.
+    assert not Proposals(own, 0, "screened", None, 1)._aimed(30)
 
 
 @pytest.mark.parametrize("level", ["screened", "solved"])
