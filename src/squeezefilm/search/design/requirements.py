@@ -112,6 +112,16 @@ class Limits:
     most_cost: Annotated[int, si.AtLeast(1), si.AtMost(9)] | None = None
     least_yield: Annotated[si.Dimensionless, *_SHARE] | None = None
 
+    def __post_init__(self) -> None:
+        low, high = self.least_frequency, self.most_frequency
+        if low is not None and high is not None and low > high:
+            raise InputError(
+                f"least_frequency is {si.format_quantity(low, si.Unit('Hz'))}, above a "
+                f"most_frequency of {si.format_quantity(high, si.Unit('Hz'))}: no plate is between "
+                "them; make the least at most the other",
+                quantity="least_frequency",
+            )
+
     @property
     def unasked_of_made(self) -> tuple[str, ...]:
         """The limits given that plates made of a drawing are not judged by: only plates solved in

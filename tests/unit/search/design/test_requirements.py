@@ -28,6 +28,7 @@ def test_the_presets_can_be_read(name: str) -> None:
         ('material = "aluminium 6061"', 'material = "aluminum 6060"', "no material"),
         ("most_lines = 9", "most_lines = 4", "no range"),
         ('least_voltage = "5 V"', 'least_voltage = "50 V"', "more than the highest"),
+        ("[limits]", '[limits]\nmost_frequency = "19 kHz"', "no plate is between"),
         ('start_from = "biet2008-plate"', 'start_from = "biet2008-stator"', "measured ring"),
         ('compare_with = ""', 'compare_with = "biet2008-stator"', "compare_with.*measured ring"),
         ('compare_with = ""', 'compare_with = "biet2008-plat"', "compare_with.*Did you mean"),
