@@ -297,7 +297,7 @@ def test_bad_asking_is_refused_before_anything_is_computed() -> None:
         run.search_designs("biet2008-plat")
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_small_search_of_real_plates(tmp_path: Path) -> None:
     """Against the paper's plate: whatever is on the front keeps the limits, solved."""
     with warnings.catch_warnings():
