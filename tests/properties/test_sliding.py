@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, reject
 from hypothesis import strategies as st
 
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.sliding.dry_friction import DryFriction, SpeedFriction
 from squeezefilm.contact.sliding.march import Sliding, slide
+from squeezefilm.errors import InputError
 
 SAMPLES = 200
 
@@ -65,11 +66,18 @@ def energy_scale(motion: Sliding) -> float:
     )
 
 
+def energy_rounding(motion: Sliding) -> float:
+    """What a stretch, the difference of two places, is rounded by does work in every sample; of
+    motions that have less than a trillionth of a microjoule less is asked."""
+    far, strong = np.abs(motion.skin_position).max(), np.abs(motion.bone_force).max()
+    return float(SAMPLES * np.finfo(float).eps * far * strong) + 1e-27
+
+
 @given(motions())
 def test_energy_balances_and_friction_never_creates_any(both: Mirrored) -> None:
     motion = both.motion
     # Slips shorter than 1e-6 of a step are not followed: of 1e-49 m/s no energy is accounted for.
-    assert motion.energy_residual <= 1e-6 * energy_scale(motion) + 1e-30
+    assert motion.energy_residual <= 1e-6 * energy_scale(motion) + energy_rounding(motion)
     assert np.all(np.diff(motion.friction_loss) >= 0)
     assert np.all(np.diff(motion.damping_loss) >= 0)
 
@@ -115,7 +123,7 @@ def motions_by_speed(draw: st.DrawFn) -> Mirrored:
     many = draw(st.booleans())
     rows = draw(st.sampled_from([0.0, 0.5, 2.0])) * rng.random((SAMPLES if many else 1, grid.size))
     kind = draw(st.sampled_from(["as they are", "rising", "from nothing", "now and then nothing"]))
-    # What falls steeply would need more parts of a step than are allowed.
+    # What falls steeply mostly needs more parts of a step than are allowed; the rest is rejected.
     rows[:, 1:] = np.maximum(rows[:, 1:], rows[:, :1]) if first < 1e-3 else rows[:, 1:]
     if kind != "as they are":
         rows = np.sort(rows, axis=1)
@@ -133,20 +141,25 @@ def motions_by_speed(draw: st.DrawFn) -> Mirrored:
     start = draw(st.one_of(st.just(0.0), st.floats(-0.3, 0.3)))
     stretch = draw(st.floats(-1e-3, 1e-3))
     friction = SpeedFriction(grid, rows if many else rows[0])
-    both = [
-        slide(
-            side * bone, dt, friction, load, pad, law,
-            initial_speed=side * start, initial_stretch=side * stretch,
-        )
-        for side in (1.0, -1.0)
-    ]  # fmt: skip
+    try:
+        both = [
+            slide(
+                side * bone, dt, friction, load, pad, law,
+                initial_speed=side * start, initial_stretch=side * stretch,
+            )
+            for side in (1.0, -1.0)
+        ]  # fmt: skip
+    except InputError as refused:
+        if "parts of a step" not in str(refused):
+            raise
+        reject()
     return Mirrored(*both)
 
 
 @given(motions_by_speed())
 def test_friction_by_speed_keeps_the_laws_of_energy_and_of_mirrors(both: Mirrored) -> None:
     motion, mirrored = both
-    assert motion.energy_residual <= 1e-6 * energy_scale(motion) + 1e-30
+    assert motion.energy_residual <= 1e-6 * energy_scale(motion) + energy_rounding(motion)
     assert np.all(np.diff(motion.friction_loss) >= -1e-15 * energy_scale(motion) - 1e-30)
     assert np.all(np.diff(motion.damping_loss) >= 0)
     assert np.all(motion.skin_speed[motion.sticking] == 0)

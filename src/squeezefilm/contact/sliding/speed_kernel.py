@@ -259,7 +259,6 @@ def rows_march(
                             sign = -1.0
                         if sign != 0.0:
                             j = 0
-                            force_end = here * (L0 + dL * (s + part))
                             account[1] += 1.0
                             events += 1
                             if events > MOST_EVENTS:
@@ -320,7 +319,6 @@ def rows_march(
                     sign = 0.0
                     if abs(f) > static_ratio * here * (L0 + dL * s):
                         sign = math.copysign(1.0, f)
-                        force_end = here * (L0 + dL * s)
                         account[1] += 1.0
                     events += 1
                     if events > MOST_EVENTS:
@@ -329,10 +327,14 @@ def rows_march(
         speed[i + 1] = v
         stuck[i + 1] = sign == 0.0
         bone_force[i + 1] = k * (bone[i + 1] - x) + c * (speed_out[i] - v)
-        if v == 0.0 and sign != 0.0:
-            # About to slip: the law itself, which a line reaches but for rounding.
-            force_end = at_rest * at_place(x, start, spacing, profile)
-        friction[i + 1] = bone_force[i + 1] if sign == 0.0 else sign * force_end
+        friction[i + 1] = bone_force[i + 1]
+        if sign != 0.0:
+            # The law itself, from which the line that moved the skin may have strayed.
+            low, rise = on_segment(speeds, coefficient, i + 1, j)
+            law = force[i + 1] * (low + rise * (abs(v) - speeds[j]))
+            # Where friction vanishes at rest, a skin that has turned is still on its line.
+            law *= at_place(x, start, spacing, profile)
+            friction[i + 1] = math.copysign(law, v if v != 0.0 else sign)
         work[0, i + 1] = work[0, i] + done_bone
         work[1, i + 1] = work[1, i] + done_lost
         work[2, i + 1] = work[2, i] + done_damped
