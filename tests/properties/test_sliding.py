@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from hypothesis import given, reject
@@ -47,14 +47,18 @@ def motions(draw: st.DrawFn) -> Mirrored:
     load = draw(st.sampled_from([0.0, 1.0])) + rng.random(SAMPLES)
     start = draw(st.floats(-0.3, 0.3))
     stretch = draw(st.floats(-1e-3, 1e-3))
-    both = [
-        slide(
-            side * bone, dt, friction, load, pad, law,
-            initial_speed=side * start, initial_stretch=side * stretch,
+    return in_mirror((bone, dt, friction, load, pad, law), start, stretch)
+
+
+def in_mirror(asked: tuple[Any, ...], start: float, stretch: float) -> Mirrored:
+    """A motion as `slide` is asked for it, and the same seen in a mirror."""
+    bone, *rest = asked
+    return Mirrored(
+        *(
+            slide(side * bone, *rest, initial_speed=side * start, initial_stretch=side * stretch)
+            for side in (1.0, -1.0)
         )
-        for side in (1.0, -1.0)
-    ]  # fmt: skip
-    return Mirrored(*both)
+    )
 
 
 def energy_scale(motion: Sliding) -> float:
@@ -68,7 +72,7 @@ def energy_scale(motion: Sliding) -> float:
 
 def energy_rounding(motion: Sliding) -> float:
     """What a stretch, the difference of two places, is rounded by does work in every sample; of
-    motions that have less than a trillionth of a microjoule less is asked."""
+    motions that have less than 1e-21 J less is asked."""
     far, strong = np.abs(motion.skin_position).max(), np.abs(motion.bone_force).max()
     return float(SAMPLES * np.finfo(float).eps * far * strong) + 1e-27
 
@@ -142,18 +146,11 @@ def motions_by_speed(draw: st.DrawFn) -> Mirrored:
     stretch = draw(st.floats(-1e-3, 1e-3))
     friction = SpeedFriction(grid, rows if many else rows[0])
     try:
-        both = [
-            slide(
-                side * bone, dt, friction, load, pad, law,
-                initial_speed=side * start, initial_stretch=side * stretch,
-            )
-            for side in (1.0, -1.0)
-        ]  # fmt: skip
+        return in_mirror((bone, dt, friction, load, pad, law), start, stretch)
     except InputError as refused:
         if "parts of a step" not in str(refused):
             raise
         reject()
-    return Mirrored(*both)
 
 
 @given(motions_by_speed())
