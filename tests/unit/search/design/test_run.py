@@ -302,13 +302,13 @@ def test_a_small_search_of_real_plates(tmp_path: Path) -> None:
     """Against the paper's plate: whatever is on the front keeps the limits, solved."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = run.search_designs("biet2008-plate", screened=100, solved=16, jobs=2, out=tmp_path)
+        found = run.search_designs("biet2008-plate", screened=60, solved=8, jobs=2, out=tmp_path)
     assert found.reference is not None
     assert found.reference.is_feasible
     assert found.front
     for one in found.front:
         assert one.evaluated.is_feasible
         assert one.made is not None
-    again = run.search_designs("biet2008-plate", screened=100, solved=16, jobs=1, out=tmp_path)
+    again = run.search_designs("biet2008-plate", screened=60, solved=8, jobs=1, out=tmp_path)
     assert again.computed == 0
     assert again.hypervolume == found.hypervolume
