@@ -64,6 +64,13 @@ def on_segment(speed: si.Array, rows: si.Array, i: int, j: int) -> tuple[float, 
 
 
 @compiled()
+def on_law(speed: si.Array, rows: si.Array, i: int, j: int, pace: float) -> float:
+    """Coefficient of row i at a speed (m/s) on the line above knot j."""
+    low, rise = on_segment(speed, rows, i, j)
+    return float(low + rise * (pace - speed[j]))
+
+
+@compiled()
 def strongest_and_fall(rows: Rows, force: si.Array) -> tuple[float, float]:
     """The strongest friction (N) of all rows at `force` (N) for each of their units, and its
     steepest fall with speed (N·s/m), at least 0."""
@@ -174,8 +181,7 @@ def rows_march(
     j = 0
     while j < speeds.size - 1 and speeds[j + 1] <= abs(v):
         j += 1
-    low, rise = on_segment(speeds, coefficient, 0, j)
-    force_end = force[0] * (low + rise * (abs(v) - speeds[j]))
+    force_end = force[0] * on_law(speeds, coefficient, 0, j, abs(v))
     force_end *= at_place(x, start, spacing, profile)
     bone_force[0] = load
     stuck[0] = sign == 0.0
@@ -330,8 +336,7 @@ def rows_march(
         friction[i + 1] = bone_force[i + 1]
         if sign != 0.0:
             # The law itself, from which the line that moved the skin may have strayed.
-            low, rise = on_segment(speeds, coefficient, i + 1, j)
-            law = force[i + 1] * (low + rise * (abs(v) - speeds[j]))
+            law = force[i + 1] * on_law(speeds, coefficient, i + 1, j, abs(v))
             # Where friction vanishes at rest, a skin that has turned is still on its line.
             law *= at_place(x, start, spacing, profile)
             friction[i + 1] = math.copysign(law, v if v != 0.0 else sign)

@@ -48,10 +48,10 @@ class Proposals:
     What is to be screened is proposed by NSGA-II (Deb et al. 2002, 10.1109/4235.996017), what is to
     be solved by a tree-structured Parzen estimator (Ozaki et al. 2020, 10.1145/3377930.3389817),
     since that takes long: the `level`. A first generation is aimed at a frequency that limits bound
-    on both sides. The seed and the number of the batch decide what is
-    proposed: whoever asks again from the beginning is proposed the same. In a `folder` what was
-    answered is published in a journal; hosts that search there, each with a `member` of its own,
-    learn from each other's answers.
+    on both sides. The seed and the number of the batch decide what is proposed: whoever asks again
+    from the beginning is proposed the same. In a `folder` what was answered is published in a
+    journal; hosts that search there, each with a `member` of its own, learn from each other's
+    answers.
     """
 
     def __init__(
