@@ -14,6 +14,17 @@ def counted(folder: Path, number: int, seconds: float = 0.0) -> int:
     return number * number
 
 
+def held(folder: Path, number: int, most: int) -> int:
+    """As `counted`, but where so many have ended it waits for a file `go`: whoever is killed in
+    the meantime is at one task, and has sent the answers of the others."""
+    _line(folder / "begun", number)
+    if lines(folder, "ended").total() >= most:
+        while not (folder / "go").exists():
+            time.sleep(0.01)
+    _line(folder / "ended", number)
+    return number * number
+
+
 def deadly(folder: Path, number: int) -> int:
     """As `counted`, but the process that is at 13 dies."""
     _line(folder / "begun", number)
