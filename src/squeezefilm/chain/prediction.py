@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.area_map import at_best_place
-from squeezefilm.chain.chosen_mode import beam_objection, chosen_mode
+from squeezefilm.chain.chosen_mode import chosen_mode
 from squeezefilm.chain.free_vibration import FreeVibration, free_vibration
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
@@ -259,8 +259,7 @@ def predict(
             law = at_best_place(display, mode, law, drive)
         asked_for_asymptote = model is not None and law.kind.film == "asymptote"
         found = _felt(display, mode, drive, law, strict=strict and asked_for_asymptote)
-    rough = () if drive.voltage is None else beam_objection(display.actuator, mode, strict=strict)
-    objections = (*unusual, *replaced, *rough)
+    objections = (*unusual, *replaced)
     doubts = (*objections, *_doubts(caught, found))
     return dataclasses.replace(found, warnings=tuple(dict.fromkeys(doubts)), objections=objections)
 

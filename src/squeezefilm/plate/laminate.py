@@ -82,7 +82,18 @@ def plate_laminate(
     plate: RectangularPlate | DiscPlate, cross_section: CrossSection = "plane_strain"
 ) -> Laminate:
     """The section of a plate where it carries ceramic, on one face or on both; the gaps between
-    ceramics are neglected.
+    ceramics are neglected. `cross_section` as in `section_with`."""
+    return section_with(plate, cross_section, *_ceramics(plate))
+
+
+def section_with(
+    plate: RectangularPlate | DiscPlate,
+    cross_section: CrossSection,
+    above: si.Metre,
+    below: si.Metre,
+) -> Laminate:
+    """The section of a plate with ceramic of a thickness on its upper and on its lower face; 0 is
+    none.
 
     `cross_section` says how the strip deforms across its width: not at all ("plane_strain", for
     plates wide against λ/2: E/(1 − ν²) and c11_p), freely ("plane_stress", for narrow ones: E and
@@ -97,7 +108,7 @@ def plate_laminate(
         substrate.shear_modulus,
         substrate.density,
     )
-    above, below = (
+    upper, lower = (
         [
             Layer(
                 thickness,
@@ -108,9 +119,9 @@ def plate_laminate(
         ]
         if thickness
         else []
-        for thickness in _ceramics(plate)
+        for thickness in (above, below)
     )
-    return laminate([*above, metal, *below])
+    return laminate([*upper, metal, *lower])
 
 
 def _ceramics(plate: RectangularPlate | DiscPlate) -> tuple[si.Metre, si.Metre]:

@@ -204,13 +204,10 @@ def working_mode(
 
 def _sheared(plate: RectangularPlate) -> WorkingMode:
     try:
-        beam = beam_response(plate).mode.frequency
+        near = beam_response(plate).mode.frequency
     except OutOfRangeError:
-        beam = bare_frequency(plate, plate.working_label)
-    # Between the bare plate and one that ceramics cover.
-    bare = bare_frequency(plate, plate.working_label)
-    covered = min(plate.coverage, 1.0)
-    found = shear_working(plate, bare ** (1 - covered) * beam**covered)
+        near = bare_frequency(plate, plate.working_label)
+    found = shear_working(plate, near)
     return WorkingMode(
         label="({},{})".format(*plate.working_label),
         resonance_frequency=found.mode.frequency,

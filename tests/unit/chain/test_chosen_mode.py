@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 
 from squeezefilm.chain import chosen_mode as module
-from squeezefilm.chain.chosen_mode import beam_objection, chosen_mode
+from squeezefilm.chain.chosen_mode import chosen_mode
 from squeezefilm.display import load_display
-from squeezefilm.errors import InputError, OutOfRangeError, OutOfTimeError
+from squeezefilm.errors import InputError, OutOfTimeError
 from squeezefilm.progress import NO_HURRY, Pace
 
 PLATE = load_display("biet2008-plate").actuator
@@ -76,15 +76,3 @@ def test_what_is_no_plate_has_no_beam_to_be_taken_for(monkeypatch: pytest.Monkey
 def test_a_theory_that_is_asked_for_is_no_fallback(monkeypatch: pytest.MonkeyPatch) -> None:
     solving(monkeypatch, InputError("no such mode"))
     assert chosen_mode(PLATE, "timoshenko") == (BEAM, ())
-
-
-def test_a_beam_is_objected_to_where_ceramics_do_not_cover_the_plate() -> None:
-    glass, beam = load_display("basdogan2020-glass").actuator, SimpleNamespace(solid=None)
-    (objection,) = beam_objection(glass, beam, strict=False)  # type: ignore[arg-type]
-    assert "13 %" in objection
-    assert beam_objection(PLATE, beam, strict=True) == ()  # type: ignore[arg-type]
-    assert beam_objection(STATOR, beam, strict=True) == ()  # type: ignore[arg-type]
-    solid = SimpleNamespace(solid=object())
-    assert beam_objection(glass, solid, strict=True) == ()  # type: ignore[arg-type]
-    with pytest.raises(OutOfRangeError, match="leave strictness out"):
-        beam_objection(glass, beam, strict=True)  # type: ignore[arg-type]

@@ -16,6 +16,7 @@ from squeezefilm.errors import (
     OutOfRangeError,
     UnreachableError,
 )
+from squeezefilm.plate.layout import RectangularPlate
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +44,7 @@ def test_amplitude_is_linear_in_the_voltage_and_falls_off_resonance(plate: Displ
     # ... in the beam far less, whose neighbours are further.
     beam = predict(plate, theory="timoshenko").frequency
     full, off = (predict(plate, theory="timoshenko", frequency=f * beam) for f in (1, 1.01))
-    assert off.vibration_amplitude / full.vibration_amplitude == pytest.approx(alone, rel=0.02)
+    assert off.vibration_amplitude / full.vibration_amplitude == pytest.approx(alone, rel=0.03)
 
 
 def test_the_models_are_named(plate: Display, stator: Display) -> None:
@@ -189,23 +190,17 @@ def test_contradicting_data_warn_or_are_refused(plate: Display) -> None:
 
 
 @pytest.mark.slow
-def test_a_beam_of_a_plate_with_few_ceramics_warns_or_is_refused(plate: Display) -> None:
-    ceramic = dataclasses.replace(plate.actuator.ceramic, stress_coefficient=None)  # type: ignore[union-attr]
+def test_a_beam_carries_ceramic_where_the_plate_does(plate: Display) -> None:
+    """Three ceramics of seven: a beam that carried them everywhere would be a seventh too quick."""
+    assert isinstance(plate.actuator, RectangularPlate)
     few = dataclasses.replace(
         plate,
-        actuator=dataclasses.replace(
-            plate.actuator,
-            ceramic=ceramic,
-            patches=plate.actuator.patches[:3],  # type: ignore[union-attr]
-        ),
+        actuator=dataclasses.replace(plate.actuator, patches=plate.actuator.patches[:3]),
     )
-    assert any("cover 40 % of it" in text for text in predict(few, theory="timoshenko").warnings)
-    with pytest.raises(OutOfRangeError, match="squeezefilm plate"):
-        predict(few, theory="timoshenko", strict=True)
-    beam = predict(plate, theory="timoshenko")
-    assert not any("the beam takes" in text for text in beam.warnings)
-    # The solved plate is as it is described.
-    assert not any("the beam takes" in text for text in predict(few).warnings)
+    beam, solved = predict(few, theory="timoshenko").mode, predict(few).mode
+    assert beam.resonance_frequency == pytest.approx(solved.resonance_frequency, rel=0.03)
+    covered = predict(plate, theory="timoshenko").mode
+    assert covered.resonance_frequency > 1.1 * beam.resonance_frequency
 
 
 def test_an_asymptote_out_of_range_warns_or_is_refused(stator: Display) -> None:

@@ -26,7 +26,9 @@ def test_a_covered_plate_is_the_beam() -> None:
     beam, seen = beam_response(plate), of("biet2008-plate")
     assert seen.frequency == beam.mode.frequency
     assert seen.amplitude_per_volt == beam.amplitude_per_volt
-    assert seen.sentence == "about 34.7 kHz, 100 nm/V, by a beam (mostly right to 30 %)"
+    assert seen.sentence == (
+        "about 33.6 kHz (mostly right to 15 %), 110 nm/V (to a factor of two), by a beam"
+    )
 
 
 def test_the_stator_is_what_was_measured() -> None:
@@ -93,7 +95,8 @@ def test_the_counted_unknowns_are_those_that_are_solved() -> None:
 def test_what_is_foreseen_is_one_sentence() -> None:
     said = foreseen("biet2008-plate").sentence
     assert said.startswith(
-        "expected about 34.7 kHz, 100 nm/V, by a beam (mostly right to 30 %); solving"
+        "expected about 33.6 kHz (mostly right to 15 %), 110 nm/V (to a factor of two), by a beam; "
+        "solving"
     )
     assert (
         foreseen("biet2008-stator").sentence

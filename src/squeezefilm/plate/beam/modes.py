@@ -103,7 +103,7 @@ class BeamMode:
         return np.asarray(np.interp(x, self.position, self.rotation))
 
 
-def _wave_numbers(omega: Any, G: float, M: float, S: float, J: float) -> tuple[Any, Any, Any]:
+def wave_numbers(omega: Any, G: float, M: float, S: float, J: float) -> tuple[Any, Any, Any]:
     """α (decaying part), β (oscillating part) and m = Mω²/S at frequencies below the cut-off;
     broadcasts."""
     m = M * omega**2 / S if math.isfinite(S) else 0.0 * omega
@@ -122,7 +122,7 @@ def _wave_numbers(omega: Any, G: float, M: float, S: float, J: float) -> tuple[A
 def _determinant(
     omega: Any, symmetric: bool, length: float, constants: tuple[float, float, float, float]
 ) -> Any:
-    alpha, beta, m = _wave_numbers(omega, *constants)
+    alpha, beta, m = wave_numbers(omega, *constants)
     half = beta * length / 2
     th, s, c = np.tanh(alpha * length / 2), np.sin(half), np.cos(half)
     if symmetric:
@@ -186,7 +186,7 @@ def free_beam_mode(
     )
     # A lobe of many is still drawn with some forty points.
     points = max(points, 40 * nodal_lines + 1)
-    return _mode(omega, symmetric, length, constants, theory, nodal_lines, points)
+    return _mode(omega, symmetric, length, constants, theory, points)
 
 
 def _mode(
@@ -195,11 +195,10 @@ def _mode(
     length: float,
     constants: tuple[float, float, float, float],
     theory: BeamTheory,
-    nodal_lines: int,
     points: int,
 ) -> BeamMode:
     _, M, _, J = constants
-    alpha, beta, m = _wave_numbers(omega, *constants)
+    alpha, beta, m = wave_numbers(omega, *constants)
     x = np.linspace(0, length, points)
     xi = x - length / 2
     end = np.exp(-alpha * length)
@@ -215,21 +214,34 @@ def _mode(
         A = alpha * math.cos(half) / beta
         w = A * sh + np.sin(beta * xi)
         psi = A * (alpha**2 + m) / alpha * ch - (m - beta**2) / beta * np.cos(beta * xi)
+    energy = float(np.trapezoid(M * w**2 + J * psi**2, x))
+    return scaled_mode(theory, omega / (2 * math.pi), math.pi / beta, x, w, psi, energy)
+
+
+def scaled_mode(
+    theory: BeamTheory,
+    frequency: si.Hertz,
+    half_wavelength: si.Metre,
+    x: si.MetreArray,
+    w: si.FloatArray,
+    psi: si.FloatArray,
+    mass: si.KilogramPerMetre,
+) -> BeamMode:
+    """A mode of any scale, on evenly spaced places from 0 to the beam's length, as it is told:
+    scaled to 1 at its largest lobe inside the ends. `mass` is its modal mass as it comes."""
     crossings = np.flatnonzero(np.signbit(w[:-1]) != np.signbit(w[1:]))
     nodes = x[crossings] - w[crossings] * (x[1] - x[0]) / (w[crossings + 1] - w[crossings])
     inside = (x > nodes[0]) & (x < nodes[-1])
     scale = float(w[inside][np.argmax(np.abs(w[inside]))])
-    w, psi = w / scale, psi / scale
-    mass = float(np.trapezoid(M * w**2 + J * psi**2, x))
     return BeamMode(
         theory=theory,
-        nodal_lines=nodal_lines,
-        frequency=omega / (2 * math.pi),
-        half_wavelength=math.pi / beta,
-        length=length,
+        nodal_lines=nodes.size,
+        frequency=frequency,
+        half_wavelength=half_wavelength,
+        length=float(x[-1]),
         position=x,
-        deflection=w,
-        rotation=psi,
+        deflection=w / scale,
+        rotation=psi / scale,
         nodal_positions=nodes,
-        modal_mass_per_width=mass,
+        modal_mass_per_width=mass / scale**2,
     )

@@ -1,8 +1,7 @@
-"""Where to look for a mode of a plate.
+"""Where to look for a mode of a plate, whatever its nodal lines.
 
-For one that carries ceramic on a part of its face only the beam is no guide: it takes ceramic to be
-everywhere and so lies far off on a glass plate with strips at two edges. The shear plate sees the
-strips where they are, and costs a second.
+A uniform beam takes ceramic to be everywhere. Where a plate carries it on a part of its face only,
+the shear plate is the guide: it sees the strips where they are, and costs a second.
 """
 
 from __future__ import annotations
@@ -14,7 +13,6 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError, SqueezefilmError
 from squeezefilm.plate.beam.modes import free_beam_mode, timoshenko_frequency
-from squeezefilm.plate.beam.response import LEAST_COVERAGE
 from squeezefilm.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
@@ -25,6 +23,7 @@ from squeezefilm.plate.solid.modes import Label, profiles
 # So many modes of one class of symmetry around the bare plate's frequency are looked at: strips on
 # a part of the face move a mode by some ten percent.
 _NEAREST = 16
+_LEAST_COVERAGE = 0.8
 
 
 def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
@@ -40,7 +39,7 @@ def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
             "frequency or in a band",
             quantity="mode",
         )
-    if plate.coverage < LEAST_COVERAGE and (guess := screened_frequency(plate, label)) is not None:
+    if plate.coverage < _LEAST_COVERAGE and (guess := screened_frequency(plate, label)):
         return guess
     if label[1] == 0:
         try:

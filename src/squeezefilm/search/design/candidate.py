@@ -18,7 +18,7 @@ from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.kept_arrays import in_passing
 from squeezefilm.plate.beam.modes import timoshenko_frequency
-from squeezefilm.plate.laminate import plate_laminate
+from squeezefilm.plate.laminate import plate_laminate, section_with
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.search.design.criteria import (
@@ -189,10 +189,10 @@ def screened(requirements: Requirements, display: Display, design: Design) -> di
         return _judged(requirements, display, found, design)
 
 
-def beam_frequency(requirements: Requirements, design: Design) -> si.Hertz:
-    """About the resonance (Hz) of a plate with ceramics on all of its length, by the wave in a beam
-    alone: a fiftieth of the time of screening it. NaN for another shape, and for what cannot be
-    built."""
+def rough_frequency(requirements: Requirements, design: Design) -> si.Hertz:
+    """About the resonance (Hz) of a plate of strips: between the waves in the bare plate and in one
+    that ceramics cover, a fiftieth of the time of screening it. NaN for another shape, and for what
+    cannot be built."""
     if requirements.shapes[design.shape].type != "strips":
         return math.nan
     try:
@@ -200,8 +200,11 @@ def beam_frequency(requirements: Requirements, design: Design) -> si.Hertz:
     except SqueezefilmError:
         return math.nan
     assert isinstance(body, RectangularPlate), "strips are on a plate"
-    half_wavelength = body.length / (body.nodal_lines - 0.5)
-    return float(timoshenko_frequency(half_wavelength, plate_laminate(body)))
+    half, covered = body.length / (body.nodal_lines - 0.5), min(body.coverage, 1.0)
+    bare = timoshenko_frequency(half, section_with(body, "plane_strain", 0.0, 0.0))
+    return float(
+        bare ** (1 - covered) * timoshenko_frequency(half, plate_laminate(body)) ** covered
+    )
 
 
 def _judged(

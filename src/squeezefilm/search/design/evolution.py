@@ -14,8 +14,8 @@ from squeezefilm.search.design.candidate import (
     Design,
     Evaluated,
     Level,
-    beam_frequency,
     design_of,
+    rough_frequency,
 )
 from squeezefilm.search.design.criteria import bounded, excess_of
 from squeezefilm.search.design.journal import journal
@@ -31,7 +31,7 @@ JOURNAL = "journal.log"
 POPULATION = 100
 
 # Of so many random designs for each of the first generation those are taken whose frequency is
-# allowed, where it is bounded on both sides: of random plates one in fifty has 40 kHz ± 5 %.
+# allowed, where it is bounded on both sides: of random plates one in twenty has 40 kHz ± 5 %.
 _LOOKED_AT = 40
 
 # In place of an objective that is infinite or not known, which no sampler takes.
@@ -119,8 +119,8 @@ class Proposals:
         return found
 
     def _aimed(self, count: int) -> list[dict[str, float]]:
-        """Places of at most so many random designs of which the beam has an allowed frequency; none
-        where the frequency is not bounded on both sides."""
+        """Places of at most so many random designs whose rough frequency is allowed; none where the
+        frequency is not bounded on both sides."""
         limits = self._requirements.limits
         low, high = limits.least_frequency, limits.most_frequency
         found: list[dict[str, float]] = []
@@ -130,7 +130,7 @@ class Proposals:
         for _ in range(_LOOKED_AT * count):
             places = {one.name: float(draw.random()) for one in self._space.free}
             design = design_of(self._shape, self._space.at(places))
-            if low <= beam_frequency(self._requirements, design) <= high:
+            if low <= rough_frequency(self._requirements, design) <= high:
                 found.append(places)
             if len(found) == count:
                 break

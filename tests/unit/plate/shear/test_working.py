@@ -32,15 +32,15 @@ def test_it_stands_beside_the_solved_plate() -> None:
 
 
 def test_strips_along_the_edges_drive_lines_across_the_width() -> None:
-    """Which no beam knows: its section is covered everywhere. Glue and gasket are left out."""
+    """A beam bends what lies side by side together, which is right to 2 %. Glue and gasket are left
+    out."""
     plate = _plate("touchpad-glass")
     bare = replace(plate, supports=(), glue=None)
     screened, beam = working_mode(bare, "shear"), working_mode(bare, "timoshenko")
     found = shear_working(bare, screened.resonance_frequency)
     assert found.mode.nodal_lines == (0, plate.nodal_lines)
     assert len(screened.line.nodal_positions) == plate.nodal_lines  # type: ignore[union-attr]
-    # The beam takes the whole section for ceramic and glass; the bare glass is slower.
-    assert beam.resonance_frequency > 1.08 * screened.resonance_frequency
+    assert beam.resonance_frequency == pytest.approx(screened.resonance_frequency, rel=0.02)
 
 
 def test_ceramics_on_the_touched_face_are_refused() -> None:
