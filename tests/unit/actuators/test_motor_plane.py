@@ -19,7 +19,7 @@ BOTH = replace(WORKING, second=1.0)
 
 @cache
 def planar(slider_mass: float = 0.05, direction: float = 0.0) -> AssembledMotor:
-    """Three feet beside antinodes of both modes; both are driven by a volt."""
+    """Three feet beside antinodes of both modes; both are driven by a volt, 1 kHz apart."""
     alone = motor().motor
     feet = tuple(replace(foot, y=0.0245 + 0.002) for foot in alone.feet)
     other = replace(plate(), lines_across="width", nodal_lines=5)
@@ -29,7 +29,11 @@ def planar(slider_mass: float = 0.05, direction: float = 0.0) -> AssembledMotor:
     )
     ready = assembled(described, "timoshenko")
     first, second = ready.modes
-    driven = replace(second.working, amplitude_per_volt=first.working.amplitude_per_volt)
+    driven = replace(
+        second.working,
+        amplitude_per_volt=first.working.amplitude_per_volt,
+        resonance_frequency=first.working.resonance_frequency + 1e3,
+    )
     return replace(ready, modes=(first, replace(second, working=driven)))
 
 

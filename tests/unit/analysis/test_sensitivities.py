@@ -96,10 +96,10 @@ def test_a_beam_stands_in_for_a_plate_where_that_is_quick() -> None:
     charge = _row(found, "actuator.ceramic.charge_coefficient")
     share = charge.low.value / charge.nominal
     assert charge.low.amplitude_shift == pytest.approx(share - 1, rel=1e-6)
-    # The same plate a little larger in every direction of its plane: f ∝ 1/length².
+    # f ∝ 1/length², but for the end that then lies bare.
     length = _row(found, "actuator.length")
     assert length.high.frequency_shift == pytest.approx(
-        -2 * (length.high.value / length.nominal - 1), rel=0.1
+        -2 * (length.high.value / length.nominal - 1), rel=0.15
     )
     both = [_row(found, f"actuator.substrate.{one}") for one in ("young_modulus", "density")]
     assert np.sign([one.high.frequency_shift or 0.0 for one in both]).tolist() == [1.0, -1.0]
