@@ -40,7 +40,13 @@ WITH_COMMANDS = [
 
 
 # Pages whose commands take more than a minute where the machine is slow.
-LONG = ("design-a-plate", "how-many-participants", "sweep", "threshold-on-your-plate")
+LONG = (
+    "design-a-plate",
+    "how-many-participants",
+    "sweep",
+    "thickness-for-a-frequency",
+    "threshold-on-your-plate",
+)
 
 
 @pytest.mark.parametrize(

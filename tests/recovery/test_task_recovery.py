@@ -14,8 +14,9 @@ from .task_people import DESIGNS, coverage
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", ["constant", "magnitude"])
 def test_intervals_hold_the_truth(name: str) -> None:
+    """Of two designs that are quick to fit; the campaign has the others."""
     runs = 40
     found = coverage(name, runs)
     print(name, found)

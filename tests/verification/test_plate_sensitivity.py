@@ -127,8 +127,13 @@ def test_a_ceramic_with_all_constants_gets_softer_too() -> None:
     assert "ceramic data set" not in names
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["biet2008-plate", "touchpad-glass"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("biet2008-plate", marks=pytest.mark.slow),
+        pytest.param("touchpad-glass", marks=pytest.mark.nightly),
+    ],
+)
 def test_another_glue_on_the_coarse_mesh_is_another_glue_solved(name: str) -> None:
     """What is solved on two meshes shifts alike, within what `CoarseShifts.to` states."""
     plate = load_display(name).actuator

@@ -33,7 +33,7 @@ LEVELS = np.arange(1.0, 9.0)
 NORMAL_TAIL = 1.6448536269514722
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 # psignifit takes logarithms of rounding.
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_twenty_fits_agree_with_psignifit() -> None:

@@ -54,17 +54,23 @@ def layer_compliances(
     )
 
 
+@functools.lru_cache(maxsize=1)
+def _waves() -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]:
+    """Depths k h and their weights, distances r/h, and J₀(k r) and J₂(k r), shape (r, k)."""
+    points, weights = np.polynomial.legendre.leggauss(_NODES)
+    k, w = _REACH * (points + 1) / 2, _REACH * weights / 2
+    r = np.linspace(0.0, _FARTHEST, 601)
+    return k, w, r, jv(0, np.outer(r, k)), jv(2, np.outer(r, k))
+
+
 @functools.lru_cache(maxsize=16)
 def _tables(poisson_ratio: float) -> tuple[CubicSpline, CubicSpline, CubicSpline]:
     """Of a layer less a half-space, over r/h: the parts of G h u/Q that do not turn with direction,
     that go with cos 2θ, and the normal one."""
-    points, weights = np.polynomial.legendre.leggauss(_NODES)
-    k, w = _REACH * (points + 1) / 2, _REACH * weights / 2
+    k, w, r, J0, J2 = _waves()
     along, across, normal = layer_compliances(k, poisson_ratio)
     along, across = along - (1 - poisson_ratio) / k, across - 1 / k
     normal = normal - (1 - poisson_ratio) / k
-    r = np.linspace(0.0, _FARTHEST, 601)
-    J0, J2 = jv(0, np.outer(r, k)), jv(2, np.outer(r, k))
     measure = w * k / (2 * np.pi)
     return (
         CubicSpline(r, J0 @ (measure * (along + across) / 2)),

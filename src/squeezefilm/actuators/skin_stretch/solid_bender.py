@@ -15,6 +15,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
+from squeezefilm.blas_threads import one_blas_thread
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.plate.elements.box_model import (
     BoxModel,
@@ -53,7 +54,9 @@ def solid_bender(
             "take the strip (as_strip)",
             quantity="length",
         )
-    return _solved(actuator, more)
+    # On two cores its matrices are too small to gain by a second thread.
+    with one_blas_thread():
+        return _solved(actuator, more)
 
 
 @functools.lru_cache(maxsize=8)
