@@ -143,7 +143,7 @@ def test_a_plate_is_solved_with_its_error(tmp_path: Path) -> None:
     assert abs(result["frequency_Hz"] - 33574) < result["frequency_error_Hz"]
     assert result["amplitude_m_per_V"] == pytest.approx(162.8e-9, rel=0.01)
     assert result["sound_pressure_level_dB"]["0.5 m"] > 100
-    assert result["beam"]["frequency_Hz"] > result["frequency_Hz"]
+    assert result["beam"]["frequency_Hz"] == pytest.approx(result["frequency_Hz"], rel=0.01)
     assert {"(8,0)", "(4,4)"} <= {row["label"] for row in result["modes"]}
     names = {path.name for path in out.iterdir()}
     pictures = {"mode-surface", "mode-plan", "line-scan", "frequency-response", "admittance"}

@@ -1,1 +1,1 @@
-"""Plates taken as free–free beams: exact modes and what a volt makes of them."""
+"""Plates taken as free–free beams: their modes and what a volt makes of them."""

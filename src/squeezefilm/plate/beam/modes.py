@@ -1,4 +1,4 @@
-"""Free–free beams: Euler–Bernoulli and Timoshenko, uniform laminate, exact solutions.
+"""Uniform free–free beams: Euler–Bernoulli and Timoshenko, exact solutions.
 
 A beam of bending stiffness G, mass per area M, shear stiffness S and rotary inertia J (all per
 unit width) obeys  S(w″ − ψ′) + Mω²w = 0,  Gψ″ + S(w′ − ψ) + Jω²ψ = 0,  with ψ′ = 0 and w′ = ψ
@@ -77,7 +77,8 @@ class BeamMode:
     """One bending mode of a free–free beam, w(x) scaled to 1 at its largest lobe inside the ends.
 
     `deflection`, `rotation` (1/m per metre of w) and `position` are arrays over the length;
-    `nodal_positions` where w = 0; `half_wavelength` is π/β of the oscillating part;
+    `nodal_positions` where w = 0; `half_wavelength` is π/β of the oscillating part, with β its mean
+    along the beam;
     `modal_mass_per_width` is ∫ M w² + J ψ² dx in kg/m for the scaled w.
     """
 
@@ -105,7 +106,7 @@ class BeamMode:
 
 def wave_numbers(omega: Any, G: float, M: float, S: float, J: float) -> tuple[Any, Any, Any]:
     """α (decaying part), β (oscillating part) and m = Mω²/S at frequencies below the cut-off;
-    broadcasts."""
+    broadcasts. Raises `OutOfRangeError` above it."""
     m = M * omega**2 / S if math.isfinite(S) else 0.0 * omega
     p = G * m + J * omega**2
     q = M * omega**2 * (1 - (J * omega**2 / S if math.isfinite(S) else 0.0))
@@ -130,6 +131,16 @@ def _determinant(
     return (alpha**2 + m) * alpha * c * th + (m - beta**2) * s * beta
 
 
+def require_nodal_lines(number: int) -> None:
+    """Raises `InputError` for a number of nodal lines that no bending mode of a free beam has, or
+    that is too large to be meant."""
+    if number < 2:
+        raise InputError(
+            f"nodal_lines = {number}: a free beam bends with at least 2; fewer is rigid motion"
+        )
+    require_within(NODAL_LINES, number, "nodal_lines")
+
+
 @si.checked_numbers
 def free_beam_mode(
     section: Laminate,
@@ -146,11 +157,7 @@ def free_beam_mode(
     """
     from scipy.optimize import brentq
 
-    if nodal_lines < 2:
-        raise InputError(
-            f"nodal_lines = {nodal_lines}: a free beam bends with at least 2; fewer is rigid motion"
-        )
-    require_within(NODAL_LINES, nodal_lines, "nodal_lines")
+    require_nodal_lines(nodal_lines)
     G, M = section.bending_stiffness, section.mass_per_area
     euler = theory == "euler_bernoulli"
     S = math.inf if euler else section.shear_stiffness

@@ -20,6 +20,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.plate.beam.modes import (
     BeamMode,
+    require_nodal_lines,
     scaled_mode,
     timoshenko_frequency,
     wave_numbers,
@@ -39,7 +40,9 @@ solved plates are met best (tests/verification/test_beam_beside_solid.py)."""
 _ORDER, _LONGEST = 4, 0.4
 """The order of elements, and their length at most in half wavelengths: 2e-5 of a frequency."""
 _BAND = 2 * _ORDER + 1
-_TURNS, _SETTLED = 12, 1e-10
+_TURNS, _SETTLED = 12, 1e-8
+_NEAR = 1e-5
+"""Places that are as good as one, over the length of the plate."""
 _Strip = tuple[Face, si.Metre, si.Metre, si.Metre]
 """A ceramic across the beam: its face, where it begins, its width and its thickness (m)."""
 
@@ -56,17 +59,31 @@ class Piece:
     rotary_inertia: si.Kilogram
 
 
-def stressed_span(patch: CeramicPatch) -> tuple[si.Metre, si.Metre]:
-    """From where to where (m) a ceramic stiffens and drives."""
+def stressed_span(plate: RectangularPlate, patch: CeramicPatch) -> tuple[si.Metre, si.Metre]:
+    """From where to where along a plate (m) one of its ceramics stiffens and drives.
+
+    Of a ceramic shorter than 2.4 thicknesses a quarter at each end does not; an end that meets
+    another ceramic of the same face passes its stress on and counts whole.
+    """
     inset = min(UNSTRESSED * patch.thickness, patch.length / 4)
-    return patch.x + inset, patch.x + patch.length - inset
+    begin, end = patch.x, patch.x + patch.length
+    beside = [
+        one
+        for one in plate.patches
+        if one.face == patch.face and one.y < patch.y + patch.width and patch.y < one.y + one.width
+    ]
+    near = _NEAR * plate.length
+    meets_before = any(abs(one.x + one.length - begin) < near for one in beside)
+    meets_after = any(abs(one.x - end) < near for one in beside)
+    return begin + inset * (not meets_before), end - inset * (not meets_after)
 
 
 def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[Piece, ...]:
-    """The pieces of a plate along its length; what lies side by side across it bends together."""
-    spans = [stressed_span(one) for one in plate.patches]
+    """The pieces of a plate along its length, for nodal lines across it; what lies side by side
+    across the plate bends together."""
+    spans = [stressed_span(plate, one) for one in plate.patches]
     ends = [e for one in plate.patches for e in (one.x, one.x + one.length)]
-    stops = _apart([0.0, plate.length, *ends, *itertools.chain(*spans)], 1e-6 * plate.length)
+    stops = _apart([0.0, plate.length, *ends, *itertools.chain(*spans)], _NEAR * plate.length)
     sections = dict[tuple[_Strip, ...], si.FloatArray]()
 
     def section(which: Iterable[CeramicPatch]) -> si.FloatArray:
@@ -83,11 +100,9 @@ def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[P
             for one, (low, high) in zip(plate.patches, spans, strict=True)
             if one.x < middle < one.x + one.length
         ]
-        holds, moves = (
-            section(one for one, is_stressed in lying if is_stressed),
-            section(one for one, _ in lying),
-        )
-        pieces.append(Piece(begin, end, *map(float, (*holds[:2], *moves[2:]))))
+        g, s, _, j = section(one for one, is_stressed in lying if is_stressed)
+        m = section(one for one, _ in lying)[2]
+        pieces.append(Piece(begin, end, float(g), float(s), float(m), float(j)))
     return tuple(pieces)
 
 
@@ -106,7 +121,7 @@ def _mean(
     """Bending and shear stiffness, mass and rotary inertia per unit width of the plate with strips
     of ceramic, the mean over its width."""
     edges = [e for _, y, width, _ in strips for e in (y, y + width)]
-    stops = _apart([0.0, plate.width, *edges], 1e-6 * plate.width)
+    stops = _apart([0.0, plate.width, *edges], _NEAR * plate.width)
     total = np.zeros(4)
     for low, high in itertools.pairwise(stops):
         middle = (low + high) / 2
@@ -118,26 +133,24 @@ def _mean(
     return total / (stops[-1] - stops[0])
 
 
-def pieced_beam_mode(pieces: Sequence[Piece], nodal_lines: int, points: int = 2001) -> BeamMode:
+def pieced_beam_mode(pieces: Sequence[Piece], nodal_lines: int) -> BeamMode:
     """The bending mode of a free–free Timoshenko beam of pieces with a given number of nodal lines.
 
-    Its frequency to 2e-5 relative. Raises `OutOfRangeError` above the cut-off frequency of any of
-    the pieces.
+    Its frequency to 2e-5 relative, for half wavelengths of up to a few hundred thicknesses. Raises
+    `InputError` for a number of lines that no beam has, `OutOfRangeError` above the cut-off
+    frequency of any of the pieces.
     """
+    require_nodal_lines(nodal_lines)
     cutoff = min(math.sqrt(one.shear_stiffness / one.rotary_inertia) for one in pieces)
     length = pieces[-1].end
     half_wavelength = length / (nodal_lines - 0.5)
     beam = _Elements(pieces, _LONGEST * half_wavelength)
-    x = np.linspace(0, length, max(points, 40 * nodal_lines + 1))
+    x = np.linspace(0, length, max(2001, 40 * nodal_lines + 1))
     for omega, vector in beam.candidates(nodal_lines):
-        if omega >= cutoff:
-            break
         w, psi = beam.at(x, vector)
-        mode = scaled_mode(
-            "timoshenko", omega / (2 * math.pi), beam.half_wavelength(omega), x, w, psi, mass=1.0
-        )
-        if mode.nodal_lines == nodal_lines:
-            return mode
+        if omega < cutoff and np.sum(np.diff(np.signbit(w))) == nodal_lines:
+            half = beam.half_wavelength(omega)
+            return scaled_mode("timoshenko", omega / (2 * math.pi), half, x, w, psi, mass=1.0)
     raise OutOfRangeError(
         f"a mode with {nodal_lines} nodal lines on {si.format_quantity(length, si.Unit('m'))} "
         "lies above the cut-off frequency of the Timoshenko beam; ask for fewer nodal lines"
@@ -190,24 +203,23 @@ class _Elements:
         return bands
 
     def candidates(self, nodal_lines: int) -> Iterator[tuple[float, si.FloatArray]]:
-        """The mode whose shape is nearest to a wave, and then, in case it is another, that which
-        has its place among all; each of unit modal mass."""
-        found = self._nearest(nodal_lines)
+        """The mode whose shape is nearest to a wave, and then, in case it is another, those around
+        that wave's frequency; each of unit modal mass."""
+        wave = (nodal_lines - 0.5) * math.pi / self.pieces[-1].end
+        guess = 2 * math.pi * float(timoshenko_frequency(math.pi / wave, _even(self.pieces)))
+        found = self._nearest(wave, guess, nodal_lines % 2 == 0)
         if found is not None:
             yield found
-        yield self._numbered(nodal_lines)
+        yield from self._around(guess, nodal_lines)
 
-    def _nearest(self, nodal_lines: int) -> tuple[float, si.FloatArray] | None:
+    def _nearest(self, wave: float, guess: float, even: bool) -> tuple[float, si.FloatArray] | None:
         """By Rayleigh quotients of ever better shapes, each squared nearer than the one before."""
         from scipy.linalg import LinAlgError, solve_banded
 
-        wave = (nodal_lines - 0.5) * math.pi / self.pieces[-1].end
         phase = wave * (self.mesh.nodes - self.pieces[-1].end / 2)
-        even = nodal_lines % 2 == 0
-        vector = np.empty(2 * self.mesh.nodes.size)
+        vector = np.zeros(2 * self.mesh.nodes.size)
         vector[::2] = np.cos(phase) if even else np.sin(phase)
-        vector[1::2] = 0.0
-        shift = (2 * math.pi * float(timoshenko_frequency(math.pi / wave, _even(self.pieces)))) ** 2
+        shift = guess**2
         for _ in range(_TURNS):
             try:
                 vector = solve_banded(
@@ -221,14 +233,19 @@ class _Elements:
                 return math.sqrt(abs(shift)), vector
         return None
 
-    def _numbered(self, nodal_lines: int) -> tuple[float, si.FloatArray]:
-        """The mode that comes with so many nodal lines after the two motions without bending."""
-        from scipy.linalg import eigh
+    def _around(self, guess: float, count: int) -> Iterator[tuple[float, si.FloatArray]]:
+        """So many modes, and four more, around a frequency."""
+        from scipy.sparse import dia_array
+        from scipy.sparse.linalg import eigsh
 
-        values, vectors = eigh(
-            _full(self.stiffness), _full(self.mass), subset_by_index=[nodal_lines, nodal_lines]
+        offsets, size = np.arange(_BAND, -_BAND - 1, -1), self.stiffness.shape[1]
+        stiffness, mass = (
+            dia_array((bands, offsets), shape=(size, size)).tocsc()
+            for bands in (self.stiffness, self.mass)
         )
-        return math.sqrt(abs(float(values[0]))), vectors[:, 0]
+        values, vectors = eigsh(stiffness, k=count + 4, M=mass, sigma=guess**2)
+        for value, vector in zip(values, vectors.T, strict=True):
+            yield math.sqrt(abs(float(value))), vector
 
     def at(self, x: si.MetreArray, vector: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
         """Deflection and rotation at places."""
@@ -275,12 +292,3 @@ def _times(bands: si.FloatArray, vector: si.FloatArray) -> si.FloatArray:
         product[:-k] += bands[_BAND - k, k:] * vector[k:]
         product[k:] += bands[_BAND + k, :-k] * vector[:-k]
     return product
-
-
-def _full(bands: si.FloatArray) -> si.FloatArray:
-    size = bands.shape[1]
-    matrix: si.FloatArray = np.diag(bands[_BAND])
-    for k in range(1, _BAND + 1):
-        index = np.arange(size - k)
-        matrix[index, index + k] = matrix[index + k, index] = bands[_BAND - k, k:]
-    return matrix

@@ -20,8 +20,9 @@ from squeezefilm.plate.laminate import (
     Laminate,
     moment_per_volt,
     plate_laminate,
+    section_with,
 )
-from squeezefilm.plate.layout import DiscPlate, RectangularPlate, turned
+from squeezefilm.plate.layout import CeramicPatch, DiscPlate, RectangularPlate, turned
 
 
 @si.closed_form(positive="modal_mass frequency quality_factor")
@@ -42,6 +43,7 @@ def resonant_amplitude_per_volt(
 class BeamResponse(SolvedAgain):
     """A plate driven as a beam: its working mode, and how strongly the ceramics drive it.
 
+    `section` is that of the plate where it carries ceramic.
     `force_per_width` is the force of one volt on the working mode `mode` (N/V per m of width).
     `modes` are all that enter the superposition, found where they are asked for.
     """
@@ -95,7 +97,7 @@ class BeamResponse(SolvedAgain):
         omega2 = (2 * np.pi * frequency[:, None]) ** 2
         total = np.zeros((frequency.size, np.size(position)), dtype=complex)
         modes = self.modes
-        forces = _forces(self.plate, self.section, self.cross_section, modes)
+        forces = _forces(self.plate, self.theory, self.cross_section, modes)
         for mode, force in zip(modes, forces, strict=True):
             own = (2 * np.pi * mode.frequency) ** 2
             denominator = own * (1 + 1j / self.plate.quality_factor) - omega2
@@ -135,7 +137,7 @@ def _driven(
 ) -> BeamResponse:
     section = plate_laminate(plate, cross_section)
     working = _mode(plate, theory, cross_section, plate.nodal_lines)
-    (force,) = _forces(plate, section, cross_section, (working,))
+    (force,) = _forces(plate, theory, cross_section, (working,))
     return BeamResponse(
         plate,
         section,
@@ -177,23 +179,43 @@ def _superposed(
 
 def _forces(
     plate: RectangularPlate,
-    section: Laminate,
+    theory: BeamTheory,
     cross_section: CrossSection,
     modes: Iterable[BeamMode],
 ) -> Iterator[float]:
     """The force of one volt on each mode (N/V per m of width)."""
-    moment = {
-        face: moment_per_volt(plate, section, cross_section, face)
-        for face in {patch.face for patch in plate.patches}
-    }
-    # Work of the piezo moment on the section's rotation at both ends of each ceramic; a ceramic
-    # narrower than the plate drives in proportion to its width.
+    # Work of the piezo moment on the section's rotation where each ceramic begins and ends to pull;
+    # a ceramic narrower than the plate drives in proportion to its width.
     pushed = np.array(
-        [moment[one.face] * one.drive_sign * (one.width / plate.width) for one in plate.patches]
+        [
+            _moment(plate, cross_section, one) * one.drive_sign * (one.width / plate.width)
+            for one in plate.patches
+        ]
     )
-    begin, end = np.array([stressed_span(one) for one in plate.patches]).T
+    is_paper = theory == "euler_bernoulli"
+    begin, end = np.array(
+        [
+            (one.x, one.x + one.length) if is_paper else stressed_span(plate, one)
+            for one in plate.patches
+        ]
+    ).T
     for mode in modes:
         yield float(pushed @ (mode.rotation_at(end) - mode.rotation_at(begin)))
+
+
+def _moment(
+    plate: RectangularPlate, cross_section: CrossSection, patch: CeramicPatch
+) -> si.NewtonPerVolt:
+    """The moment of one volt in a ceramic, of the section in its middle."""
+    x, y = patch.x + patch.length / 2, patch.y + patch.width / 2
+    there = {
+        one.face: one.thickness
+        for one in plate.patches
+        if one.x <= x <= one.x + one.length and one.y <= y <= one.y + one.width
+    }
+    above, below = there.get("top", 0.0), there.get("bottom", 0.0)
+    section = section_with(plate, cross_section, above, below)
+    return moment_per_volt(plate, section, cross_section, patch.face)
 
 
 def patch_capacitance(plate: RectangularPlate) -> si.Farad:

@@ -1,4 +1,4 @@
-"""The working mode of a plate by first-order shear theory: to screen plates that no beam knows."""
+"""The working mode of a plate by first-order shear theory: to screen edge strips."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where to look for a mode of a plate, whatever its nodal lines.
+"""Where to look for a mode of a plate.
 
 A uniform beam takes ceramic to be everywhere. Where a plate carries it on a part of its face only,
 the shear plate is the guide: it sees the strips where they are, and costs a second.
