@@ -30,7 +30,7 @@ def chosen_mode(
         mode = working_mode(actuator, "solid", pace=pace)
     except OutOfTimeError as error:
         return working_mode(actuator, "timoshenko"), (
-            f"{error}; the numbers are those of a beam, whose frequency lies within 12 % of the "
+            f"{error}; the numbers are those of a beam, whose frequency lies within 13 % of the "
             "solved one (on 95 random plates) and whose amplitude mostly within a factor of two",
         )
     except InputError as error:
