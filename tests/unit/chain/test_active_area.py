@@ -127,8 +127,9 @@ def test_shares_converge_with_the_places() -> None:
     level = beams_area().median
     assert level is not None
     shares = [area_of(PLATE, p, refinement=n).share_below(level) for n in (1, 2, 4)]
-    assert shares[0] == pytest.approx(shares[2], abs=0.01)
-    assert abs(shares[1] - shares[2]) <= abs(shares[0] - shares[2]) + 1e-3
+    # A beam is alike all across, so that a share comes in columns of places: 83 of them at first.
+    assert shares[0] == pytest.approx(shares[2], abs=1.5 / 83)
+    assert shares[1] == pytest.approx(shares[2], abs=0.5 / 83)
 
 
 def test_a_given_amplitude_is_the_same_wherever_the_finger_is() -> None:
