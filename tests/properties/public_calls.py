@@ -145,7 +145,9 @@ NOT_CALLED = {
     plate.shear.elements.ShearSystem plate.shear.elements.ShearSystem.deflection
     plate.shear.elements.make_axis plate.shear.elements.shear_system
     plate.solid.guess.bare_frequency plate.solid.guess.screened_frequency
-    plate.solid.guess.straightness plate.shear.section.ShearLayout.mirrored
+    plate.solid.guess.straightness plate.beam.modes.scaled_mode plate.beam.modes.wave_numbers
+    plate.beam.pieces.pieced_beam_mode
+    plate.shear.section.ShearLayout.mirrored
     plate.elements.slab_factor.SlabFactor plate.elements.slabs.Slabs.grid
     plate.elements.slabs.Slabs.mass_times
     plate.elements.slabs.Slabs.places plate.elements.slabs.Slabs.stiffness_times

@@ -131,14 +131,14 @@ def _determinant(
     return (alpha**2 + m) * alpha * c * th + (m - beta**2) * s * beta
 
 
-def require_nodal_lines(number: int) -> None:
+def require_nodal_lines(nodal_lines: int) -> None:
     """Raises `InputError` for a number of nodal lines that no bending mode of a free beam has, or
     that is too large to be meant."""
-    if number < 2:
+    if nodal_lines < 2:
         raise InputError(
-            f"nodal_lines = {number}: a free beam bends with at least 2; fewer is rigid motion"
+            f"nodal_lines = {nodal_lines}: a free beam bends with at least 2; fewer is rigid motion"
         )
-    require_within(NODAL_LINES, number, "nodal_lines")
+    require_within(NODAL_LINES, nodal_lines, "nodal_lines")
 
 
 @si.checked_numbers
