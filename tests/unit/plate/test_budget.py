@@ -86,7 +86,7 @@ def test_a_coarse_answer_is_an_objection(display: Display) -> None:
 
 
 def test_a_plates_analysis_within_a_budget(display: Display) -> None:
-    with pytest.raises(OutOfTimeError, match=r"Without a solve: about 33.6 kHz"):
+    with pytest.raises(OutOfTimeError, match=r"Without a solve: about 33.7 kHz"):
         solve_plate(display, budget=1e-3)
     plate = plate_of(display)
     label = plate.working_label

@@ -91,7 +91,7 @@ def test_what_follows_from_a_value_that_cannot_be_right_is_not_told_again() -> N
     [
         ("actuator.nodal_lines", 4, "the expected frequency is 7.37 kHz, which is doubtful"),
         ("actuator.substrate.young_modulus", 12.3e9, "the wave speed of the substrate is"),
-        ("drive.voltage", 150.0, "the expected power per mass is 11.1 W/g, which is doubtful"),
+        ("drive.voltage", 150.0, "the expected power per mass is 11.2 W/g, which is doubtful"),
         ("thermal.coercive_field", 1e5, "0.1 kV/mm is doubtful"),
         ("gas.mean_free_path", 670e-9, "the mean free path over the kinetic one is 10"),
         ("actuator.patches.3.width", 4.9e-3, "the ceramic size over its neighbours' is 0.1"),

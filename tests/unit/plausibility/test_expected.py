@@ -27,7 +27,7 @@ def test_a_covered_plate_is_the_beam() -> None:
     assert seen.frequency == beam.mode.frequency
     assert seen.amplitude_per_volt == beam.amplitude_per_volt
     assert seen.sentence == (
-        "about 33.6 kHz (mostly right to 15 %), 110 nm/V (to a factor of two), by a beam"
+        "about 33.7 kHz (mostly right to 15 %), 110 nm/V (to a factor of two), by a beam"
     )
 
 
@@ -95,7 +95,7 @@ def test_the_counted_unknowns_are_those_that_are_solved() -> None:
 def test_what_is_foreseen_is_one_sentence() -> None:
     said = foreseen("biet2008-plate").sentence
     assert said.startswith(
-        "expected about 33.6 kHz (mostly right to 15 %), 110 nm/V (to a factor of two), by a beam; "
+        "expected about 33.7 kHz (mostly right to 15 %), 110 nm/V (to a factor of two), by a beam; "
         "solving"
     )
     assert (

