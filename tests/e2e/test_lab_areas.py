@@ -556,11 +556,13 @@ def test_a_texture_and_a_stroke_are_there_after_another_area(seen: Watched) -> N
     for _ in range(12):
         page.keyboard.press("ArrowRight")
     page.get_by_role("button", name="Stop recording").click()
-    page.locator("small", has_text="12 samples").wait_for()
+    length = page.locator("small", has_text="samples")
+    length.wait_for()
+    stroke = length.inner_text()
     seen.go("results")
     seen.go("feel")
     heading.wait_for(timeout=SOLVED)
-    page.locator("small", has_text="12 samples").wait_for()
+    page.locator("small", has_text=stroke).wait_for()
     assert page.get_by_role("button", name="Download CSV").is_enabled()
     assert page.get_by_label("spatial period").input_value() == "7 mm"
     # The texture, like the display, outlives a reload as well.
