@@ -556,18 +556,45 @@ def test_a_texture_and_a_stroke_are_there_after_another_area(seen: Watched) -> N
     for _ in range(12):
         page.keyboard.press("ArrowRight")
     page.get_by_role("button", name="Stop recording").click()
-    length = page.locator("small", has_text="samples")
-    length.wait_for()
-    stroke = length.inner_text()
+    page.locator("small", has_text="12 samples").wait_for()
     seen.go("results")
     seen.go("feel")
     heading.wait_for(timeout=SOLVED)
-    page.locator("small", has_text=stroke).wait_for()
+    page.locator("small", has_text="12 samples").wait_for()
     assert page.get_by_role("button", name="Download CSV").is_enabled()
     assert page.get_by_label("spatial period").input_value() == "7 mm"
     # The texture, like the display, outlives a reload as well.
     page.reload()
     heading.wait_for(timeout=SOLVED)
+
+
+def test_a_button_stays_where_it_is_under_the_first_touch(seen: Watched) -> None:
+    """One that moves between the pointer's down and up is not clicked."""
+    page = seen.page
+    seen.go("help")
+    seen.go("feel")
+    page.locator("#area h2", has_text=", on ").wait_for(timeout=SOLVED)
+    record = page.get_by_role("button", name="Record")
+    before = record.bounding_box()
+    page.locator("canvas.surface").focus()
+    page.keyboard.press("ArrowRight")
+    page.locator(".number small", has_text="95 %").wait_for()
+    assert record.bounding_box() == before
+
+
+def test_a_texture_that_was_asked_for_before_the_list_of_textures_is_shown(seen: Watched) -> None:
+    page = seen.page
+    seen.go("help")
+    page.evaluate("sessionStorage.clear()")
+    seen.late = "textures"
+    seen.go("feel")
+    seen.keeps()
+    page.get_by_text("Compose a grating").click()
+    page.get_by_label("spatial period").fill("7 mm")
+    seen.late = "load texture"
+    page.get_by_role("button", name="Use this grating").click()
+    seen.let_go()
+    page.locator("h2", has_text="square, 7 mm").wait_for(timeout=SOLVED)
 
 
 def test_results_follow_who_takes_part(seen: Watched) -> None:

@@ -33,7 +33,8 @@ class FeelView {
     try {
       await this.lab.during(this.store.start(this.place));
       await this.listTextures();
-      if (!this.ready) await this.goOn();
+      // Who was quicker than the list of textures has asked for one already.
+      if (!this.ready) await (this.source ? this.reload() : this.goOn());
     } catch (error) {
       this.fail(error);
     }
@@ -100,6 +101,7 @@ class FeelView {
       friction: number("relative friction", "relative_friction"), amplitude: number("vibration amplitude", "vibration_amplitude"),
       force: number("tangential force", "tangential_force"), lag: number("lag", "lag"), speed: number("speed", "finger_speed"), delay: number("event → friction", "event_delay"),
     };
+    this.numbers.lag.note.textContent = "of the vibration behind the finger";
     this.scopeCanvas = element("canvas", { class: "scope", role: "img", "aria-label": "relative friction wanted and met over the last seconds" });
     this.record = element("button", { text: "Record", "aria-pressed": "false", onclick: () => this.toggleRecord() });
     this.replay = element("button", { text: "Replay", disabled: true, onclick: () => this.startReplay() });
@@ -202,7 +204,6 @@ class FeelView {
       n.amplitude.note.textContent = `wanted ${quantity(met.wanted, "m")}`;
       n.force.value.textContent = quantity(moving ? Math.abs(met.force) : 0, "N");
       n.lag.value.textContent = `${plain((moving ? met.lag : 0) * 1e3)} mm`;
-      n.lag.note.textContent = "of the vibration behind the finger";
       n.speed.value.textContent = `${plain((moving ? met.speed : 0) * 1e3)} mm/s`;
       if (this.drawn % 15 === 0 && this.delays.length) {
         const sorted = [...this.delays].sort((a, b) => a - b);
