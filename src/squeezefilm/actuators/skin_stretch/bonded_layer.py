@@ -23,6 +23,7 @@ from scipy.special import jv
 from squeezefilm import hard_limits as hard
 from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.half_space import Places, together
+from squeezefilm.plate.elements.lobatto import gauss_points
 
 Ratio = Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)]
 _NODES, _REACH = 400, 18.0
@@ -57,7 +58,7 @@ def layer_compliances(
 @functools.lru_cache(maxsize=1)
 def _waves() -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]:
     """Depths k h and their weights, distances r/h, and J₀(k r) and J₂(k r), shape (r, k)."""
-    points, weights = np.polynomial.legendre.leggauss(_NODES)
+    points, weights = gauss_points(_NODES)
     k, w = _REACH * (points + 1) / 2, _REACH * weights / 2
     r = np.linspace(0.0, _FARTHEST, 601)
     return k, w, r, jv(0, np.outer(r, k)), jv(2, np.outer(r, k))
@@ -92,7 +93,7 @@ def _over_patch(
     width: float,
     kernel: Callable[[si.FloatArray, si.FloatArray], tuple[si.FloatArray, ...]],
 ) -> list[si.FloatArray]:
-    points, weights = np.polynomial.legendre.leggauss(4)
+    points, weights = gauss_points(4)
     total: list[si.FloatArray] = []
     for a, wa in zip(points * length / 2, weights, strict=True):
         for b, wb in zip(points * width / 2, weights, strict=True):

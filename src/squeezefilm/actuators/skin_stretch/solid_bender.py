@@ -54,12 +54,12 @@ def solid_bender(
             "take the strip (as_strip)",
             quantity="length",
         )
-    # On two cores its matrices are too small to gain by a second thread.
-    with one_blas_thread():
-        return _solved(actuator, more)
+    return _solved(actuator, more)
 
 
+# Its blocks are too small to gain by a second thread.
 @functools.lru_cache(maxsize=8)
+@one_blas_thread()
 def _solved(actuator: Bimorph, more: int) -> Bender:
     slabs = Slabs(_boxes(actuator, more))
     solve = SlabFactor(slabs, 0.0).solve

@@ -24,7 +24,7 @@ from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
-from squeezefilm.plate.elements.nodal_lines import zero_crossings
+from squeezefilm.plate.elements.nodal_lines import within_nodes, zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
 from squeezefilm.plate.solid.layers import COARSE, Resolution
@@ -274,8 +274,7 @@ def _centreline_per_volt(
     """The largest amplitude on the centre line at resonance, between the mode's outer nodes."""
     x, line = centre_scan(response, response.resonance, label)
     nodes = zero_crossings(x, centre_profile(alone.shapes[alone.index(label)], alone, x, label))
-    inside = (x > nodes[0]) & (x < nodes[-1]) if nodes.size > 1 else np.ones(x.size, bool)
-    return float(np.max(np.abs(line)[inside]))
+    return float(np.max(np.abs(line)[within_nodes(x, nodes)]))
 
 
 def scan_axis(label: tuple[int, int]) -> int:

@@ -16,6 +16,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.hard_limits import NODAL_LINES, require_within
+from squeezefilm.plate.elements.nodal_lines import within_nodes, zero_crossings
 from squeezefilm.plate.laminate import Laminate
 
 BeamTheory = Literal["euler_bernoulli", "timoshenko"]
@@ -234,12 +235,11 @@ def scaled_mode(
     psi: si.FloatArray,
     mass: si.KilogramPerMetre,
 ) -> BeamMode:
-    """A mode of any scale, on evenly spaced places from 0 to the beam's length, as it is told:
-    scaled to 1 at its largest lobe inside the ends. `mass` is its modal mass as it comes."""
-    crossings = np.flatnonzero(np.signbit(w[:-1]) != np.signbit(w[1:]))
-    nodes = x[crossings] - w[crossings] * (x[1] - x[0]) / (w[crossings + 1] - w[crossings])
-    inside = (x > nodes[0]) & (x < nodes[-1])
-    scale = float(w[inside][np.argmax(np.abs(w[inside]))])
+    """A mode of any scale, on rising places from 0 to the beam's length, as it is told: scaled to 1
+    at its largest lobe inside the ends. `mass` is its modal mass as it comes."""
+    nodes = zero_crossings(x, w)
+    inner = w[within_nodes(x, nodes)]
+    scale = float(inner[np.argmax(np.abs(inner))])
     return BeamMode(
         theory=theory,
         nodal_lines=nodes.size,

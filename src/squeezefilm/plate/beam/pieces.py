@@ -147,10 +147,11 @@ def pieced_beam_mode(pieces: Sequence[Piece], nodal_lines: int) -> BeamMode:
     beam = _Elements(pieces, _LONGEST * half_wavelength)
     x = np.linspace(0, length, max(2001, 40 * nodal_lines + 1))
     for omega, vector in beam.candidates(nodal_lines):
-        w, psi = beam.at(x, vector)
-        if omega < cutoff and np.sum(np.diff(np.signbit(w))) == nodal_lines:
-            half = beam.half_wavelength(omega)
-            return scaled_mode("timoshenko", omega / (2 * math.pi), half, x, w, psi, mass=1.0)
+        if omega < cutoff:
+            half, frequency = beam.half_wavelength(omega), omega / (2 * math.pi)
+            mode = scaled_mode("timoshenko", frequency, half, x, *beam.at(x, vector), mass=1.0)
+            if mode.nodal_lines == nodal_lines:
+                return mode
     raise OutOfRangeError(
         f"a mode with {nodal_lines} nodal lines on {si.format_quantity(length, si.Unit('m'))} "
         "lies above the cut-off frequency of the Timoshenko beam; ask for fewer nodal lines"
@@ -171,12 +172,8 @@ class _Elements:
         ]
         self.mesh = LineMesh((*edges, pieces[-1].end), (_ORDER,) * len(edges))
         own = [one for one, share in zip(pieces, shares, strict=True) for _ in range(share)]
-        g, s, m, j, h = np.array(
-            [
-                (p.bending_stiffness, p.shear_stiffness, p.mass_per_area, p.rotary_inertia, b - a)
-                for p, (a, b) in zip(own, itertools.pairwise(self.mesh.edges), strict=True)
-            ]
-        ).T[:, :, None, None]
+        g, m, s, j = np.array([_constants(one) for one in own]).T[:, :, None, None]
+        h = np.diff(self.mesh.edges)[:, None, None]
         moving, sliding, bending = line_matrices(1.0, _ORDER)
         size = 2 * (_ORDER + 1)
         stiff, heavy = np.zeros((2, len(edges), size, size))
@@ -249,9 +246,7 @@ class _Elements:
 
     def at(self, x: si.MetreArray, vector: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
         """Deflection and rotation at places."""
-        edges = np.array(self.mesh.edges)
-        lies = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, self.mesh.elements - 1)
-        local = 2 * (x - edges[lies]) / (edges[lies + 1] - edges[lies]) - 1
+        lies, local = self.mesh.located(x)
         values, _ = lagrange_basis(lobatto_nodes(_ORDER), local)
         nodes = _ORDER * lies[:, None] + np.arange(_ORDER + 1)
         both = np.einsum("xn,xnk->kx", values, vector.reshape(-1, 2)[nodes])

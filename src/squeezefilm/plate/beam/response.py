@@ -136,7 +136,7 @@ def _driven(
     plate: RectangularPlate, theory: BeamTheory, cross_section: CrossSection
 ) -> BeamResponse:
     section = plate_laminate(plate, cross_section)
-    working = _mode(plate, theory, cross_section, plate.nodal_lines)
+    working = _finder(plate, theory, cross_section)(plate.nodal_lines)
     (force,) = _forces(plate, theory, cross_section, (working,))
     return BeamResponse(
         plate,
@@ -149,26 +149,25 @@ def _driven(
     )
 
 
-def _mode(
-    plate: RectangularPlate, theory: BeamTheory, cross_section: CrossSection, lines: int
-) -> BeamMode:
+def _finder(
+    plate: RectangularPlate, theory: BeamTheory, cross_section: CrossSection
+) -> Callable[[int], BeamMode]:
+    """What finds the mode of a number of nodal lines."""
     if theory == "euler_bernoulli":
-        return free_beam_mode(plate_laminate(plate, cross_section), plate.length, lines, theory)
-    return pieced_beam_mode(beam_pieces(plate, cross_section), lines)
+        section = plate_laminate(plate, cross_section)
+        return functools.partial(free_beam_mode, section, plate.length, theory=theory)
+    return functools.partial(pieced_beam_mode, beam_pieces(plate, cross_section))
 
 
 @functools.lru_cache(maxsize=8)
 def _superposed(
     plate: RectangularPlate, cross_section: CrossSection, working: BeamMode
 ) -> tuple[BeamMode, ...]:
+    find = _finder(plate, working.theory, cross_section)
     modes: list[BeamMode] = []
     for lines in range(2, 2 * working.nodal_lines):
         try:
-            mode = (
-                working
-                if lines == working.nodal_lines
-                else _mode(plate, working.theory, cross_section, lines)
-            )
+            mode = working if lines == working.nodal_lines else find(lines)
         except OutOfRangeError:
             break
         if mode.frequency > 2 * working.frequency:
@@ -192,13 +191,11 @@ def _forces(
             for one in plate.patches
         ]
     )
-    is_paper = theory == "euler_bernoulli"
-    begin, end = np.array(
-        [
-            (one.x, one.x + one.length) if is_paper else stressed_span(plate, one)
-            for one in plate.patches
-        ]
-    ).T
+    if theory == "euler_bernoulli":
+        spans = [(one.x, one.x + one.length) for one in plate.patches]
+    else:
+        spans = [stressed_span(plate, one) for one in plate.patches]
+    begin, end = np.array(spans).T
     for mode in modes:
         yield float(pushed @ (mode.rotation_at(end) - mode.rotation_at(begin)))
 

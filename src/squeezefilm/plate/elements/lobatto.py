@@ -153,14 +153,19 @@ class LineMesh:
             out[self.first_node[k] + 1 : self.first_node[k + 1]] = np.arange(2, order + 1)
         return out
 
+    def located(self, points: si.FloatArray) -> tuple[si.IntArray, si.FloatArray]:
+        """In which element points lie (m; the nearest for those outside), and where in it, from −1
+        to 1."""
+        edges = np.array(self.edges)
+        owner = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.elements - 1)
+        return owner, 2 * (points - edges[owner]) / (edges[owner + 1] - edges[owner]) - 1
+
     def interpolation(self, points: si.FloatArray, *, hierarchic: bool = False) -> si.FloatArray:
         """The matrix that takes nodal values, or hierarchic coefficients, to values at `points`;
         shape (points, nodes)."""
         points = np.atleast_1d(np.asarray(points, dtype=float))
-        edges = np.array(self.edges)
-        owner = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.elements - 1)
+        owner, local = self.located(points)
         out = np.zeros((points.size, self.nodes.size))
-        local = 2 * (points - edges[owner]) / (edges[owner + 1] - edges[owner]) - 1
         orders, first = np.array(self.orders)[owner], np.array(self.first_node)[owner]
         # All elements of one order at once.
         for order in np.unique(orders).tolist():

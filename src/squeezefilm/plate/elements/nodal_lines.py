@@ -16,6 +16,16 @@ def zero_crossings(position: si.FloatArray, profile: si.FloatArray) -> si.FloatA
     return np.asarray(x[at] - w[at] * (x[at + 1] - x[at]) / (w[at + 1] - w[at]))
 
 
+def within_nodes(
+    position: si.MetreArray, nodes: si.MetreArray
+) -> np.ndarray[tuple[int], np.dtype[np.bool]]:
+    """Which places lie between the outermost of some nodal lines, all where there are fewer than
+    two: free ends move further than any finger meets."""
+    if nodes.size < 2:
+        return np.ones(position.size, dtype=bool)
+    return np.asarray((position > nodes[0]) & (position < nodes[-1]))
+
+
 @si.checked_numbers
 def line_distance(nodes: si.MetreArray) -> si.Metre:
     """The mean distance (m) of nodal lines at rising places (m).

@@ -23,7 +23,7 @@ from squeezefilm.plate.solid.modes import Label, profiles
 # So many modes of one class of symmetry around the bare plate's frequency are looked at: strips on
 # a part of the face move a mode by some ten percent.
 _NEAREST = 16
-_LEAST_COVERAGE = 0.8
+_COVERED = 0.8
 
 
 def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
@@ -39,7 +39,7 @@ def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
             "frequency or in a band",
             quantity="mode",
         )
-    if plate.coverage < _LEAST_COVERAGE and (guess := screened_frequency(plate, label)):
+    if plate.coverage < _COVERED and (guess := screened_frequency(plate, label)) is not None:
         return guess
     if label[1] == 0:
         try:

@@ -17,7 +17,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.kept_arrays import KeptResults
-from squeezefilm.plate.elements.nodal_lines import zero_crossings
+from squeezefilm.plate.elements.nodal_lines import within_nodes, zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
 from squeezefilm.plate.solid.layers import Resolution
@@ -246,7 +246,7 @@ def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: P
         line = modes.field(index, x, middle, plate.thickness)[:, 0, 2]
     else:
         line = modes.field(index, middle, x, plate.thickness)[0, :, 2]
-    inside = _interior(x, zero_crossings(x, line))
+    inside = within_nodes(x, zero_crossings(x, line))
     at = int(np.flatnonzero(inside)[np.argmax(np.abs(line[inside]))])
     lobe = float(x[at]), across / 2
     lobe = lobe if lengthwise else lobe[::-1]
@@ -314,12 +314,3 @@ def _modes_again(plate: RectangularPlate, label: tuple[int, int] | None) -> Plat
 
 def _response_again(plate: RectangularPlate, label: tuple[int, int] | None) -> HarmonicResponse:
     return solid_mode(plate, label).response
-
-
-def _interior(
-    position: si.MetreArray, nodes: si.MetreArray
-) -> np.ndarray[tuple[int], np.dtype[np.bool]]:
-    """Between the outermost nodal lines: free ends move further than any finger meets."""
-    if nodes.size < 2:
-        return np.ones(position.size, dtype=bool)
-    return np.asarray((position > nodes[0]) & (position < nodes[-1]))
