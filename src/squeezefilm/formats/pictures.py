@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import PICTURE_BYTES
+from squeezefilm.isolated_reading import Read, read_isolated
 from squeezefilm.regular_file import read_regular
 from squeezefilm.render.texture.image import MOST_PIXELS
 
@@ -55,15 +56,23 @@ def picture_from(data: bytes, name: str = "the picture") -> si.DimensionlessArra
             f"{name} has {columns} × {rows} pixels; an image may have from 1 to {MOST_PIXELS} "
             "together: make its pixels larger"
         )
+    try:
+        _, (found,) = read_isolated(_pixels, data=data, file=name)
+    except ConfigError as error:
+        raise InputError(f"{name} {error.message}") from error
+    if found.shape != (rows, columns):
+        raise InputError(f"{name} is damaged: its header does not belong to its pixels")
+    return np.asarray(found / (2**bits - 1))
+
+
+def _pixels(data: bytes) -> Read:
+    """In the child: the pixels of a PNG as they are stored."""
     from PIL import Image as Pillow
 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             with Pillow.open(io.BytesIO(data), formats=("PNG",)) as picture:
-                found = np.array(picture, dtype=float)
-    except (OSError, SyntaxError, ValueError, MemoryError, Warning, struct.error) as error:
-        raise InputError(f"{name} is damaged and cannot be read: {error}") from error
-    if found.shape != (rows, columns):
-        raise InputError(f"{name} is damaged: its header does not belong to its pixels")
-    return np.asarray(found / (2**bits - 1))
+                return None, [np.array(picture, dtype=float)]
+    except (OSError, SyntaxError, ValueError, Warning, struct.error) as error:
+        raise ConfigError(f"is damaged and cannot be read: {error}") from error

@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError
 from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.isolated_reading import Read, read_isolated
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.regular_file import read_regular
 
@@ -30,13 +31,13 @@ def read_matlab(path: Path) -> RawTable:
             f"S = load('{path.name}'); save('{path.name}', '-struct', 'S', '-v7')",
             file=path,
         )
-    variables = _variables(data, path)
-    columns = [pair for name, value in variables for pair in _columns(name, value)]
-    lengths = [column.size for _, column in columns]
-    if not lengths:
-        there = ", ".join(name for name, _ in variables) or "none"
-        raise ConfigError(f"holds no variable with a row of numbers; it holds: {there}", file=path)
-    length = max(set(lengths), key=lambda one: (lengths.count(one), one))
+    (there, labels), arrays = read_isolated(_numbers, path.name, data=data, file=path)
+    if not arrays:
+        held = ", ".join(there) or "none"
+        raise ConfigError(f"holds no variable with a row of numbers; it holds: {held}", file=path)
+    columns = list(zip(labels, arrays, strict=True))
+    lengths = [column.size for column in arrays]
+    length = max(set(lengths), key=lambda length: (lengths.count(length), length))
     kept = [(name, column) for name, column in columns if column.size == length]
     left = [name for name, column in columns if column.size != length]
     notes = (f"variables of another length were left out: {', '.join(left)}",) if left else ()
@@ -47,19 +48,28 @@ def read_matlab(path: Path) -> RawTable:
     return table
 
 
-def _variables(data: bytes, path: Path) -> list[tuple[str, Any]]:
+def _numbers(data: bytes, name: str) -> Read:
+    """In the child: the names of all variables and of the columns of numbers, and the columns."""
+    variables = _variables(data, name)
+    columns = [pair for label, value in variables for pair in _columns(label, value)]
+    named = [label for label, _ in variables], [label for label, _ in columns]
+    return named, [column for _, column in columns]
+
+
+def _variables(data: bytes, name: str) -> list[tuple[str, Any]]:
     """The variables by name, those of a structure as its own."""
     from scipy.io import loadmat
 
     try:
         stream: Any = io.BytesIO(data)
         found = loadmat(stream, squeeze_me=True, struct_as_record=True)
+    except MemoryError:
+        raise
     # Damaged files end in errors of any type, of zlib, of struct, of NumPy.
     except Exception as error:
         why = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise ConfigError(
-            f"cannot be read as a MATLAB file: {why}; save it again with save('file.mat', '-v7')",
-            file=path,
+            f"cannot be read as a MATLAB file: {why}; save it again with save('{name}', '-v7')"
         ) from error
     variables = []
     for name, value in found.items():

@@ -14,6 +14,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError
 from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.isolated_reading import Read, read_isolated
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.regular_file import read_regular
 
@@ -43,6 +44,17 @@ def read_universal(path: Path, at: si.Hertz | None = None) -> RawTable:
     Raises `ConfigError`, with the line at which its data set begins, for one that is not closed,
     has fewer values than it says or cannot be read, and for functions over different abscissas.
     """
+    # Looked at here, since a pipe must not be waited for there.
+    read_regular(path, RECORDING_BYTES, "a Universal File")
+    (format, names, notes), (values,) = read_isolated(_table, str(path), at, file=path)
+    table = RawTable(path, format, tuple(names), values, notes=tuple(notes))
+    table.require_finite()
+    return table
+
+
+def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
+    """In the child: format, names of the columns and notes, and the columns' values."""
+    path = Path(file)
     blocks = _blocks(path)
     functions = [one for one in blocks if one.type == 58]
     nodes: dict[int, list[float]] = {}
@@ -65,13 +77,9 @@ def read_universal(path: Path, at: si.Hertz | None = None) -> RawTable:
             f"the types {kinds}",
             file=path,
         )
-    notes = tuple(_said(one) for one in functions[:3])
-    table = RawTable(
-        path, f"Universal File of {len(blocks)} data sets", tuple(names), np.stack(columns, axis=1),
-        notes=notes,
-    )  # fmt: skip
-    table.require_finite()
-    return table
+    notes = [_said(block) for block in functions[:3]]
+    said = f"Universal File of {len(blocks)} data sets", names, notes
+    return said, [np.stack(columns, axis=1)]
 
 
 def _blocks(path: Path) -> list[_Block]:
@@ -103,6 +111,8 @@ def _blocks(path: Path) -> list[_Block]:
             continue
         try:
             content = reader.read_sets(number)
+        except MemoryError:
+            raise
         # The reader raises bare exceptions of any type for whatever is malformed.
         except Exception as error:
             why = str(error).splitlines()[0] if str(error) else type(error).__name__
