@@ -140,7 +140,8 @@ def _unit_of_attribute(owner: type, name: str) -> si.Unit | None:
 
 def _in_words(value: Any, unit: si.Unit | None) -> str:
     if isinstance(value, list | tuple):
-        return " to ".join(_in_words(one, unit) for one in value)
+        texts = all(isinstance(item, str) for item in value)
+        return ("; " if texts else " to ").join(_in_words(item, unit) for item in value)
     if isinstance(value, typing.Mapping):
         return ", ".join(f"{key} {_in_words(one, unit)}" for key, one in value.items())
     if isinstance(value, float | np.floating):

@@ -63,16 +63,13 @@ class ComplexFit:
     floor: float
     degrees_of_freedom: int
 
-    def estimate(
-        self, value: Callable[[si.FloatArray], float], unit: str, least: float = -np.inf
-    ) -> Estimate:
-        """What `value` makes of the parameters, with its 95 % interval to first order; `least`
-        is what it cannot fall below."""
+    def estimate(self, value: Callable[[si.FloatArray], float], unit: str) -> Estimate:
+        """What `value` makes of the parameters, with its 95 % interval to first order."""
         best = value(self.parameters)
         slope = gradient(value, self.parameters, np.sqrt(np.diag(self.covariance)))
         error = math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
         reach = error * float(stats.t.ppf((1 + LEVEL) / 2, self.degrees_of_freedom))
-        return Estimate(best, error, (max(best - reach, least), best + reach), unit, LEVEL)
+        return Estimate(best, error, (best - reach, best + reach), unit, LEVEL)
 
 
 def gradient(

@@ -42,13 +42,15 @@ def interval_around(
 def inverse_of(estimate: Estimate, unit: str, factor: float = 1.0) -> Estimate:
     """`factor` over an estimate, such as Q from a loss factor: the interval's ends change places.
 
-    An interval that reaches zero has no end above: it is infinite.
+    What is not above zero, an end of the interval or the value itself (noise can make a loss
+    seem a gain), has an infinite inverse.
     """
     low, high = estimate.interval
-    value = factor / estimate.value
-    ends = factor / high, factor / low if low > 0 else float("inf")
-    error = abs(value) * estimate.standard_error / abs(estimate.value)
-    return Estimate(value, error, ends, unit, estimate.level)
+    value, *ends = (
+        factor / number if number > 0 else math.inf for number in (estimate.value, high, low)
+    )
+    error = value * estimate.standard_error / estimate.value if estimate.value > 0 else math.inf
+    return Estimate(value, error, (ends[0], ends[1]), unit, estimate.level)
 
 
 def propagated(

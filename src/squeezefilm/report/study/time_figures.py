@@ -149,13 +149,17 @@ def psychometric_function(fit: PsychometricFit) -> Figure:
     """Share of positive answers against intensity; the area of a point is its number of trials."""
     function, log = fit.function, fit.function.axis == "log"
     low, high = fit.posterior_interval["threshold"]
-    figure = style.new_figure(
+    title = (
         f"The threshold is {function.threshold:.3g}, with {100 * fit.level:g} % between "
-        f"{low:.3g} and {high:.3g}",
-        f"{function.shape} function, guess rate {function.guess_rate:.2g}, lapse rate "
-        f"{function.lapse_rate:.2g}; {int(fit.trials.sum())} trials; credible interval",
-        4.4,
+        f"{low:.3g} and {high:.3g}"
     )
+    if fit.falls:
+        title = "The answers fall with intensity: this rising function does not describe them"
+    made = (
+        f"{function.shape} function, guess rate {function.guess_rate:.2g}, lapse rate "
+        f"{function.lapse_rate:.2g}; {int(fit.trials.sum())} trials; credible interval"
+    )
+    figure = style.new_figure(title, "; ".join([made, *fit.notes]), 4.4)
     axes = figure.subplots()
     first, last = float(fit.intensity[0]), float(fit.intensity[-1])
     room = 0.0 if log else 0.04 * (last - first)

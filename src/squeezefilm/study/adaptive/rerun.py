@@ -25,6 +25,7 @@ from squeezefilm.study.psychometric.fit import (
     PsychometricFit,
     confidence_intervals,
     likelihood_of,
+    opened,
 )
 from squeezefilm.study.psychometric.function import Axis, on_axis
 
@@ -66,7 +67,8 @@ def rerun_intervals(
     random = np.random.default_rng(seed)
     among = [random.random((replicates, one.most_trials)) for one in procedures]
     again = _Again(likelihood.code, axis, tuple(procedures), among)
-    return confidence_intervals(likelihood, best, again, fit.fitted, level, axis)
+    found = confidence_intervals(likelihood, best, again, fit.fitted, level, axis)
+    return {name: opened(fit.function, name, ends) for name, ends in found.items()}
 
 
 def _require_trials(fit: PsychometricFit, procedures: Sequence[Procedure]) -> None:

@@ -209,7 +209,8 @@ ESTIMATORS: dict[str, InformationEstimator] = {
 class TransferEstimate:
     """One estimator's value (bit), its interval over participants, and where it fails.
 
-    `interval` is None with fewer than two participants, and where the estimator has no value.
+    `interval` is None with fewer than two participants, and where the estimator has no value for
+    the matrix or for any resample.
     """
 
     key: str
@@ -280,9 +281,11 @@ def information_transfer(
         value = float(item.estimate(pooled))
         interval = None
         if again is not None and np.isfinite(value):
-            interval = recentred_interval(
-                value, item.estimate(again), whole.shape[0], level, 0.0, greatest
-            )
+            resampled = item.estimate(again)
+            if np.isfinite(resampled).any():
+                interval = recentred_interval(
+                    value, resampled, whole.shape[0], level, 0.0, greatest
+                )
         found.append(TransferEstimate(item.key, item.name, value, interval, item.fails))
     # The jackknife has no value where a stimulus came once; NSB has one for any counts.
     best = RECOMMENDED if np.isfinite(ESTIMATORS[RECOMMENDED].estimate(pooled)) else "nsb"

@@ -19,6 +19,7 @@ from scipy import stats
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.study.identification.confusion import ConfusionMatrix, whole_counts
+from squeezefilm.study.psychometric.interval_ends import holding
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,12 +101,9 @@ def recentred_interval(
     tail = (1 - level) / 2
     wide = expansion(participants, level) / float(stats.norm.isf(tail))
     low, high = estimate + wide * (np.quantile(values, [tail, 1 - tail]) - values.mean())
-    return Interval(
-        float(np.clip(low, least, greatest)),
-        float(np.clip(high, least, greatest)),
-        level,
-        "participant bootstrap, recentred",
-    )
+    # An unbiased estimate may lie beyond what can be, and all resamples to one side of their mean.
+    low, high = holding(estimate, *np.clip([low, high], least, greatest))
+    return Interval(float(low), float(high), level, "participant bootstrap, recentred")
 
 
 Method = Literal["Wilson", "Jeffreys", "Clopper–Pearson"]
@@ -142,7 +140,8 @@ def proportion_interval(
     tail = (1 - level) / 2
     low = 0.0 if successes == 0 else float(posterior.ppf(tail))
     high = 1.0 if successes == trials else float(posterior.isf(tail))
-    return Interval(low, high, level, method)
+    ends = holding(successes / trials, low, high)
+    return Interval(float(ends[0]), float(ends[1]), level, method)
 
 
 def participant_interval(
@@ -165,7 +164,8 @@ def participant_interval(
     pooled = resampled_counts(whole, resamples, seed)
     right = np.trace(pooled, axis1=1, axis2=2) / pooled.sum(axis=(1, 2))
     tail = float(stats.norm.sf(expansion(whole.shape[0], level)))
-    low, high = np.quantile(right, [tail, 1 - tail])
+    correct = float(np.trace(whole.sum(axis=0)) / whole.sum())
+    low, high = holding(correct, *np.quantile(right, [tail, 1 - tail]))
     return Interval(float(low), float(high), level, "participant bootstrap")
 
 
@@ -262,9 +262,11 @@ class ConfusionPosterior:
         prior: Dirichlet parameter of every cell (1).
         level: of the intervals.
         mean: posterior means.
-        low, high: bounds of equal-tailed intervals of single cells.
-        proportion_correct: interval of the mean of the diagonal, every stimulus counting the same;
-            None where rows and columns do not pair up.
+        low, high: bounds of equal-tailed intervals of single cells, opened to the mean and to the
+            observed share where one lies in a tail (see `holding`).
+        proportion_correct: interval of the mean of the diagonal, every stimulus counting the same,
+            opened to the observed share of right answers; None where rows and columns do not
+            pair up.
     """
 
     matrix: ConfusionMatrix
@@ -311,14 +313,11 @@ def confusion_posterior(
     if matrix.is_square:
         random = np.random.default_rng(seed)
         diagonal = random.beta(np.diag(ones), np.diag(others), size=(samples, answers))
-        low, high = np.quantile(diagonal.mean(axis=1), [tail, 1 - tail])
+        ends = np.quantile(diagonal.mean(axis=1), [tail, 1 - tail])
+        low, high = holding(matrix.proportion_correct, *ends)
         correct = Interval(float(low), float(high), level, f"Dirichlet posterior, prior {a:g}")
-    return ConfusionPosterior(
-        matrix,
-        a,
-        level,
-        ones / ones.sum(axis=0),
-        np.asarray(marginal.ppf(tail)),
-        np.asarray(marginal.isf(tail)),
-        correct,
-    )
+    mean = ones / ones.sum(axis=0)
+    low, high = holding(mean, marginal.ppf(tail), marginal.isf(tail))
+    # A stimulus that was never presented has no share (NaN).
+    low, high = holding(matrix.percent / 100, low, high)
+    return ConfusionPosterior(matrix, a, level, mean, low, high, correct)

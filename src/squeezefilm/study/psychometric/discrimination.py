@@ -16,6 +16,7 @@ from scipy.special import ndtr, ndtri
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.study.psychometric.fit import Interval, PsychometricFit
+from squeezefilm.study.psychometric.interval_ends import holding
 
 # Nodes of the integral over the percept of the right alternative; the integrand is smooth.
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(120)
@@ -200,7 +201,8 @@ def sensitivity(
     """d′ from counts, by one of the models, with a credible interval.
 
     The point comes of corrected proportions (Hautus 1995); the interval of independent Jeffreys
-    posteriors, Beta(count + ½, rest + ½), of the two rates.
+    posteriors, Beta(count + ½, rest + ½), of the two rates, opened to the point where few trials
+    leave it in a tail.
 
     Args:
         hits: of `signals` trials; false_alarms: of `noises` trials.
@@ -219,7 +221,8 @@ def sensitivity(
     h = _within(random.beta(hits + 0.5, signals - hits + 0.5, draws))
     f = _within(random.beta(false_alarms + 0.5, noises - false_alarms + 0.5, draws))
     values = np.array([of(float(a), float(b)).d_prime for a, b in zip(h, f, strict=True)])
-    low, high = np.quantile(values, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
+    ends = np.quantile(values, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
+    low, high = holding(point.d_prime, *ends)
     return SensitivityInterval(point, (float(low), float(high)), level)
 
 
@@ -264,10 +267,13 @@ def just_noticeable_difference(
     1 + Weber fraction, squared.
 
     Raises:
-        InputError: a standard not above 0, a guess rate known to be above 0.1, which is that of
-            choices among alternatives, or intervals asked by a bootstrap that was not made.
+        InputError: a standard not above 0, answers that fall with intensity, a guess rate known to
+            be above 0.1, which is that of choices among alternatives, or intervals asked by a
+            bootstrap that was not made.
     """
     si.require("standard", standard, above=0.0)
+    if fit.falls:
+        raise InputError(f"there is no just noticeable difference: {fit.notes[0]}")
     known = "guess_rate" not in fit.fitted
     if known and fit.function.guess_rate > 0.1:
         raise InputError(

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import ndtr
 
 from squeezefilm import quantities as si
 from squeezefilm.arguments import called_with
@@ -30,6 +31,7 @@ from squeezefilm.study.psychometric.function import (
     on_axis,
     shape_code,
 )
+from squeezefilm.study.psychometric.interval_ends import holding
 from squeezefilm.study.psychometric.posterior import (
     PARAMETERS,
     Answered,
@@ -40,6 +42,8 @@ from squeezefilm.study.psychometric.posterior import (
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 Interval = tuple[float, float]
+# Answers fall where fewer guessers than this fall as clearly: a guesser is rarely told so.
+_FALLING = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -54,7 +58,9 @@ class PsychometricFit(Result):
         fitted: names of the parameters that were fitted.
         level: of the intervals (1).
         posterior: of the parameters, on a grid.
-        posterior_interval: central credible interval by parameter, in the parameter's unit.
+        posterior_interval: credible interval by parameter, in the parameter's unit: the central
+            one, opened to the fitted value where that lies in a tail, as it does at the bound of a
+            prior. It holds at least `level`.
         bootstrap: None without replicates.
         bootstrap_interval: confidence interval by parameter, in its unit; empty without
             replicates.
@@ -63,6 +69,8 @@ class PsychometricFit(Result):
             None without replicates. Without meaning where most places have a trial or two.
         bounded_by_prior: parameters with an interval that ends at a bound of the prior of
             threshold or width: the data do not say how far they go.
+        falling_p: probability that answers to which intensity does not matter fall with it as
+            clearly as these, one-sided; small where the answers fall (see `falling_probability`).
     """
 
     function: PsychometricFunction
@@ -79,9 +87,34 @@ class PsychometricFit(Result):
     deviance: float
     deviance_p: si.Dimensionless | None
     bounded_by_prior: tuple[str, ...]
+    falling_p: si.Dimensionless
     _shown: ClassVar[str] = (
-        "function.shape function.threshold function.width function.lapse_rate posterior_interval"
+        "function.shape function.threshold function.width function.lapse_rate posterior_interval "
+        "notes"
     )
+
+    @property
+    def falls(self) -> bool:
+        """Whether the answers fall with intensity, more clearly than one guesser in a thousand."""
+        return self.falling_p < _FALLING
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What has to be known of this fit before a number of it is used, in sentences."""
+        found = []
+        if self.falls:
+            found.append(
+                f"the answers fall with intensity (trend test, p = {self.falling_p:.1g}), and a "
+                "psychometric function rises: no number of this fit describes them; if answers "
+                "were exchanged, fit trials - positive"
+            )
+        if self.bounded_by_prior:
+            names = " and ".join(self.bounded_by_prior)
+            found.append(
+                f"the answers do not bound the {names}: an end of the interval is the prior's, and "
+                "more trials near the threshold, or a prior of your own, are wanted"
+            )
+        return tuple(found)
 
     def summary(self) -> dict[str, Any]:
         """The numbers for JSON."""
@@ -97,6 +130,8 @@ class PsychometricFit(Result):
             "deviance_p": self.deviance_p,
             "trials": int(self.trials.sum()),
             "bounded_by_prior": list(self.bounded_by_prior),
+            "falling_p": self.falling_p,
+            "notes": list(self.notes),
             "prior": to_json(self.prior),
         }
 
@@ -164,8 +199,9 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
         p = bootstrap.goodness_of_fit(deviance)
         again = SamePlaces(likelihood, bootstrap.shares)
         confidence = confidence_intervals(likelihood, best, again, fitted, level, axis)
+    function = _function(asked.shape, axis, best)
     return PsychometricFit(
-        function=_function(asked.shape, axis, best),
+        function=function,
         intensity=places,
         positive=k,
         trials=n,
@@ -173,13 +209,44 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
         fitted=fitted,
         level=level,
         posterior=posterior,
-        posterior_interval={name: posterior.interval(name, level) for name in fitted},
+        posterior_interval={
+            name: opened(function, name, posterior.interval(name, level)) for name in fitted
+        },
         bootstrap=bootstrap,
         bootstrap_interval=confidence,
         deviance=deviance,
         deviance_p=p,
         bounded_by_prior=_bounded(prior, posterior, confidence),
+        falling_p=falling_probability(answered.x, k, n),
     )
+
+
+def falling_probability(
+    x: si.FloatArray, positive: si.FloatArray, trials: si.FloatArray
+) -> si.Dimensionless:
+    """Probability that answers to which `x` does not matter fall with it as clearly as these.
+
+    The test of Cochran (1954) and Armitage (1955, 10.2307/3001775) for a trend of proportions,
+    one-sided: near 1 where answers rise, ½ without a trend or where all answers are alike. Its
+    normal limit is rough with a handful of trials. It holds too where answers chose the stimuli,
+    since the answer to a stimulus is still random under the hypothesis.
+
+    Args:
+        x: places on the axis of the function, shape (places,).
+        positive, trials: counts at each, shape (places,).
+    """
+    share = positive.sum() / trials.sum()
+    away = x - (trials @ x) / trials.sum()
+    spread = share * (1.0 - share) * float(trials @ away**2)
+    if spread <= 0.0:
+        return 0.5
+    return float(ndtr(float(away @ (positive - trials * share)) / np.sqrt(spread)))
+
+
+def opened(function: PsychometricFunction, name: str, interval: Interval) -> Interval:
+    """The interval of a parameter of a function, opened to its value there."""
+    low, high = holding(getattr(function, name), *interval)
+    return float(low), float(high)
 
 
 def penalised(answered: Answered) -> PenalisedLikelihood:

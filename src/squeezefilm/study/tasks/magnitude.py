@@ -9,6 +9,7 @@ from scipy import stats
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.study.psychometric.interval_ends import holding
 from squeezefilm.study.psychometric.magnitude_estimation import fit_power_law
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, Estimate, PersonEstimate, through
@@ -48,6 +49,7 @@ def exponents(
         spread * math.sqrt(free / float(stats.chi2.ppf(share, free)))
         for share in (0.5 * (1 + level), 0.5 * (1 - level))
     )
+    low, high = (float(end) for end in holding(spread, low, high))
     low_mean, high_mean = (float(one) for one in law.interval)
     pooled = Estimate(law.exponent, low_mean, high_mean, level, "t, over people")
     return persons, pooled, Estimate(spread, low, high, level, "χ², over people")

@@ -18,7 +18,8 @@ from squeezefilm.study.psychometric.bootstrap import (
     inverted_interval,
     simulate_bootstrap,
 )
-from squeezefilm.study.psychometric.fit import fit_psychometric
+from squeezefilm.study.psychometric.discrimination import just_noticeable_difference
+from squeezefilm.study.psychometric.fit import falling_probability, fit_psychometric
 from squeezefilm.study.psychometric.posterior import Answered, PsychometricPosterior, coarse_maxima
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
@@ -211,3 +212,39 @@ def test_a_known_guess_rate_is_kept_to_the_last_digit(known: float) -> None:
         [1, 2, 3, 4, 5], [3, 6, 8, 9, 10], [10] * 5, guess_rate=known, replicates=0
     )
     assert found.function.guess_rate == known
+
+
+@pytest.mark.parametrize("guess_rate", [None, 0.0, 0.5])
+def test_falling_answers_are_said_to_fall_wherever_a_fit_is_shown(guess_rate: float | None) -> None:
+    positive, trials = np.array([20, 18, 10, 3, 0]), np.full(5, 20)
+    fit = fit_psychometric(LEVELS, positive, trials, guess_rate=guess_rate, replicates=0)
+    assert fit.falls
+    assert fit.falling_p < 1e-10
+    said = "the answers fall with intensity"
+    assert said in fit.notes[0]
+    assert said in repr(fit)
+    assert said in fit._repr_html_()
+    assert said in fit.summary()["notes"][0]
+    with pytest.raises(InputError, match=said):
+        just_noticeable_difference(fit, 3.0)
+    turned = fit_psychometric(LEVELS, trials - positive, trials, guess_rate=None, replicates=0)
+    assert not turned.falls
+    assert not any(said in note for note in turned.notes)
+    assert turned.falling_p == pytest.approx(1 - fit.falling_p)
+
+
+def test_what_the_answers_do_not_bound_is_said_where_a_fit_is_printed() -> None:
+    fit = fit_psychometric(LEVELS, [5, 6, 5, 6, 10], [10] * 5, replicates=0)
+    assert fit.bounded_by_prior
+    assert "the answers do not bound the" in repr(fit)
+
+
+def test_guessers_are_rarely_said_to_fall_and_a_single_share_never() -> None:
+    random = np.random.default_rng(3)
+    trials = np.full(5, 40.0)
+    shares = [
+        falling_probability(LEVELS, random.binomial(40, 0.5, 5).astype(float), trials)
+        for _ in range(2000)
+    ]
+    assert np.mean(np.array(shares) < 0.05) == pytest.approx(0.05, abs=0.015)
+    assert falling_probability(LEVELS, trials, trials) == 0.5
