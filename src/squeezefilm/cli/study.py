@@ -249,11 +249,14 @@ def gratings(
 def rehearse(
     design: Design,
     store: NewStore,
-    participants: Annotated[int, typer.Option(help="How many simulated people.")] = 3,
+    participants: Annotated[
+        int, typer.Option(help="How many simulated people the file is to have.")
+    ] = 3,
     observer: Observer = "fingertip",
     seed: SeedOfFile = None,
 ) -> None:
-    """Let simulated participants do every trial of a study's file, to try analysis and exports."""
+    """Let simulated participants do every trial of a study's file, to try analysis and exports;
+    stopped or killed, it goes on where it stopped when it is asked again."""
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.study.conduct.rehearsal import rehearse as run_through
     from squeezefilm.study.conduct.terminal_run import open_study

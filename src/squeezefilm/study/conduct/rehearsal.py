@@ -50,11 +50,13 @@ def rehearse(
     *,
     progress: Callable[[str], None] | None = None,
 ) -> tuple[str, ...]:
-    """Enrol simulated participants and let them answer everything. Returns their pseudonyms.
+    """Let simulated participants answer everything, until the file has as many as asked for.
 
-    Trials are answered as `simulate_participants` says for the study's seed; of match-to-sample it
-    says main trials only, practice and catch trials are then answered with what is right. It may be
-    interrupted: whoever has begun can be gone on with.
+    Returns the pseudonyms of all its simulated participants. Stopped or killed it goes on where it
+    stopped, with the same people: asked again for as many, it finishes those who have begun and
+    enrols only who is missing. Trials are answered as `simulate_participants` says for the study's
+    seed; of match-to-sample it says main trials only, practice and catch trials are then answered
+    with what is right.
 
     Raises:
         InputError: a number out of range, a study that people took part in, or one of several
@@ -71,21 +73,33 @@ def rehearse(
     if store.study["stations"] != 1:
         raise InputError("a file of one of several stations is not rehearsed; make another")
     tell = progress or (lambda _: None)
-    design = store.design
+    people, design = _simulated(store), store.design
+    missing = participants - len(people)
+    if missing <= 0 and all(display_wanted(store, who) is None for who in people):
+        return tuple(people)
     tables = chain_tables(design, observer, progress=tell)
-    # What somebody answers depends on their number, of which those that are free come next.
-    most = max((int(one["number"]) + 1 for one in store.participants()), default=0) + participants
+    people += [store.enrol(simulated=True) for _ in range(missing)]
+    unfinished = [who for who in people if display_wanted(store, who) is not None]
+    # What somebody answers depends on their number, and on nobody else.
+    numbers = {who: int(store.require_participant(who)["number"]) for who in unfinished}
+    most = max(numbers.values()) + 1
     answered = simulate_participants(design, observer, most, int(store.study["seed"]), tables)
-    found = []
-    for count in range(participants):
-        who = store.enrol()
-        number = int(store.require_participant(who)["number"])
-        tell(f"simulated participant {count + 1} of {participants}")
-        _answer_everything(
-            store, who, _responses(answered, number), _Hand(tables, answered, number)
-        )
-        found.append(who)
-    return tuple(found)
+    for who in unfinished:
+        tell(f"simulated participant {people.index(who) + 1} of {len(people)}")
+        hand = _Hand(tables, answered, numbers[who])
+        _answer_everything(store, who, _responses(answered, numbers[who]), hand)
+    return tuple(people)
+
+
+def _simulated(store: StudyStore) -> list[str]:
+    """Who was enrolled by a rehearsal, in the order of their numbers; of the files of older
+    versions those who have a session, which is simulated."""
+    sat = {row["participant"] for row in store.rows("SELECT DISTINCT participant FROM session")}
+    return [
+        row["uuid"]
+        for row in store.participants()
+        if row["uuid"] in sat or row["uuid"] == store.simulated_pseudonym(row["number"])
+    ]
 
 
 def _responses(study: SimulatedStudy | SimulatedAnswers, person: int) -> dict[int, Response]:

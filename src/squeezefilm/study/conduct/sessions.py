@@ -27,7 +27,7 @@ from squeezefilm.results import to_json
 from squeezefilm.study.conduct.again import COUNTED, restart_block
 from squeezefilm.study.conduct.study_device import DeviceVerification, StudyDevice
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
-from squeezefilm.study.record.tables import PLACED
+from squeezefilm.study.record.tables import PLACED, SIMULATED_NOTE
 
 _LONGEST_TEXT = 200
 
@@ -258,7 +258,8 @@ def begin_session(
         insert(write, "session", row)
         insert(write, "verification", _verification_row(session, "before", verification))
     planned = next_planned(store, participant)
-    if planned is not None:
+    # Simulated people forget nothing while they are away.
+    if planned is not None and conditions.note != SIMULATED_NOTE:
         restart_block(store, participant, session, planned)
     return session
 

@@ -9,6 +9,7 @@ folder of the same name with ``.traces``; their names are random.
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import re
 import secrets
@@ -274,19 +275,20 @@ class StudyStore:
         with self.transaction() as write:
             insert(write, table, row)
 
-    def enrol(self) -> str:
-        """A new participant: a random pseudonym, with all trials planned. Returns the pseudonym.
+    def enrol(self, *, simulated: bool = False) -> str:
+        """A new participant, with all trials planned. Returns the pseudonym, which is random; of
+        somebody `simulated` it is `simulated_pseudonym`.
 
         The lowest free number of this station is taken, so that somebody deleted leaves no gap
         in the balance. Raises `RecordError`, with nobody enrolled.
         """
         design, study = self.design, self.study
-        pseudonym = secrets.token_hex(8)
         with self.transaction() as write:
             taken = {one[0] for one in write.execute("SELECT number FROM participant")}
             number = study["station"]
             while number in taken:
                 number += study["stations"]
+            pseudonym = self.simulated_pseudonym(number) if simulated else secrets.token_hex(8)
             row = {
                 "uuid": pseudonym,
                 "number": number,
@@ -298,6 +300,12 @@ class StudyStore:
                 planned = {"uuid": str(uuid.uuid4()), "participant": pseudonym, **trial.row()}
                 insert(write, "trial", planned)
         return pseudonym
+
+    def simulated_pseudonym(self, number: int) -> str:
+        """The pseudonym of a simulated participant: of this file and their number, so that a
+        rehearsal that was killed knows its own people again."""
+        told = f"{self.study['uuid']} simulated {number}"
+        return hashlib.sha256(told.encode()).hexdigest()[:16]
 
     def participants(self) -> list[dict[str, Any]]:
         """Everyone enrolled, by number: uuid, number, trials planned and answered, and set aside.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from squeezefilm.study.record.tables import SIMULATED, origin_of, trial_table
 from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.tasks.analyze import analyze_study
 
-from ..scripted import CONSENT, Script, gratings
+from ..scripted import CONSENT, Script, gratings, staircase
 
 
 def run_through(store: StudyStore, people: int) -> None:
@@ -61,6 +62,83 @@ def test_a_rehearsal_answers_everything_and_says_that_nobody_did(tmp_path: Path)
         run_through(store, 1)
         with pytest.raises(InputError, match="people took part"):
             rehearse(store, observer, 1)
+
+
+class Killed(BaseException):
+    """What stands for a kill: nothing of this program catches it."""
+
+
+@pytest.mark.parametrize("task", ["matches", pytest.param("series", marks=pytest.mark.slow)])
+def test_a_rehearsal_that_is_killed_goes_on_with_the_same_people(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, task: str
+) -> None:
+    if task == "matches":
+        design = dataclasses.replace(gratings(1, ("biet2008-stator",)), resume_within=1.0)
+    else:
+        design = dataclasses.replace(staircase(8), displays=("biet2008-stator",))
+    observer = dataclasses.replace(load_observer(), finger_classes=1)
+    with StudyStore.create(tmp_path / "whole.sqlite", design, 4) as store:
+        rehearse(store, observer, 2)
+        expected = answers_by_number(store)
+    path, kills = tmp_path / "killed.sqlite", 0
+    random = np.random.default_rng(5)
+    while True:
+        # Opened anew each time, as another process would.
+        store = StudyStore.open(path) if path.exists() else StudyStore.create(path, design, 4)
+        with store, monkeypatch.context() as patched:
+            dies_within(patched, int(random.integers(0, 10)))
+            try:
+                people = rehearse(store, observer, 2)
+                break
+            except Killed:
+                kills += 1
+    assert kills > 2
+    with StudyStore.open(path) as store:
+        assert [one["uuid"] for one in store.participants()] == list(people)
+        assert len(people) == 2
+        assert answers_by_number(store) == expected
+        # Asked once more for as many there is nothing to do; for more, those are added.
+        assert rehearse(store, observer, 2) == people
+        assert rehearse(store, observer, 3)[:2] == people
+        assert [one["number"] for one in store.participants()] == [0, 1, 2]
+
+
+def test_a_rehearsal_touches_nobody_who_was_enrolled_by_a_person(tmp_path: Path) -> None:
+    design = gratings(repetitions=1, displays=("biet2008-stator",))
+    observer = dataclasses.replace(load_observer(), finger_classes=1)
+    with StudyStore.create(tmp_path / "a.sqlite", design, 4) as store:
+        person = store.enrol()
+        (simulated,) = rehearse(store, observer, 1)
+        assert simulated != person
+        progress = {one["uuid"]: one["answered"] for one in store.participants()}
+        assert progress[person] == 0 < progress[simulated]
+
+
+def dies_within(patched: pytest.MonkeyPatch, steps: int) -> None:
+    """Let the program be killed instead of its next step but so many: enrolments, presentations
+    and answers."""
+    left = [steps]
+    for owner, name in ((StudyStore, "enrol"), (StudyRun, "next_trial"), (StudyRun, "respond")):
+        work = getattr(owner, name)
+
+        def step(*given: object, work: Callable[..., object] = work, **more: object) -> object:
+            left[0] -= 1
+            if left[0] < 0:
+                raise Killed
+            return work(*given, **more)
+
+        patched.setattr(owner, name, step)
+
+
+def answers_by_number(store: StudyStore) -> list[dict[str, object]]:
+    """Every answer with the numbers of its participant and trial, without when and in which file
+    it was given."""
+    return store.rows(
+        "SELECT p.number AS person, t.number, r.stimuli, r.intensity, r.choice, r.estimate, "
+        "r.correct, r.response_time_s, r.path_length_m FROM response r "
+        "JOIN trial t ON t.uuid = r.trial JOIN participant p ON p.uuid = t.participant "
+        "ORDER BY p.number, t.number"
+    )
 
 
 def test_what_has_no_answer_is_refused(tmp_path: Path) -> None:
