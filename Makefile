@@ -10,7 +10,7 @@ MUTANTS_SEED ?= 1
 COUNT ?= 150
 MINUTES ?= 480
 
-.PHONY: help demo lab test slow check lint types layers gallery pictures docs bench coverage nightly campaign release clean
+.PHONY: help demo lab test slow gate costs check lint types layers gallery pictures docs bench coverage nightly campaign release clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -53,12 +53,19 @@ slow: export PYTEST_ADDOPTS += --durations=40
 slow: $(VENV)/test.stamp  ## run the tests that take seconds each, as CI does after the quick ones
 	$(call run_tests,and slow and not nightly)
 
+gate: $(VENV)/test.stamp  ## reliability: crash, kill, disk, fuzz, token, watchdog …, with a table
+	@$(BIN)/python tools/gate.py
+
 coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which test runs which line
 	@failed=0; \
 	$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(QUICK)" --cov --cov-context=test --cov-report= \
 	  || failed=1; \
 	$(BIN)/coverage report --skip-covered --sort=-cover; \
 	exit $$failed
+
+costs: $(VENV)/test.stamp  ## processor time of the tests by folder and file, into the documentation
+	@$(PYTEST) -n $(WORKERS) -p tests.costs --costs docs/development/test-costs.md \
+	  -m "not campaign and not realtime and not nightly"
 
 # What neither `make test` nor `make slow` runs, and the properties again, with other examples.
 nightly: export SQUEEZEFILM_EXPLORE = 1
