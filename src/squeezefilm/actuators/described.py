@@ -53,9 +53,17 @@ def load_actuator(name_or_path: str | Path) -> Result:
     """
     path = presets.resolve_actuator(name_or_path)
     text = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
-    module, name = KINDS[actuator_kind(text, path)]
+    return load_text(actuator_class(text, path), text, file=path)
+
+
+def actuator_class(text: str, file: str | Path | None = None) -> type[Result]:
+    """The dataclass that the TOML text of an actuator is read into.
+
+    Raises `ConfigError` as `actuator_kind` does.
+    """
+    module, name = KINDS[actuator_kind(text, file)]
     described: type[Result] = getattr(importlib.import_module(module), name)
-    return load_text(described, text, file=path)
+    return described
 
 
 def actuator_kind(text: str, file: str | Path | None = None) -> str:

@@ -6,7 +6,7 @@ import dataclasses
 import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
 import numpy as np
 
@@ -303,6 +303,7 @@ def analyze(
     """
     if budget is not None:
         si.require("budget", budget, si.Unit("s"), above=0)
+    si.require_one_of("sensitivities", sensitivities, get_args(Effort))
     tell = progress or (lambda _: None)
     deadline = Pace(budget).deadline()
     tell("resonance, amplitude and friction")

@@ -38,7 +38,7 @@ from squeezefilm.errors import InputError
 
 @app.command()
 def presets(as_json: AsJson = False) -> None:
-    """List the displays that come with the package."""
+    """List the displays, motors and skin-stretch arrays that come with the package."""
     from squeezefilm.report.kit.described import preset_list, show_presets
 
     answer(as_json, preset_list(), show_presets)
@@ -46,7 +46,8 @@ def presets(as_json: AsJson = False) -> None:
 
 @app.command()
 def show(target: Target, as_json: AsJson = False) -> None:
-    """Show every value of a display, with its source, what is assumed and what has no source."""
+    """Show every value of a display, motor or skin-stretch array, with its source, what is assumed
+    and what has no source."""
     from squeezefilm.report.kit.described import display_values, show_values
 
     answer(as_json, display_values(target), show_values)
@@ -80,7 +81,7 @@ def new(
 
     if source is None:
         raise InputError(
-            f"a new file starts from a preset; say which: squeezefilm new {file} --from "
+            f"a new file starts from a display's preset; say which: squeezefilm new {file} --from "
             f"biet2008-plate. There are {', '.join(display_names())}"
         )
     new_display_file(file, source, replace=force)
@@ -118,12 +119,13 @@ class AnalyzeOptions(PointOptions):
         None
     )
     sensitivities: Annotated[
-        str,
+        str | None,
         typer.Option(
-            help="How a plate with one thing different is computed: quick (a beam, a second for "
-            "all values) or solved (in three dimensions, two solves for each value)."
+            help="Print what each value does, and say how a plate with one thing different is "
+            "computed: quick (a beam, a second for all values; also what --all and the report "
+            "have) or solved (in three dimensions, two solves for each value)."
         ),
-    ] = "quick"
+    ] = None
     theory: Annotated[
         str | None,
         typer.Option(
@@ -167,10 +169,16 @@ def analyze(asked: AnalyzeOptions) -> None:
         with loading():
             from squeezefilm.analysis.analyze import analyze as run
             from squeezefilm.report.display.terminal import SHOWN, SHOWN_WITH_ALL, show_analysis
-        result = run(display, **given(asked, leave="target out as_json whole"), progress=step)
+        options = given(asked, leave="target out as_json whole")
+        with_shifts = asked.sensitivities is not None
+        options["sensitivities"] = asked.sensitivities or "quick"
+        result = run(display, **options, progress=step)
         written = None
         if asked.out is None and not asked.as_json:
-            result.compute(result.begin(SHOWN_WITH_ALL if asked.whole else SHOWN), step)
+            shown = SHOWN_WITH_ALL if asked.whole else SHOWN
+            if with_shifts and "sensitivities" not in shown:
+                shown = (*shown, "sensitivities")
+            result.compute(result.begin(shown), step)
         if asked.out is not None:
             with loading():
                 from squeezefilm.report.display.page import write_analysis
@@ -178,7 +186,7 @@ def analyze(asked: AnalyzeOptions) -> None:
                 _prepare()
                 _prepare_figures()
             written = write_analysis(result, asked.out, progress=step)
-    show = partial(show_analysis, whole=asked.whole)
+    show = partial(show_analysis, whole=asked.whole, sensitivities=with_shifts)
     answer(asked.as_json, result, show, report=written)
     if written is None and not asked.as_json:
         typer.echo("add --out DIR to write result.json and a report with figures")

@@ -65,10 +65,7 @@ def _names(folder: Path) -> tuple[str, ...]:
 def path(name: str) -> Path:
     """The TOML file of a preset display. Raises `ConfigError` for a name that is not known."""
     if name not in display_names():
-        raise ConfigError(
-            f"there is no preset '{name}'.{si.did_you_mean(name, display_names())} "
-            f"Presets: {', '.join(display_names())}"
-        )
+        raise _unknown(f"there is no preset '{name}'", name, "preset", display_names())
     return _FOLDER / f"{name}.toml"
 
 
@@ -118,18 +115,31 @@ def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folde
     looks_like_name = candidate.name == text and candidate.suffix != ".toml"
     if looks_like_name and text in known:
         return folder / f"{text}.toml"
-    if looks_like_name and kind == "preset" and text in actuator_names():
-        raise ConfigError(
-            f"'{text}' is a preset of an actuator, and a display is wanted here; squeezefilm "
-            f"analyze takes it. Displays: {', '.join(known)}"
-        )
     if looks_like_name and not _exists(candidate):
-        kinds = "Studies" if kind == "study" else f"{kind.capitalize()}s"
-        raise ConfigError(
-            f"'{text[:100]}' is neither a file nor a {kind}.{si.did_you_mean(text, known)} "
-            f"{kinds}: {', '.join(known)}"
-        )
+        raise _unknown(f"'{text[:100]}' is neither a file nor a {kind}", text, kind, known)
     return candidate
+
+
+def _unknown(says: str, name: str, kind: str, known: tuple[str, ...]) -> ConfigError:
+    """The error for a name that is not a preset of a kind: `says` what was asked, and then what
+    there is. Where a display is wanted, motors and skin-stretch arrays are listed as well."""
+    plural = {"study": "studies", "set of requirements": "sets of requirements"}
+    listed = f"{plural.get(kind, f'{kind}s').capitalize()}: {', '.join(known)}"
+    if kind == "preset":
+        if name in actuator_names():
+            says = f"'{name}' is a motor or a skin-stretch array, and a display is wanted here"
+        others = ", ".join(actuator_names())
+        listed = (
+            f"Displays: {', '.join(known)}. Motors and skin-stretch arrays, for squeezefilm "
+            f"analyze and squeezefilm show only: {others}"
+        )
+    near = "" if name in actuator_names() else si.did_you_mean(name, (*known, *_others(kind)))
+    return ConfigError(f"{says}.{near} {listed}")
+
+
+def _others(kind: str) -> tuple[str, ...]:
+    """Presets of other kinds that are worth suggesting for a misspelt name of a kind."""
+    return actuator_names() if kind == "preset" else ()
 
 
 def _exists(path: Path) -> bool:

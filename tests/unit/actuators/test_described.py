@@ -65,5 +65,5 @@ def test_a_file_without_an_actuator_is_refused() -> None:
 
 
 def test_an_actuator_where_a_display_is_wanted_is_said_to_be_one() -> None:
-    with pytest.raises(ConfigError, match="is a preset of an actuator, and a display is wanted"):
+    with pytest.raises(ConfigError, match="is a motor or a skin-stretch array, and a display is"):
         presets.resolve("biet2008-motor")

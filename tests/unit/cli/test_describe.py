@@ -19,7 +19,7 @@ from squeezefilm.cli import main
 from squeezefilm.cli.app import app
 from squeezefilm.cli.describe import analyze, materials, new, presets, show
 from squeezefilm.display import load_display
-from squeezefilm.presets import display_names
+from squeezefilm.presets import actuator_names, display_names
 
 DISPLAY = "biet2008-plate"
 StandsIn = Callable[..., Any]
@@ -58,15 +58,15 @@ def test_the_package_can_be_run_by_its_name() -> None:
     assert __main__.main is main
     command = [sys.executable, "-m", "squeezefilm", "presets", "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert [one["name"] for one in json.loads(done.stdout)] == list(display_names())
+    assert [one["name"] for one in json.loads(done.stdout)] == [*display_names(), *actuator_names()]
 
 
 def test_presets_are_listed() -> None:
     listing = json.loads(run("presets", "--json").stdout)
-    assert [one["name"] for one in listing] == list(display_names())
+    assert [one["name"] for one in listing] == [*display_names(), *actuator_names()]
     said = run("presets").stdout
     assert not said.startswith("[")
-    assert all(name in said for name in display_names())
+    assert all(name in said for name in (*display_names(), *actuator_names()))
     assert "what it is" in said
 
 
@@ -126,7 +126,7 @@ def test_an_analysis_is_the_displays_own_unless_asked(analysis: SimpleNamespace)
         "speed": None, "budget": None, "place": None,
     }  # fmt: skip
     assert analysis.shown.given == (ANSWER,)
-    assert analysis.shown.named == {"whole": False}
+    assert analysis.shown.named == {"whole": False, "sensitivities": False}
     assert done.stdout == "add --out DIR to write result.json and a report with figures\n"
     expected, *steps = done.stderr.splitlines()
     assert expected.startswith("expected about ")
@@ -150,7 +150,7 @@ def test_every_option_of_an_analysis_arrives(analysis: SimpleNamespace, tmp_path
         "place": None,
     }  # fmt: skip
     assert analysis.written.given == (ANSWER, tmp_path)
-    assert analysis.shown.named == {"whole": True}
+    assert analysis.shown.named == {"whole": True, "sensitivities": True}
     assert done.stdout == f"report: {tmp_path / 'report.html'}\n"
     done = run("analyze", DISPLAY, "--json")
     assert json.loads(done.stdout) == {"found": 1}

@@ -42,9 +42,9 @@ SHOWN_WITH_ALL = ("film_models", "ears", "sensitivities", "other_models", "textu
 _SHORT = 210
 
 
-def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
-    """Print an analysis: verdict, warnings and key numbers; `whole`: all warnings in full, and
-    then what other models say."""
+def show_analysis(analysis: Analysis, *, whole: bool = False, sensitivities: bool = False) -> None:
+    """Print an analysis: verdict, warnings and key numbers; with `sensitivities` what each value
+    does; `whole`: all warnings in full, that table, and then what other models say."""
     display, console = analysis.display, plain_console()
     heading(console, f"{display.title} [{display.name}]")
     _findings(console, analysis.findings)
@@ -60,8 +60,12 @@ def show_analysis(analysis: Analysis, *, whole: bool = False) -> None:
     _show_wanted(console, analysis.wanted)
     if whole:
         _show_certainty(console, analysis)
+        _show_sensitivities(console, analysis)
+        _show_electronics(console, analysis)
         _show_models(console, analysis)
         return
+    if sensitivities:
+        _show_sensitivities(console, analysis)
     more = "intervals, what each value does, amplifiers, other models, textures and thermal details"
     if cut != warned:
         more = f"the warnings in full, {more}"
@@ -98,20 +102,30 @@ def _show_wanted(console: Console, wanted: Wanted | None) -> None:
 
 
 def _show_certainty(console: Console, analysis: Analysis) -> None:
-    """The intervals of what one decides from, what each value does, and the amplifier."""
+    """Print the intervals of what one decides from."""
     if rows := interval_rows(analysis.uncertainty) + felt_rows(analysis.felt):
         heading(console, "How sure it is")
         table(console, ("", "", ""), rows, fixed=(0,))
-    found = analysis.sensitivities
-    if found is not None:
-        heading(console, "What each value does, from the 5 % to the 95 % end of its range")
-        head = ("value", "from, to", "frequency", "amplitude", "µ′/µ", "range")
-        table(console, head, sensitivity_rows(found), fixed=(0,))
-        console.print(
-            f"µ′/µ is {found.relative_friction:.2f} as described. Plates with one thing different "
-            f"by {found.plate_model}; the drive follows the resonance. --json has all "
-            f"{len(found.rows)} values."
-        )
+
+
+def _show_sensitivities(console: Console, analysis: Analysis) -> None:
+    """Print what each value does to frequency, amplitude and friction."""
+    shifts = analysis.sensitivities
+    heading(console, "What each value does, from the 5 % to the 95 % end of its range")
+    if shifts is None:
+        console.print("Nothing vibrates here, so that no value changes anything.")
+        return
+    head = ("value", "from, to", "frequency", "amplitude", "µ′/µ", "range")
+    table(console, head, sensitivity_rows(shifts), fixed=(0,))
+    console.print(
+        f"µ′/µ is {shifts.relative_friction:.2f} as described. Plates with one thing different "
+        f"by {shifts.plate_model}; the drive follows the resonance. --json has all "
+        f"{len(shifts.rows)} values."
+    )
+
+
+def _show_electronics(console: Console, analysis: Analysis) -> None:
+    """Print which amplifiers can drive the display."""
     if analysis.prediction.voltage is not None:
         heading(console, "Drive electronics")
         table(console, ("", "", ""), electronics_rows(analysis.drive_electronics), fixed=(0,))

@@ -13,54 +13,76 @@ _MARKS = {"assumed": "* ", "unstated": "? "}
 _STYLES = {"*": "yellow", "?": "red"}
 
 
+DISPLAY_VERBS = "every verb for displays"
+ACTUATOR_VERBS = "analyze and show"
+
+
 def preset_list() -> list[dict[str, Any]]:
-    """The displays that come with the package: name, title, kind of actuator, values assumed."""
+    """The displays, motors and skin-stretch arrays that come with the package: name, title, type,
+    which verbs take it, how many values have a source and how many of these are assumed."""
     from squeezefilm import presets
+    from squeezefilm.actuators.described import KINDS, load_actuator
     from squeezefilm.display import load_display
 
     listing = []
     for name in presets.display_names():
         display = load_display(name)
-        evidence = [item.evidence for item in display.provenance.values()]
-        listing.append(
-            {
-                "name": display.name,
-                "title": display.title,
-                "type": display.actuator.type,
-                "values_with_source": len(evidence),
-                "values_assumed": evidence.count("assumed"),
-            }
-        )
+        listing.append(_preset(display, display.actuator.type, DISPLAY_VERBS))
+    for name in presets.actuator_names():
+        actuator = load_actuator(name)
+        kind = next(kind for kind in KINDS if hasattr(actuator, kind))
+        listing.append(_preset(actuator, kind, ACTUATOR_VERBS))
     return listing
+
+
+def _preset(described: Any, kind: str, verbs: str) -> dict[str, Any]:
+    """One entry of the list of presets."""
+    evidence = [item.evidence for item in described.provenance.values()]
+    return {
+        "name": described.name,
+        "title": described.title,
+        "type": kind,
+        "taken_by": verbs,
+        "values_with_source": len(evidence),
+        "values_assumed": evidence.count("assumed"),
+    }
 
 
 def show_presets(listing: Sequence[dict[str, Any]]) -> None:
     """Print the list of presets."""
     console = plain_console()
     rows = [
-        (one["name"], one["title"], f"{one['values_assumed']} of {one['values_with_source']}")
-        for one in listing
+        (
+            preset["name"],
+            preset["title"],
+            preset["taken_by"],
+            f"{preset['values_assumed']} of {preset['values_with_source']}",
+        )
+        for preset in listing
     ]
-    table(console, ("preset", "what it is", "assumed"), rows, fixed=(0, 2))
+    table(console, ("preset", "what it is", "taken by", "assumed"), rows, fixed=(0, 3))
     console.print("squeezefilm show NAME lists the values; squeezefilm analyze NAME works them out")
 
 
 def display_values(target: str) -> list[dict[str, Any]]:
-    """Every value that a display's file states, or takes from the library of materials: path, text
-    as written, source and evidence.
+    """Every value that the file of a display or an actuator states, or takes from the library of
+    materials: path, text as written, source and evidence.
 
     Members of lists are counted from 1. `source` and `evidence` are None where nothing is
     said; the evidence of a number without a source is "unstated". Raises `ConfigError` for a file
     that is not right.
     """
     from squeezefilm import presets
+    from squeezefilm.actuators.described import actuator_class, is_actuator
     from squeezefilm.config.written import written_values
     from squeezefilm.display import Display
     from squeezefilm.hard_limits import DESCRIPTION_BYTES
     from squeezefilm.regular_file import read_regular_text
 
-    file = presets.resolve(target)
+    other = is_actuator(target)
+    file = presets.resolve_actuator(target) if other else presets.resolve(target)
     text = read_regular_text(file, DESCRIPTION_BYTES, "a TOML file")
+    described = actuator_class(text, file) if other else Display
     return [
         {
             "path": dotted(one.path),
@@ -68,7 +90,7 @@ def display_values(target: str) -> list[dict[str, Any]]:
             "source": (one.provenance and one.provenance.source) or None,
             "evidence": None if one.provenance is None else one.provenance.evidence,
         }
-        for one in written_values(Display, text, file=file)
+        for one in written_values(described, text, file=file)
     ]
 
 

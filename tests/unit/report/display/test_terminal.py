@@ -8,6 +8,7 @@ from typing import Any
 from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.report.display import terminal
 from squeezefilm.report.display.rows import decision_rows, unsaid_warnings
+from squeezefilm.report.kit.decisions import sensitivity_rows
 from squeezefilm.report.kit.numbers import printable
 
 LINES = 66
@@ -46,6 +47,18 @@ def test_all_of_it_is_printed_where_it_is_asked_for(
                  "paper2008", "film-open", "Squeeze number", "Thermal resistance"):  # fmt: skip
         assert part in words
     assert words.count("carries the finger at a mean gap") == 1
+
+
+def test_what_each_value_does_is_printed_where_only_that_is_asked_for(
+    plate_analysis: Analysis, printed: Callable[[], str]
+) -> None:
+    terminal.show_analysis(plate_analysis, sensitivities=True)
+    words = " ".join(printed().split())
+    table = words[words.index("What each value does") :]
+    assert plate_analysis.sensitivities is not None
+    for row in sensitivity_rows(plate_analysis.sensitivities):
+        assert row[0] in table
+    assert "timoshenko_beam_plane_strain" not in words[: words.index("What each value does")]
 
 
 def test_a_long_warning_is_cut_between_statements() -> None:

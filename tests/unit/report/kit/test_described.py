@@ -7,9 +7,10 @@ from typing import Any
 
 import pytest
 
+from squeezefilm import presets
 from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.presets import materials
+from squeezefilm.presets import actuator_names, display_names, materials
 from squeezefilm.report.kit import described
 from squeezefilm.report.kit.numbers import display_values
 
@@ -19,10 +20,36 @@ def test_presets_are_listed_with_what_is_assumed(printed: Callable[[], str]) -> 
     by_name = {item["name"]: item for item in listing}
     assert {"biet2008-plate", "biet2008-stator", "touchpad-glass"} <= set(by_name)
     assert by_name["biet2008-plate"]["values_assumed"] == 15
+    assert {one["name"] for one in listing} == {*display_names(), *actuator_names()}
+    assert by_name["biet2008-motor"]["taken_by"] != by_name["biet2008-plate"]["taken_by"]
     described.show_presets(listing)
     text = printed()
-    assert "biet2008-stator" in text
+    for name in by_name:
+        assert name in text
     assert "15 of 67" in text
+
+
+@pytest.mark.parametrize("resolve", [presets.resolve, presets.path])
+def test_an_unknown_name_is_answered_with_all_that_there_is(
+    resolve: Callable[[str], object],
+) -> None:
+    with pytest.raises(ConfigError) as caught:
+        resolve("biet2008-moter")
+    said = str(caught.value)
+    assert "Did you mean 'biet2008-motor'?" in said
+    for name in (*display_names(), *actuator_names()):
+        assert name in said
+
+
+@pytest.mark.parametrize("name", actuator_names())
+def test_the_values_of_an_actuator_are_shown_as_written(name: str) -> None:
+    values = described.display_values(name)
+    assert values[0] == {"path": "name", "text": name, "source": None, "evidence": None}
+    sourced = [one["evidence"] for one in values if one["evidence"] is not None]
+    (entry,) = (one for one in described.preset_list() if one["name"] == name)
+    assert (sourced.count("assumed"), len(sourced)) == (
+        entry["values_assumed"], entry["values_with_source"]
+    )  # fmt: skip
 
 
 def test_values_are_shown_as_written(
