@@ -39,7 +39,7 @@ def to_json(value: Any) -> Any:
     if kind is str or value is None:
         return value
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        hints = typing.get_type_hints(type(value), include_extras=True)
+        hints = si.hints_of(type(value))
         out: dict[str, Any] = {}
         for field in dataclasses.fields(value):
             unit = si.unit_of(hints[field.name])
@@ -135,7 +135,7 @@ def _unit_of_attribute(owner: type, name: str) -> si.Unit | None:
     function = found.fget if isinstance(found, property) else getattr(found, "func", None)
     if function is not None:
         return si.unit_of(typing.get_type_hints(function, include_extras=True).get("return"))
-    return si.unit_of(typing.get_type_hints(owner, include_extras=True).get(name))
+    return si.unit_of(si.hints_of(owner).get(name))
 
 
 def _in_words(value: Any, unit: si.Unit | None) -> str:

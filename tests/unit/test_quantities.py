@@ -101,6 +101,16 @@ def test_require_names_quantity_value_and_bound() -> None:
         require("gap", [1e-6, float("nan")], M)
 
 
+def test_a_share_in_percent_is_refused_with_what_to_write() -> None:
+    with pytest.raises(InputError, match='if 80 % is meant, write "80 %" or 0.8$'):
+        require("least_yield", 80, above=0, at_most=1)
+    for value, most in ((150, 1), (0.7, 0.5), (-2, 1), (2, 9)):
+        try:
+            require("share", value, above=0, at_most=most)
+        except InputError as error:
+            assert "%" not in str(error)
+
+
 def test_validity_refuses_or_warns() -> None:
     with pytest.raises(OutOfRangeError, match="strict=False"):
         require_valid("squeeze number", 3.0, 10, 1e6, "the asymptote holds")

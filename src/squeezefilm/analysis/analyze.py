@@ -56,6 +56,7 @@ from squeezefilm.analysis.verdict import (
 from squeezefilm.chain.friction_models import FrictionModel
 from squeezefilm.chain.pad_place import FacePlace
 from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.chain.wanted_voltage import WantedFriction
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.from_text import reads_text
 from squeezefilm.plate.electronics import ElectricalLoad, load_of_mode
@@ -273,6 +274,7 @@ class Analysis(Result):
 
 
 @reads_text
+@si.checked_numbers
 def analyze(
     display: NamedDisplay,
     *,
@@ -287,7 +289,7 @@ def analyze(
     place: FacePlace | None = None,
     strict: bool = False,
     samples: int = SAMPLES,
-    wanted_friction: si.Dimensionless | None = None,
+    wanted_friction: WantedFriction | None = None,
     sensitivities: Effort = "quick",
     progress: SayProgress | None = None,
     budget: si.Second | None = None,

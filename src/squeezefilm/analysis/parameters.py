@@ -202,7 +202,7 @@ def value_at(whole: Any, path: str) -> tuple[float, si.Unit]:
     Raises `InputError` for a path that leads to no number.
     """
     owner, name = _place(whole, path)
-    hints = typing.get_type_hints(type(owner), include_extras=True)
+    hints = si.hints_of(type(owner))
     return float(getattr(owner, name)), si.unit_of(hints[name]) or si.Unit("1")
 
 
@@ -213,7 +213,7 @@ def unit_at(whole: Any, path: str) -> tuple[si.Unit, bool]:
     Raises `InputError` for a path that leads to no number.
     """
     owner, name = _place(whole, path)
-    hint = typing.get_type_hints(type(owner), include_extras=True)[name]
+    hint = si.hints_of(type(owner))[name]
     return si.unit_of(hint) or si.Unit("1"), isinstance(getattr(owner, name), int)
 
 
@@ -276,7 +276,7 @@ def with_values(whole: _Whole, values: Mapping[str, float | str]) -> _Whole:
         owner, name = _place(whole, path)
         value = given
         if isinstance(given, str):
-            hints = typing.get_type_hints(type(owner), include_extras=True)
+            hints = si.hints_of(type(owner))
             value = si.parse_quantity(given, si.unit_of(hints[name]) or si.Unit("1"))
         node = tree
         *heads, last = path.split(".")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from squeezefilm import quantities as si
 from squeezefilm.chain.area_map import at_best_place
 from squeezefilm.chain.chosen_mode import chosen_mode
@@ -20,11 +22,15 @@ from squeezefilm.plausibility.checks import require_plausible
 _MOST_PLACES = 4
 
 
+WantedFriction = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
+"""A µ′/µ that is asked for."""
+
+
 @reads_text
 @si.checked_numbers
 def voltage_for_friction(
     display: NamedDisplay,
-    relative_friction: si.Dimensionless,
+    relative_friction: WantedFriction,
     *,
     frequency: si.Hertz | None = None,
     normal_force: si.Newton | None = None,

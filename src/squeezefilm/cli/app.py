@@ -193,6 +193,10 @@ def working(quiet: bool) -> AbstractContextManager[SayProgress]:
     return terminal.progress(enabled=sys.stderr.isatty() or not quiet)
 
 
+@typing.overload
+def read_option(text: str, name: str, unit: str) -> float: ...
+@typing.overload
+def read_option(text: str | None, name: str, unit: str) -> float | None: ...
 def read_option(text: str | None, name: str, unit: str) -> float | None:
     """The SI value of one option's text, None where it was not given.
 

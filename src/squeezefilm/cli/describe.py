@@ -105,8 +105,11 @@ class PointOptions:
         int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
     ] = 32
     wanted_friction: Annotated[
-        float | None,
-        typer.Option("--wanted", help="A relative friction: which voltage reaches it?"),
+        str | None,
+        In("1"),
+        typer.Option(
+            "--wanted", help='A relative friction, like 0.5 or "50 %": which voltage reaches it?'
+        ),
     ] = None
     as_json: AsJson = False
 
@@ -254,23 +257,29 @@ class FilmOptions:
     """What `film` is asked for."""
 
     squeeze_number: Annotated[
-        float | None, typer.Option("--squeeze-number", help="σ on width, radius or X semi-axis.")
+        str | None,
+        In("1"),
+        typer.Option("--squeeze-number", help="σ on width, radius or X semi-axis."),
     ] = None
     excursion: Annotated[
-        float | None, typer.Option("--excursion", help="ε, amplitude over mean gap, below 1.")
+        str | None,
+        In("1"),
+        typer.Option("--excursion", help="ε, amplitude over mean gap, below 1."),
     ] = None
     shape: Annotated[str, typer.Option(help="strip, disc, rectangle or ellipse.")] = "strip"
     aspect_ratio: Annotated[
-        float, typer.Option("--aspect", help="Length ratio of rectangle or ellipse.")
-    ] = 1.0
+        str, In("1"), typer.Option("--aspect", help="Length ratio of rectangle or ellipse.")
+    ] = "1"
     polytropic_exponent: Annotated[
-        float, typer.Option("--polytropic", help="1 isothermal to 1.4 adiabatic.")
-    ] = 1.0
+        str, In("1"), typer.Option("--polytropic", help="1 isothermal to 1.4 adiabatic.")
+    ] = "1"
     knudsen_number: Annotated[
-        float, typer.Option("--knudsen", help="Mean free path over mean gap.")
-    ] = 0.0
+        str, In("1"), typer.Option("--knudsen", help="Mean free path over mean gap.")
+    ] = "0"
     slip: Annotated[str, typer.Option(help="first, second, fukui-kaneko or veijola.")] = "first"
-    tolerance: Annotated[float, typer.Option(help="Relative, on the over-pressure.")] = 1e-3
+    tolerance: Annotated[
+        str, In("1"), typer.Option(help='Relative, on the over-pressure, like "0.1 %".')
+    ] = "0.001"
     sweep: Annotated[
         bool, typer.Option("--sweep", help="Draw the map over squeeze number and excursion.")
     ] = False
@@ -285,7 +294,8 @@ def film(asked: FilmOptions) -> None:
     from squeezefilm.analysis.film.command import FilmRequest, solve_film, sweep_film
     from squeezefilm.report.plate.terminal import show_film
 
-    of_film = given(asked, leave="squeeze_number excursion sweep out as_json")
+    of_film = given(asked, leave="sweep out as_json")
+    squeeze_number, excursion = of_film.pop("squeeze_number"), of_film.pop("excursion")
     with working(asked.as_json) as step:
         if asked.sweep:
             from squeezefilm.report.film_map import write_film_map
@@ -295,12 +305,12 @@ def film(asked: FilmOptions) -> None:
             found = sweep_film(FilmRequest(**of_film), progress=step)
             path = write_film_map(found, asked.out)
         else:
-            if asked.squeeze_number is None or asked.excursion is None:
+            if squeeze_number is None or excursion is None:
                 raise InputError(
                     "film needs --squeeze-number and --excursion, or --sweep --out DIR for a map"
                 )
             step("solving the film")
-            solved = solve_film(asked.squeeze_number, asked.excursion, **of_film)
+            solved = solve_film(squeeze_number, excursion, **of_film)
     if asked.sweep:
         answer(asked.as_json, found, lambda _: None, map=path)
     else:

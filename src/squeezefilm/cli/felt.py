@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from squeezefilm.arguments import called_with
-from squeezefilm.cli.app import AsJson, print_json, read_option, working, written_to
+from squeezefilm.cli.app import AsJson, In, print_json, read_option, working, written_to
 from squeezefilm.cli.study import Observer, study
 
 
@@ -39,6 +39,7 @@ class FeltOptions:
     ] = None
     force: Annotated[
         str | None,
+        In("N"),
         typer.Option(help="With --path: the normal force, like 0.5 N; assumed without it."),
     ] = None
     observer: Observer = "fingertip"

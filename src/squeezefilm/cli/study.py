@@ -8,7 +8,18 @@ from typing import Annotated
 import typer
 
 from squeezefilm.arguments import called_with
-from squeezefilm.cli.app import AsJson, Pickup, answer, app, given, print_json, working, written_to
+from squeezefilm.cli.app import (
+    AsJson,
+    In,
+    Pickup,
+    answer,
+    app,
+    given,
+    print_json,
+    read_option,
+    working,
+    written_to,
+)
 
 
 @app.command()
@@ -152,6 +163,7 @@ class PowerOptions:
     second: Annotated[str | None, typer.Argument(help="The one to be told from it.")] = None
     precision: Annotated[
         str | None,
+        In("1"),
         typer.Option(
             help="In place of two stimuli: half the 95 % interval that is wanted, like 20% (of a "
             "Weber fraction) or 0.05 (of an exponent or a proportion correct)."
@@ -165,7 +177,9 @@ class PowerOptions:
         ),
     ] = None
     display: Display = None
-    target: Annotated[float, typer.Option(help="Power asked for.")] = 0.8
+    target: Annotated[str, In("1"), typer.Option(help='Power asked for, like 0.8 or "80 %".')] = (
+        "0.8"
+    )
     studies: Annotated[int, typer.Option(help="Simulated per number of people.")] = 400
     observer: Observer = "fingertip"
     seed: Annotated[int, typer.Option(help="Of people, answers and studies.")] = 0
@@ -178,7 +192,6 @@ class PowerOptions:
 def power(asked: PowerOptions) -> None:
     """How many people are needed to tell two stimuli or two displays apart, or to know a threshold,
     exponent or share of right answers as precisely as asked; by simulated participants."""
-    from squeezefilm import quantities as si
     from squeezefilm.errors import InputError
     from squeezefilm.perception.observer import load_observer
     from squeezefilm.report.kit.style import png
@@ -191,14 +204,14 @@ def power(asked: PowerOptions) -> None:
     from squeezefilm.study.simulated.planned_precision import planned_precision
 
     design, people = load_design(asked.design), load_observer(asked.observer)
-    options = given(asked, leave="design observer first second precision against out as_json")
+    options = given(asked, leave="design observer first second against out as_json")
+    wanted = options.pop("precision")
     with working(asked.as_json) as step:
-        if asked.precision is not None:
+        if wanted is not None:
             if asked.against is not None:
                 raise InputError("--precision and --against ask two things; give one of them")
             if asked.first is not None:
                 raise InputError("--precision asks of the whole design; leave the stimuli out")
-            wanted = si.parse_quantity(asked.precision, si.Unit("1"))
             precise = planned_precision(design, people, wanted, **options, progress=step)
         elif asked.against is not None:
             if asked.first is not None:
@@ -215,7 +228,7 @@ def power(asked: PowerOptions) -> None:
             found = planned_power(
                 design, people, asked.first, asked.second, **options, progress=step
             )
-    result, show = (found, show_power) if asked.precision is None else (precise, show_precision)
+    result, show = (found, show_power) if wanted is None else (precise, show_precision)
     if asked.out is not None:
         write_whole(asked.out, png(plot(result)))
     answer(asked.as_json, result, show)
@@ -226,19 +239,18 @@ def gratings(
     design: Design,
     out: Annotated[Path, written_to("Folder for drawings and numbers.")],
     tolerance: Annotated[
-        str, typer.Option(help="Of ridge and groove widths; the default is assumed.")
+        str, In("m"), typer.Option(help="Of ridge and groove widths; the default is assumed.")
     ] = "20 um",
 ) -> None:
     """Write what a workshop needs to make the real gratings that a study compares with: drawing,
     DXF, widths with tolerances, and what the design calls period."""
-    from squeezefilm import quantities as si
     from squeezefilm.report.study.boards import HEAD, board_rows, write_boards
     from squeezefilm.report.study.terminal import show_boards
     from squeezefilm.study.design.boards import boards
     from squeezefilm.study.design.study_design import load_design
 
     found = load_design(design)
-    within = si.parse_quantity(tolerance, si.Unit("m"))
+    within = read_option(tolerance, "tolerance", "m")
     page = write_boards(found, out, within)
     made = boards(found)
     show_boards(HEAD, board_rows(made, within), [one.says for one in made])

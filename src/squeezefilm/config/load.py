@@ -72,8 +72,8 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         raise ConfigError("is nested too deeply to be read; nest less", file=file) from error
     if (depth := _depth(raw)) > DEEPEST:
         raise ConfigError(f"is nested {depth} deep; at most {DEEPEST} are read", file=file)
-    if not raw:
-        fields = [field for field in dataclasses.fields(cls) if reads_from_file(field)]  # type: ignore[arg-type]
+    fields = [field for field in dataclasses.fields(cls) if reads_from_file(field)]  # type: ignore[arg-type]
+    if not raw and _needed(fields):
         raise ConfigError(f"is empty; {_keys_of(cls, fields)}", file=file)
     source = _Source(text, file)
     references: References | None = getattr(cls, "references", None)
@@ -125,7 +125,7 @@ def _distribution(built: Any, key: str, spread: Spread, source: _Source) -> Dist
     for part in parts[:-1]:
         owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
     try:
-        unit = si.unit_of(typing.get_type_hints(type(owner), include_extras=True)[parts[-1]])
+        unit = si.unit_of(si.hints_of(type(owner))[parts[-1]])
         if unit is None:
             raise InputError("this is no quantity and has no uncertainty; leave it out")
         return distribution_of(getattr(owner, parts[-1]), unit, spread)
@@ -135,7 +135,7 @@ def _distribution(built: Any, key: str, spread: Spread, source: _Source) -> Dist
 
 
 def _build(cls: type[Any], model: BaseModel, path: _Path, source: _Source) -> Any:
-    hints = typing.get_type_hints(cls, include_extras=True)
+    hints = si.hints_of(cls)
     values: dict[str, Any] = {}
     for name in type(model).model_fields:
         values[name] = _built_value(hints[name], getattr(model, name), (*path, name), source)
@@ -211,7 +211,7 @@ def _path_and_owner(cls: type[Any], location: Sequence[str | int]) -> tuple[_Pat
             hint = options[0]
         if dataclasses.is_dataclass(hint):
             owner = typing.cast("type[Any]", hint)
-            hints = typing.get_type_hints(owner, include_extras=True)
+            hints = si.hints_of(owner)
             hint = hints.get(str(part), Any)
     return tuple(path), owner
 
@@ -222,14 +222,17 @@ def _tag(cls: Any) -> Any:
 
 def _keys_of(owner: type[Any], fields: list[dataclasses.Field[Any]]) -> str:
     """The keys that an owner needs, and those that may be left out."""
-    missing = dataclasses.MISSING
-    needed = [
-        one.name for one in fields if one.default is missing and one.default_factory is missing
-    ]
-    optional = [one.name for one in fields if one.name not in needed]
+    needed = _needed(fields)
+    optional = [field.name for field in fields if field.name not in needed]
     article = "an" if owner.__name__[0] in "AEIO" else "a"
     words = f"{article} {owner.__name__} needs {', '.join(needed)}"
     return f"{words}; it may also have {', '.join(optional)}" if optional else words
+
+
+def _needed(fields: list[dataclasses.Field[Any]]) -> list[str]:
+    """The keys that may not be left out."""
+    missing = dataclasses.MISSING
+    return [field.name for field in fields if field.default is field.default_factory is missing]
 
 
 def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:

@@ -113,7 +113,7 @@ def _reference(cls: type[Any]) -> Any:
 
 
 def _build_model(cls: type[Any]) -> type[BaseModel]:
-    hints = typing.get_type_hints(cls, include_extras=True)
+    hints = si.hints_of(cls)
     fields: dict[str, Any] = {}
     _IN_THE_MAKING.append(cls)
     try:
@@ -151,7 +151,7 @@ class Leaf(NamedTuple):
 def leaves(node: Any, path: tuple[str | int, ...] = ()) -> Iterator[Leaf]:
     """Every value below a dataclass that a file may describe it by, in order; none for one left
     out."""
-    hints = typing.get_type_hints(type(node), include_extras=True)
+    hints = si.hints_of(type(node))
     for field in dataclasses.fields(node):
         if field.metadata.get("loader") or field.metadata.get("found"):
             continue

@@ -61,7 +61,7 @@ def _value(built: Any, path: str) -> tuple[Any, Any]:
         if isinstance(value, tuple):
             value, hint = value[int(part)], None
             continue
-        hint = typing.get_type_hints(type(value), include_extras=True)[part]
+        hint = si.hints_of(type(value))[part]
         value = getattr(value, part)
     return value, hint
 

@@ -101,7 +101,7 @@ def _as_text(value: float, unit: si.Unit) -> str:
 def _written(value: Any, stated: Set[str] = frozenset()) -> Iterator[tuple[str, Any, Any]]:
     """Name, value and annotation of the fields that are written, the `type` first; those with a
     `stated` source even at their default."""
-    hints = typing.get_type_hints(type(value), include_extras=True)
+    hints = si.hints_of(type(value))
     for field in sorted(dataclasses.fields(value), key=lambda one: one.name != "type"):
         item = getattr(value, field.name)
         kept = field.name == "type" or field.name in stated or not _is_default(field, item)

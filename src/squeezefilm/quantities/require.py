@@ -85,9 +85,20 @@ def require(
     wanted = [f"{word.replace('_', ' ')} {format_quantity(given[word], unit)}" for word in given]
     raise InputError(
         f"{name} = {format_quantity(offender, unit)} cannot be used: it must be "
-        + " and ".join(["finite", *wanted]),
+        + " and ".join(["finite", *wanted])
+        + _as_percentage(offender, unit, given),
         quantity=name,
     )
+
+
+def _as_percentage(value: float, unit: Unit, bounds: dict[str, float]) -> str:
+    """What to write where a number of percent probably stands for a share; empty for any other."""
+    most = min((bounds[word] for word in ("below", "at_most") if word in bounds), default=np.inf)
+    share = value / 100
+    held = all(HOLDS[word](share, bound) for word, bound in bounds.items())
+    if unit != _PURE or most > 1 or value <= 1 or not held:
+        return ""
+    return f'; if {value:g} % is meant, write "{value:g} %" or {share:.6g}'
 
 
 def require_one_of(name: str, value: Any, allowed: Iterable[Any]) -> None:

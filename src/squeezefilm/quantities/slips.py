@@ -30,7 +30,7 @@ _SCIENTIFIC = re.compile(
 )
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 
-# Words and foreign units: the unit to write, what one of them is in it, and what is added.
+# Words and foreign units: the unit to write, and what one of them is in it.
 _WORDS: dict[str, tuple[str, str]] = {}
 for _unit, _scale, _names in (
     ("µm", "1", "micron microns micrometer micrometers micrometre micrometres mu mum mym"),
@@ -58,6 +58,11 @@ for _unit, _scale, _names in (
     ("ohm", "1", "ohms"),
     ("kohm", "1", "kOhms kohms k"),
     ("deg", "1", "degree degrees"),
+    ("g", "1", "gram grams gramme grammes gr"),
+    ("kg", "1", "kilogram kilograms kilogramme kilogrammes kilo kilos"),
+    ("dB", "1", "decibel decibels dBSPL dB(SPL)"),
+    ("degC", "1", "C celsius Celsius centigrade"),
+    ("K", "1", "kelvin kelvins Kelvin"),
     ("kg/m3", "1", "kg/cbm kg/m^3."),
     ("kg/m3", "1000", "g/cc g/ccm g/ml"),
 ):  # fmt: skip
@@ -65,11 +70,11 @@ for _unit, _scale, _names in (
         _WORDS[_name] = (_unit, _scale)
 
 
-def _number(text: str, factor: str = "1", add: str = "0") -> str:
+def _number(text: str, factor: str = "1") -> str:
     """A number times a factor, in at most five digits, as a person would write it."""
     with localcontext() as context:
         context.prec = 12
-        value = Decimal(text) * Decimal(factor) + Decimal(add)
+        value = Decimal(text) * Decimal(factor)
         rounded = Decimal(f"{value:.4e}").normalize()
     return f"{rounded:f}" if -5 < rounded.adjusted() < 7 else f"{rounded:e}"
 
@@ -161,10 +166,10 @@ def _of_the_unit(number: str, rest: str, wanted: str, allowed: tuple[str, ...]) 
         own = scale == "1"
         why = "a unit is written as its symbol" if own else f"'{rest}' is not among the units read"
         yield why, (f"{number if own else _number(number, scale)} {unit}",)
-    if wanted == "K" and rest.strip("°").casefold() in ("c", "degc", "celsius"):
-        yield "temperatures are in kelvin", (f"{_number(number, add='273.15')} K",)
-    if wanted == "N" and rest in ("g", "kg"):
-        weight = _number(number, "9.80665" if rest == "kg" else "0.00980665")
+    mass = _WORDS.get(rest, (rest,))[0]
+    if wanted == "N" and mass in ("g", "kg"):
+        # "A touch of 20 grams" is what a scale under the finger shows: the weight of that mass.
+        weight = _number(number, "9.80665" if mass == "kg" else "0.00980665")
         yield "it is a mass, and a force is wanted (here its weight)", (f"{weight} N",)
     same = [unit for unit in allowed if unit.casefold() == rest.replace(" ", "").casefold()]
     if same:

@@ -5,8 +5,7 @@ Inside the package every number is an SI float; its unit stands in its annotatio
 text with its unit: `"2 um"`. This module reads and writes that text with exact decimals, so that
 `"50 um"` is the float 5e-05 and not 4.9999999999999996e-05.
 
-Three families of aliases: `Metre` is a scalar, `MetreArray` an array, and `MetreLike` either,
-for closed forms that broadcast.
+The units' names in annotations (`Metre`, `Newton`) are in `squeezefilm.quantities.vocabulary`.
 """
 
 from __future__ import annotations
@@ -50,6 +49,7 @@ _unit("min", "60", (0, 0, 1, 0, 0, 0), False)
 _unit("h", "3600", (0, 0, 1, 0, 0, 0), False)
 _unit("A", "1", (0, 0, 0, 1, 0, 0))
 _unit("K", "1", (0, 0, 0, 0, 1, 0))
+_unit("degC °C", "1", (0, 0, 0, 0, 1, 0), False)
 _unit("rad", "1", (0, 0, 0, 0, 0, 1))
 _unit("deg °", "0.01745329251994329576923690768488612713", (0, 0, 0, 0, 0, 1), False)
 _unit("Hz", "1", (0, 0, -1, 0, 0, 0))
@@ -73,6 +73,11 @@ _PREFIXES = {
     "p": "1e-12", "n": "1e-9", "u": "1e-6", "µ": "1e-6", "μ": "1e-6", "m": "1e-3",
     "c": "1e-2", "d": "1e-1", "k": "1e3", "M": "1e6", "G": "1e9",
 }  # fmt: skip
+
+# A level is no power product: it is read where one is wanted, and what it is re is said there.
+_LEVEL = "dB"
+_CELSIUS = ("degC", "°C")
+_CELSIUS_ZERO = Decimal("273.15")
 
 # What a keyboard has no key for: "kg/m³" is kg/m3, "Pa·s" is Pa*s.
 _TYPED = str.maketrans("·⋅×²³⁴⁻¹", "***234-1")
@@ -123,9 +128,13 @@ def parse_unit(text: str) -> tuple[Decimal, Dimension]:
 
 @dataclass(frozen=True)
 class Unit:
-    """The SI unit of a number, carried in its annotation: ``Annotated[float, Unit("m")]``."""
+    """The SI unit of a number, carried in its annotation: ``Annotated[float, Unit("m")]``.
+
+    A temperature is `absolute`, "20 degC" is then 293.15 K; of a difference it is 20 K.
+    """
 
     symbol: str
+    absolute: bool = False
 
     @property
     def dimension(self) -> Dimension:
@@ -165,6 +174,10 @@ _EXAMPLES = {
     "ohm": "ohm, kohm, Mohm",
     "S": "S, mS, µS",
     "Pa/m": "Pa/m, MPa/m, N/m3",
+    "K": "K, degC",
+    "kg": "kg, g, mg",
+    "A": "A, mA",
+    "W": "W, mW",
 }
 
 
@@ -239,7 +252,41 @@ def _parsed(text: str, unit: Unit) -> float:
         raise QuantityError(f"'{text}' is too large or too small to be represented") from error
     if not number.is_finite():
         raise QuantityError(f"'{text}' is not a finite number; a quantity must be finite")
-    scale, dimension = _scale(text, match, unit)
+    scale = _scale(text, match, unit)
+    added = _CELSIUS_ZERO if unit.absolute and match["unit"] in _CELSIUS else Decimal(0)
+    try:
+        with localcontext() as context:
+            context.prec = 60
+            value = float(number * scale + added)
+    except DecimalException:
+        value = float("inf")
+    if not np.isfinite(value):
+        raise QuantityError(f"'{text}' is too large to be represented")
+    if unit.absolute and value < 0:
+        raise QuantityError(f"'{text}' is below absolute zero, 0 K or -273.15 degC")
+    return value
+
+
+def _scale(text: str, match: re.Match[str], unit: Unit) -> Decimal:
+    """The scale to SI of the unit that was written, or of none where none is needed.
+
+    Raises `QuantityError` for a unit that is missing, unknown or of another dimension.
+    """
+    symbol = match.group("unit")
+    if symbol is None and unit.symbol != "1":
+        raise QuantityError(
+            f"'{text}' has no unit; write it with one of {allowed_units(unit)}, "
+            f'like "{match.group("number")} {_usual(unit)}"'
+        )
+    if unit.symbol == _LEVEL:
+        if symbol != _LEVEL:
+            raise QuantityError(f"'{text}' is no level in {_LEVEL}, like \"{_example(unit)}\"")
+        return Decimal(1)
+    try:
+        scale, dimension = parse_unit(symbol or "1")
+    except QuantityError as error:
+        where = f"allowed here: {allowed_units(unit)}" if unit.label else "no unit stands here"
+        raise QuantityError(f"'{text}': {error}; {where}") from error
     if dimension != unit.dimension:
         is_, wanted = _dimension_in_words(dimension), _dimension_in_words(unit.dimension)
         raise QuantityError(
@@ -248,32 +295,7 @@ def _parsed(text: str, unit: Unit) -> float:
             + f", and {wanted or f'a quantity in {unit.label}'} is wanted"
             + ("" if unit.symbol == "1" else f", in one of {allowed_units(unit)}")
         )
-    try:
-        with localcontext() as context:
-            context.prec = 60
-            value = float(number * scale)
-    except DecimalException:
-        value = float("inf")
-    if not np.isfinite(value):
-        raise QuantityError(f"'{text}' is too large to be represented")
-    return value
-
-
-def _scale(text: str, match: re.Match[str], unit: Unit) -> tuple[Decimal, Dimension]:
-    """The scale and dimension of the unit that was written, or of none where none is needed."""
-    symbol = match.group("unit")
-    if symbol is None:
-        if unit.symbol != "1":
-            raise QuantityError(
-                f"'{text}' has no unit; write it with one of {allowed_units(unit)}, "
-                f'like "{match.group("number")} {_usual(unit)}"'
-            )
-        symbol = "1"
-    try:
-        return parse_unit(symbol)
-    except QuantityError as error:
-        where = f"allowed here: {allowed_units(unit)}" if unit.label else "no unit stands here"
-        raise QuantityError(f"'{text}': {error}; {where}") from error
+    return scale
 
 
 def _usual(unit: Unit) -> str:
@@ -338,71 +360,7 @@ def unit_of(annotation: Any) -> Unit | None:
     return None
 
 
-# --- the vocabulary -------------------------------------------------------------------------
-
-Dimensionless = Annotated[float, Unit("1")]
-Metre = Annotated[float, Unit("m")]
-SquareMetre = Annotated[float, Unit("m2")]
-CubicMetre = Annotated[float, Unit("m3")]
-Second = Annotated[float, Unit("s")]
-Hertz = Annotated[float, Unit("Hz")]
-PerMetre = Annotated[float, Unit("1/m")]
-Radian = Annotated[float, Unit("rad")]
-MetrePerSecond = Annotated[float, Unit("m/s")]
-Kilogram = Annotated[float, Unit("kg")]
-KilogramLike = Annotated[FloatLike, Unit("kg")]
-Newton = Annotated[float, Unit("N")]
-NewtonMetre = Annotated[float, Unit("N*m")]
-NewtonPerMetre = Annotated[float, Unit("N/m")]
-NewtonPerVolt = Annotated[float, Unit("N/V")]
-NewtonSecondPerMetre = Annotated[float, Unit("N*s/m")]
-Pascal = Annotated[float, Unit("Pa")]
-PascalSecond = Annotated[float, Unit("Pa*s")]
-KilogramPerCubicMetre = Annotated[float, Unit("kg/m3")]
-KilogramPerMetre = Annotated[float, Unit("kg/m")]
-KilogramPerSquareMetre = Annotated[float, Unit("kg/m2")]
-Volt = Annotated[float, Unit("V")]
-VoltPerSecond = Annotated[float, Unit("V/s")]
-SquareVoltSecond = Annotated[float, Unit("V2*s")]
-Ampere = Annotated[float, Unit("A")]
-Joule = Annotated[float, Unit("J")]
-Ohm = Annotated[float, Unit("ohm")]
-Siemens = Annotated[float, Unit("A/V")]
-Henry = Annotated[float, Unit("V*s/A")]
-PascalPerMetre = Annotated[float, Unit("Pa/m")]
-PascalSecondPerMetre = Annotated[float, Unit("Pa*s/m")]
-Farad = Annotated[float, Unit("F")]
-FaradPerMetre = Annotated[float, Unit("F/m")]
-MetrePerVolt = Annotated[float, Unit("m/V")]
-CoulombPerSquareMetre = Annotated[float, Unit("C/m2")]
-SquareMetrePerNewton = Annotated[float, Unit("m2/N")]
-Kelvin = Annotated[float, Unit("K")]
-Watt = Annotated[float, Unit("W")]
-KelvinPerWatt = Annotated[float, Unit("K/W")]
-JoulePerKelvin = Annotated[float, Unit("J/K")]
-JoulePerKilogramKelvin = Annotated[float, Unit("J/kg/K")]
-JoulePerCubicMetreKelvin = Annotated[float, Unit("J/m3/K")]
-PerKelvin = Annotated[float, Unit("1/K")]
-SecondPerMetre = Annotated[float, Unit("s/m")]
-VoltPerMetre = Annotated[float, Unit("V/m")]
-
-DimensionlessArray = Annotated[FloatArray, Unit("1")]
-MetreArray = Annotated[FloatArray, Unit("m")]
-SecondArray = Annotated[FloatArray, Unit("s")]
-HertzArray = Annotated[FloatArray, Unit("Hz")]
-PascalArray = Annotated[FloatArray, Unit("Pa")]
-NewtonArray = Annotated[FloatArray, Unit("N")]
-MetrePerSecondArray = Annotated[FloatArray, Unit("m/s")]
-VoltArray = Annotated[FloatArray, Unit("V")]
-MetrePerVoltArray = Annotated[FloatArray, Unit("m/V")]
-
-DimensionlessLike = Annotated[FloatLike, Unit("1")]
-MetreLike = Annotated[FloatLike, Unit("m")]
-SecondLike = Annotated[FloatLike, Unit("s")]
-HertzLike = Annotated[FloatLike, Unit("Hz")]
-MetrePerSecondLike = Annotated[FloatLike, Unit("m/s")]
-NewtonPerMetreLike = Annotated[FloatLike, Unit("N/m")]
-NewtonSecondPerMetreLike = Annotated[FloatLike, Unit("N*s/m")]
-NewtonLike = Annotated[FloatLike, Unit("N")]
-PascalLike = Annotated[FloatLike, Unit("Pa")]
-MetrePerVoltLike = Annotated[FloatLike, Unit("m/V")]
+@functools.cache
+def hints_of(cls: type[Any]) -> dict[str, Any]:
+    """The annotations of a class by name, with their units; read once, so leave it unchanged."""
+    return typing.get_type_hints(cls, include_extras=True)

@@ -228,7 +228,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--truth", type=Path, help="a CSV for what really happens")
     parser.add_argument("--settings", type=Path, help="a TOML file of twin settings")
     parser.add_argument("--stroke", default=EXPLORING, help="the finger's motion, or 'none'")
-    parser.add_argument("--force", type=float, default=0.5, help="it presses with, in N")
+    parser.add_argument("--force", default="0.5 N", help="it presses with")
     parser.add_argument(
         "--strict", action="store_true", help="a watchdog that counts all time, as a real device's"
     )
@@ -238,7 +238,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         settings = load_settings(options.settings) if options.settings else TwinSettings()
         hand = None
         if options.stroke != "none":
-            hand = hand_from(options.stroke, normal_force=options.force)
+            force = si.parse_quantity(options.force, si.Unit("N"))
+            hand = hand_from(options.stroke, normal_force=force)
         display = load_display(options.display)
         device = TwinDevice(display, settings, hand=hand, truth_file=options.truth)
         _warm_up(device, hand)

@@ -15,10 +15,7 @@ import pytest
 
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.hard_limits import SIDE
-from squeezefilm.quantities.bounds import Above, AtLeast, AtMost, Below, bounds_of
-from squeezefilm.quantities.checks import CLOSED_FORMS, checked_numbers, closed_form
-from squeezefilm.quantities.require import real_numbers, require, require_one_of, require_valid
-from squeezefilm.quantities.units import (
+from squeezefilm.quantities import (
     ComplexArray,
     Dimensionless,
     FloatArray,
@@ -27,6 +24,9 @@ from squeezefilm.quantities.units import (
     MetreLike,
     Unit,
 )
+from squeezefilm.quantities.bounds import Above, AtLeast, AtMost, Below, bounds_of
+from squeezefilm.quantities.checks import CLOSED_FORMS, checked_numbers, closed_form
+from squeezefilm.quantities.require import real_numbers, require, require_one_of, require_valid
 
 M = Unit("m")
 

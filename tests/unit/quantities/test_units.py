@@ -9,8 +9,11 @@ from typing import Annotated
 import pytest
 
 from squeezefilm.errors import QuantityError
-from squeezefilm.quantities.units import (
+from squeezefilm.quantities import (
+    AbsoluteKelvin,
+    Decibel,
     Dimensionless,
+    Kelvin,
     Metre,
     MetreLike,
     Unit,
@@ -87,6 +90,30 @@ def test_a_unit_has_its_dimension_in_kg_m_s_a_k_and_rad() -> None:
     assert Unit("kg/m2/s3*A").dimension == (1, -2, -3, -1, 0, 0)
     assert ONE.dimension == parse_unit("%")[1] == (0,) * 6
     assert parse_unit("mm3")[0] == Decimal("1e-9")
+
+
+def test_a_temperature_has_the_zero_of_its_scale_and_a_difference_has_none() -> None:
+    for text in ("25 degC", "25 °C"):
+        assert parse_quantity(text, unit_of(AbsoluteKelvin)) == 298.15
+        assert parse_quantity(text, unit_of(Kelvin)) == 25.0
+    for kind in (Kelvin, AbsoluteKelvin):
+        assert parse_quantity("25 K", unit_of(kind)) == 25.0
+    assert parse_quantity("2e-5 1/degC", Unit("1/K")) == 2e-5
+    assert parse_quantity("-300 degC", unit_of(Kelvin)) == -300.0
+    with pytest.raises(QuantityError, match=r"'-300 degC' is below absolute zero, 0 K or -273"):
+        parse_quantity("-300 degC", unit_of(AbsoluteKelvin))
+
+
+def test_a_level_is_read_in_decibels_where_a_level_is_wanted() -> None:
+    assert parse_quantity("125 dB", unit_of(Decibel)) == 125.0
+    assert parse_quantity(format_quantity(-3.25, Unit("dB")), Unit("dB")) == -3.25
+    for text in ("50 %", "125 dBA", "2 Pa", "125 dB/m"):
+        with pytest.raises(QuantityError, match="is no level in dB"):
+            parse_quantity(text, Unit("dB"))
+    with pytest.raises(QuantityError, match=r'has no unit.* like "125 dB"'):
+        parse_quantity("125", Unit("dB"))
+    with pytest.raises(QuantityError, match="unknown unit 'dB'"):
+        parse_quantity("12 dB", ONE)
 
 
 @pytest.mark.parametrize("text", ["kmin", "hh", "katm", "m%", "cdeg", "kkm", "xm", "q"])
@@ -202,7 +229,7 @@ def test_the_digits_asked_for_are_kept() -> None:
 
 def test_units_to_write_are_named() -> None:
     assert allowed_units(M) == "m, mm, µm, nm"
-    assert allowed_units(Unit("W")) == "W"
+    assert allowed_units(Unit("J")) == "J"
 
 
 def test_a_near_word_is_offered() -> None:

@@ -21,6 +21,7 @@ from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.pad_place import FacePlace
 from squeezefilm.chain.prediction import Prediction, predict
+from squeezefilm.chain.wanted_voltage import WantedFriction
 from squeezefilm.contact.sharing.pad import FrictionRipple
 from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.display import Display, NamedDisplay
@@ -138,6 +139,7 @@ class FrictionAnalysis(Result):
         }
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FrictionRequest:
     """What `analyze_friction` is asked for."""
@@ -154,7 +156,7 @@ class FrictionRequest:
     speed: si.MetrePerSecond | None = None
     place: FacePlace | None = None
     ambient_pressure: si.Pascal | None = None
-    wanted_friction: si.Dimensionless | None = None
+    wanted_friction: WantedFriction | None = None
     samples: int = SAMPLES
     seed: int = 1
     tell_apart: bool = False

@@ -72,7 +72,7 @@ class Described:
     instrument: str = ""
     licence: str = ""
     source: str = ""
-    temperature: Annotated[si.Kelvin, si.Above(0.0)] | None = None
+    temperature: Annotated[si.AbsoluteKelvin, si.Above(0.0)] | None = None
     decimal: Literal[".", ","] | None = None
     delimiter: Literal["tab", "comma", "semicolon", "blank"] | None = None
     header: Annotated[int, si.AtLeast(0)] | None = None

@@ -24,7 +24,7 @@ class Told:
     instrument: str = ""
     licence: str = ""
     source: str = ""
-    temperature: si.Kelvin | None = None
+    temperature: si.AbsoluteKelvin | None = None
 
 
 @dataclass(frozen=True, eq=False)

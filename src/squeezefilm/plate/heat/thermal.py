@@ -56,7 +56,7 @@ class Thermal:
     thermal_resistance: Annotated[si.KelvinPerWatt, si.AtLeast(0.0), si.AtMost(1e6)] | None = None
     thermal_time: Annotated[si.Second, si.Above(0.0), si.AtMost(1e7)] | None = None
     emissivity: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 0.5
-    ambient_temperature: Annotated[si.Kelvin, si.AtLeast(230.0), si.AtMost(350.0)] = 293.15
+    ambient_temperature: Annotated[si.AbsoluteKelvin, si.AtLeast(230.0), si.AtMost(350.0)] = 293.15
     temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-2), si.Below(1e-2)] = -1e-4
     charge_temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-1), si.Below(1e-1)] = 0.0
     quality_temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-1), si.Below(1e-1)] = 0.0

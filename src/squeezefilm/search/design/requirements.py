@@ -108,7 +108,7 @@ class Limits:
     most_stress: Annotated[si.Pascal, si.Above(0.0)] | None = None
     press: Annotated[si.Newton, hard.FORCE] = 5.0
     most_deflection: Annotated[si.Metre, si.Above(0.0)] | None = None
-    most_sound_level: Annotated[float, si.Unit("dB"), si.Above(0.0)] | None = None
+    most_sound_level: Annotated[si.Decibel, si.Above(0.0)] | None = None
     most_cost: Annotated[int, si.AtLeast(1), si.AtMost(9)] | None = None
     least_yield: Annotated[si.Dimensionless, *_SHARE] | None = None
 

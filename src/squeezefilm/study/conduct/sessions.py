@@ -61,7 +61,7 @@ class SessionConditions:
     consent: bool
     consent_form: str = ""
     room: str = ""
-    temperature: Annotated[si.Kelvin, si.AtLeast(253), si.AtMost(333)] | None = None
+    temperature: Annotated[si.AbsoluteKelvin, si.AtLeast(253), si.AtMost(333)] | None = None
     relative_humidity: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] | None = None
     skin_moisture: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1e6)] | None = None
     skin_moisture_method: str = ""
