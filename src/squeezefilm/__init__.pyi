@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from squeezefilm.chain.pad_place import FacePlace
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.chain.rendered_texture import RenderAnalysis
+    from squeezefilm.chain.wanted_voltage import WantedFriction
     from squeezefilm.display import Display, NamedDisplay
     from squeezefilm.display import load_display as load_display
     from squeezefilm.distributions import Distribution
@@ -33,13 +34,23 @@ if TYPE_CHECKING:
     from squeezefilm.measure.calibration.folder import FolderCalibration
     from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
     from squeezefilm.measure.planned.fabricate import Fabrication
-    from squeezefilm.measure.recordings.read import check_recording as check_recording
-    from squeezefilm.measure.recordings.read import read_recording as read_recording
+    from squeezefilm.measure.recordings.read import (
+        check_recording as check_recording,
+    )
+    from squeezefilm.measure.recordings.read import (
+        read_recording as read_recording,
+    )
     from squeezefilm.perception.observer import NamedObserver
     from squeezefilm.plate.working_mode import PlateTheory
-    from squeezefilm.presets import display_names as display_names
-    from squeezefilm.presets import study_names as study_names
-    from squeezefilm.presets import texture_names as texture_names
+    from squeezefilm.presets import (
+        display_names as display_names,
+    )
+    from squeezefilm.presets import (
+        study_names as study_names,
+    )
+    from squeezefilm.presets import (
+        texture_names as texture_names,
+    )
     from squeezefilm.progress import Pace, SayProgress
     from squeezefilm.quantities import (
         Dimensionless,
@@ -60,34 +71,71 @@ if TYPE_CHECKING:
     from squeezefilm.render.texture.gates import speed as speed
     from squeezefilm.render.texture.image import Image as _Image
     from squeezefilm.render.texture.image import Share
-    from squeezefilm.render.texture.levels import Amplitude as _Amplitude
-    from squeezefilm.render.texture.levels import FrictionShare, VibrationAmplitude
-    from squeezefilm.render.texture.levels import RelativeFriction as _RelativeFriction
-    from squeezefilm.render.texture.noise import Noise as _Noise
-    from squeezefilm.render.texture.noise import Octaves, Persistence, Seed, Spacing
+    from squeezefilm.render.texture.levels import (
+        Amplitude as _Amplitude,
+    )
+    from squeezefilm.render.texture.levels import (
+        FrictionShare,
+        VibrationAmplitude,
+    )
+    from squeezefilm.render.texture.levels import (
+        RelativeFriction as _RelativeFriction,
+    )
+    from squeezefilm.render.texture.noise import (
+        Noise as _Noise,
+    )
+    from squeezefilm.render.texture.noise import (
+        Octaves,
+        Persistence,
+        Seed,
+        Spacing,
+    )
     from squeezefilm.render.texture.pattern import Pattern
-    from squeezefilm.render.texture.shapes import Band as _Band
-    from squeezefilm.render.texture.shapes import Bump as _Bump
-    from squeezefilm.render.texture.shapes import SineWave as _SineWave
-    from squeezefilm.render.texture.shapes import SquareWave as _SquareWave
-    from squeezefilm.report.subjects import plot as plot
-    from squeezefilm.report.subjects import write_mode as write_mode
-    from squeezefilm.report.subjects import write_report as write_report
+    from squeezefilm.render.texture.shapes import (
+        Band as _Band,
+    )
+    from squeezefilm.render.texture.shapes import (
+        Bump as _Bump,
+    )
+    from squeezefilm.render.texture.shapes import (
+        SineWave as _SineWave,
+    )
+    from squeezefilm.render.texture.shapes import (
+        SquareWave as _SquareWave,
+    )
+    from squeezefilm.report.subjects import (
+        plot as plot,
+    )
+    from squeezefilm.report.subjects import (
+        write_mode as write_mode,
+    )
+    from squeezefilm.report.subjects import (
+        write_report as write_report,
+    )
     from squeezefilm.search.design.found import DesignSearch
     from squeezefilm.search.design.requirements import NamedRequirements
     from squeezefilm.search.design.run import Glimpse
     from squeezefilm.search.swept import Sweep
     from squeezefilm.session.play.plan import PlayView
     from squeezefilm.session.record.trace import read_trace as read_trace
-    from squeezefilm.study.adaptive.bayesian import AdaptiveDesign as _AdaptiveDesign
-    from squeezefilm.study.adaptive.bayesian import BayesianAdaptive as BayesianAdaptive
-    from squeezefilm.study.adaptive.bayesian import Interest
+    from squeezefilm.study.adaptive.bayesian import (
+        AdaptiveDesign as _AdaptiveDesign,
+    )
+    from squeezefilm.study.adaptive.bayesian import (
+        BayesianAdaptive as BayesianAdaptive,
+    )
+    from squeezefilm.study.adaptive.bayesian import (
+        Interest,
+    )
     from squeezefilm.study.conduct.playback import Playable, Playback
     from squeezefilm.study.conduct.trial_by_trial import Examiner
     from squeezefilm.study.design.plan import StudyPlan
     from squeezefilm.study.design.study_design import NamedDesign
     from squeezefilm.study.psychometric.fit import PsychometricFit
-    from squeezefilm.study.psychometric.function import Axis, Shape
+    from squeezefilm.study.psychometric.function import (
+        Axis,
+        Shape,
+    )
     from squeezefilm.study.psychometric.function import (
         PsychometricFunction as _PsychometricFunction,
     )
@@ -97,9 +145,15 @@ if TYPE_CHECKING:
     from squeezefilm.study.simulated.chain_tables import ChainTables
     from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.study.tasks.analyze import StudyAnalysis, Tell
-    from squeezefilm.texture_file import NamedTexture
-    from squeezefilm.texture_file import load_texture as load_texture
-    from squeezefilm.texture_file import save_texture as save_texture
+    from squeezefilm.texture_file import (
+        NamedTexture,
+    )
+    from squeezefilm.texture_file import (
+        load_texture as load_texture,
+    )
+    from squeezefilm.texture_file import (
+        save_texture as save_texture,
+    )
     def replaced(display: NamedDisplay | str | Path, values: Mapping[str, float | str]) -> Display:
         """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``."""
     def predict(
@@ -121,7 +175,7 @@ if TYPE_CHECKING:
         """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz)."""
     def voltage_for_friction(
         display: NamedDisplay | str | Path,
-        relative_friction: Dimensionless | str,
+        relative_friction: WantedFriction | str,
         *,
         frequency: Hertz | str | None = ...,
         normal_force: Newton | str | None = ...,
@@ -147,7 +201,7 @@ if TYPE_CHECKING:
         place: FacePlace | str | Path | None = ...,
         strict: bool = ...,
         samples: int = ...,
-        wanted_friction: Dimensionless | str | None = ...,
+        wanted_friction: WantedFriction | str | None = ...,
         sensitivities: Effort = ...,
         progress: SayProgress | None = ...,
         budget: Second | str | None = ...,
@@ -166,7 +220,7 @@ if TYPE_CHECKING:
         speed: MetrePerSecond | str | None = ...,
         place: FacePlace | str | Path | None = ...,
         ambient_pressure: Pascal | str | None = ...,
-        wanted_friction: Dimensionless | str | None = ...,
+        wanted_friction: WantedFriction | str | None = ...,
         samples: int = ...,
         seed: int = ...,
         tell_apart: bool = ...,

@@ -9,13 +9,7 @@ from typing import Annotated
 import pytest
 
 from squeezefilm.errors import QuantityError
-from squeezefilm.quantities import (
-    AbsoluteKelvin,
-    Decibel,
-    Dimensionless,
-    Kelvin,
-    Metre,
-    MetreLike,
+from squeezefilm.quantities.units import (
     Unit,
     allowed_units,
     did_you_mean,
@@ -24,6 +18,14 @@ from squeezefilm.quantities import (
     parse_unit,
     typed_quantity,
     unit_of,
+)
+from squeezefilm.quantities.vocabulary import (
+    AbsoluteKelvin,
+    Decibel,
+    Dimensionless,
+    Kelvin,
+    Metre,
+    MetreLike,
 )
 
 M, S, ONE = Unit("m"), Unit("s"), Unit("1")
