@@ -17,6 +17,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeVar, cast
 
+from squeezefilm.private_folder import is_shared
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 _log = logging.getLogger(__name__)
@@ -51,6 +53,12 @@ def _cache_type() -> Any:
             super().__init__(function)  # type: ignore[no-untyped-call]
             said = [self._cache_file._source_stamp, *map(_told, _used(function))]
             self.stamp = self._cache_file._source_stamp = blake2b(repr(said).encode()).hexdigest()
+            # What is there is run. Whoever can write beside the source can write the source.
+            folder = Path(self.cache_path)
+            if folder.parent != Path(function.__code__.co_filename).parent and any(
+                is_shared(place, "NUMBA_CACHE_DIR") for place in (folder, folder.parent)
+            ):
+                self.disable()  # type: ignore[no-untyped-call]
 
         def _index_key(self, sig: Any, codegen: Any) -> Any:
             records = [_fields(one) for one in getattr(sig, "args", sig)]
@@ -59,8 +67,8 @@ def _cache_type() -> Any:
         def load_overload(self, sig: Any, target_context: Any) -> Any:
             try:
                 return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
-            except (ImportError, AttributeError) as error:
-                _log.info("compiled again, since its cache is another version's: %s", error)
+            except Exception as error:
+                _log.info("compiled again, since its cache cannot be read: %s", error)
                 self.flush()  # type: ignore[no-untyped-call]
                 return None
 

@@ -102,6 +102,31 @@ def test_a_constant_of_a_module_and_a_records_fields_are_asked_too(tmp_path: Pat
     assert answer(tmp_path, shift=100.0, fields=("two", "one")) == "112.0 1"
 
 
+@pytest.mark.slow
+def test_a_cache_that_was_damaged_is_made_again(tmp_path: Path) -> None:
+    assert answer(tmp_path) == "12.0 0"
+    for pattern in ("total-*.nbi", "total-*.nbc"):
+        (file,) = (tmp_path / "__pycache__").glob(f"*{pattern}")
+        file.write_bytes(file.read_bytes()[:100])
+        assert answer(tmp_path) == "12.0 0"
+        assert answer(tmp_path) == "12.0 1"
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="of POSIX's modes")
+def test_code_is_not_read_from_where_others_can_write(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shared = tmp_path / "shared"
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(shared))
+    assert answer(tmp_path) == "12.0 0"
+    assert answer(tmp_path) == "12.0 1"
+    shared.chmod(0o777)
+    assert answer(tmp_path) == "12.0 0"
+    shared.chmod(0o755)
+    assert answer(tmp_path) == "12.0 1"
+
+
 def test_options_are_numbas() -> None:
     @compiled(error_model="numpy")
     def ratio(one: float, other: float) -> float:

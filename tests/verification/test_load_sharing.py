@@ -35,7 +35,7 @@ from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.gap import PaperGap
 from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.film import solve_uniform
-from squeezefilm.kept_arrays import CACHE_VARIABLE
+from squeezefilm.kept.folder import CACHE_VARIABLE
 from squeezefilm.materials import Gas
 
 GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)

@@ -28,7 +28,7 @@ from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.second_process import later, values
 
-_KEPT = KeptDraws("draws-over-areas")
+_KEPT: KeptDraws[si.FloatArray] = KeptDraws("draws-over-areas", si.FloatArray)
 
 WHERE = ("best", "median", "worst")
 

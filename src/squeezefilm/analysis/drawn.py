@@ -9,16 +9,14 @@ import functools
 import pickle
 from collections.abc import Callable
 from hashlib import blake2b
-from pathlib import Path
-from typing import TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-import squeezefilm
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Mixture, Outcome, Refusals, Tally, as_drawn
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.kept_arrays import KeptResults
+from squeezefilm.kept.store import Kept
 from squeezefilm.progress import SayProgress
 from squeezefilm.second_process import is_present, later, values
 
@@ -31,11 +29,12 @@ DRAWN_AT_ONCE = 12
 _WORTH_KEEPING = 100
 
 
-class KeptDraws:
-    """What comes of draws, kept on disk from one process to the next; `kind` names the folder."""
+class KeptDraws(Generic[_Found]):
+    """What comes of draws, kept on disk from one process to the next; `kind` names the folder, and
+    `of` is the type of what is kept."""
 
-    def __init__(self, kind: str) -> None:
-        self._kept = KeptResults(kind, [Path(squeezefilm.__file__).parent])
+    def __init__(self, kind: str, of: Any) -> None:
+        self._kept: Kept[_Found] = Kept(kind, of, large=True)
 
     def found(
         self,
@@ -47,14 +46,14 @@ class KeptDraws:
         """What `make` makes of the draws at points of the unit cube, shape (n, inputs), and of
         whatever `more` there is to it: found where it was made before."""
         asked = _asked(mixture, points, more)
-        kept: _Found | None = self._kept.get(asked)
+        kept = self._kept.get(asked)
         if kept is None:
             kept = make()
             self._kept.put(asked, kept)
         return kept
 
 
-_KEPT = KeptDraws("draws")
+_KEPT: KeptDraws[tuple[si.FloatArray, Tally]] = KeptDraws("draws", tuple[si.FloatArray, Tally])
 
 
 def evaluate(

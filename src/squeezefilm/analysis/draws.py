@@ -9,7 +9,7 @@ import functools
 import warnings
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -115,13 +115,13 @@ class Refusals:
         )
 
 
+@dataclass
 class Tally:
-    """Counts what is refused."""
+    """Counts of what is refused, by reason and by law of heights, with the words of the first."""
 
-    def __init__(self) -> None:
-        self.reasons: Counter[str] = Counter()
-        self.heights: Counter[str] = Counter()
-        self.example = ""
+    reasons: Counter[str] = field(default_factory=Counter)
+    heights: Counter[str] = field(default_factory=Counter)
+    example: str = ""
 
     def refuse(self, draw_of: str, error: SqueezefilmError) -> None:
         """Count one."""

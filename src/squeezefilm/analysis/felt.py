@@ -35,7 +35,7 @@ from squeezefilm.render.resonator.envelope import envelope_time_constant, finest
 
 DRAWS = 64
 _KNOTS = 17
-_KEPT = KeptDraws("draws-felt")
+_KEPT: KeptDraws[si.FloatArray] = KeptDraws("draws-felt", si.FloatArray)
 
 Felt = Callable[[si.MetreArray], si.DimensionlessArray]
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.drawn import evaluate
@@ -32,7 +30,7 @@ from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends, quantiles
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError, SqueezefilmError
-from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.kept.store import Kept
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
 
@@ -42,7 +40,7 @@ SAMPLES, POINTS = 32, 4
 
 
 _WHICH = "which value matters, by draw"
-_POINTS = KeptArrays("sobol-points", [Path(__file__)])
+_POINTS: Kept[si.FloatArray] = Kept("sobol-points", si.FloatArray)
 
 # From fewer rows one cannot tell which inputs matter.
 _FIRST_ROWS = 8
@@ -311,14 +309,14 @@ class FrictionBand:
 def _sobol(dimensions: int, count: int, seed: int) -> si.DimensionlessArray:
     """Scrambled Sobol' points, shape (count, dimensions): kept on disk, since loading SciPy's
     statistics for them takes a quarter of a second."""
-    asked = repr((scipy.__version__, dimensions, count, seed))
-    points = _POINTS.get(asked, count * dimensions)
+    asked = repr((dimensions, count, seed))
+    points = _POINTS.get(asked)
     if points is None:
         from scipy.stats import qmc
 
         points = np.asarray(qmc.Sobol(dimensions, rng=seed).random(count))
         _POINTS.put(asked, points)
-    return points.reshape(count, dimensions)
+    return points
 
 
 @as_drawn()

@@ -23,6 +23,7 @@ from typing import Any, Generic
 from squeezefilm import __version__
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, WorkersError
+from squeezefilm.kept.computed_by import computed_by
 from squeezefilm.progress import SayProgress
 from squeezefilm.search.tasks import A, K, Lost, Shares, computed, grouped, tried_again
 
@@ -165,20 +166,22 @@ class Cluster:
                 "--nworkers 2 --nthreads 1"
             )
         try:
-            said = self._client.run(_version_here, workers=list(new), on_error="return")
+            said = self._client.run(_code_here, workers=list(new), on_error="return")
         except Exception:
             return  # gone again, or so is the scheduler: seen when one looks next
-        for worker, version in said.items():
-            if isinstance(version, ImportError):
+        here = _code_here()
+        for worker, there in said.items():
+            if isinstance(there, ImportError):
                 raise WorkersError(
                     f"the worker at {worker} has no squeezefilm; install {__version__} there"
                 )
-            if isinstance(version, str) and version != __version__:
+            if isinstance(there, str) and there != here:
                 raise WorkersError(
-                    f"the worker at {worker} has squeezefilm {version}, and here it is "
-                    f"{__version__}; install the same, so that answers are of one version"
+                    f"the worker at {worker} has squeezefilm {there}, and here it is {here}; "
+                    "install the same squeezefilm, NumPy, SciPy and numba there and start it "
+                    "again, so that answers are of one code"
                 )
-            if isinstance(version, str):
+            if isinstance(there, str):
                 self._admitted.append(worker)
 
 
@@ -302,8 +305,8 @@ def _gone(address: str) -> WorkersError:
     )
 
 
-def _version_here() -> str:
-    return __version__
+def _code_here() -> str:
+    return f"{__version__} (code {computed_by()[:8]})"
 
 
 def _work(

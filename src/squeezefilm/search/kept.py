@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from squeezefilm import __version__
+from squeezefilm.kept.computed_by import computed_by
 from squeezefilm.results import config_hash, to_json
 from squeezefilm.search.lines import Lines
 from squeezefilm.search.options import OPTIONS
@@ -22,7 +22,7 @@ FILE = "answers.jsonl"
 
 def address(point: Point, described: dict[Any, Any] | None = None) -> str:
     """The SHA-256 of all that an answer depends on: the display's values, verb, options (of a file
-    what is in it), samples and the version of this package.
+    what is in it), samples and the code that computes (`computed_by`).
 
     `described` keeps what many points share: what was made of displays, by their `id`, and of
     files, by option and name. Raises `ConfigError` for a file that cannot be read.
@@ -36,7 +36,7 @@ def address(point: Point, described: dict[Any, Any] | None = None) -> str:
     else:
         values = to_json(whole)
     question = {
-        "version": __version__,
+        "computed_by": computed_by(),
         "verb": point.verb,
         "options": {
             name: _meant(name, value, known) for name, value in verb.settings(point.options).items()

@@ -9,7 +9,7 @@ from typing import Any
 
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.kept_arrays import in_passing
+from squeezefilm.kept.store import in_passing
 from squeezefilm.search.answers import numbers_of
 from squeezefilm.search.tasks import Lost, Workers
 from squeezefilm.search.verbs import VERBS

@@ -15,7 +15,7 @@ from squeezefilm.analysis.draws import Mixture
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display, load_display
-from squeezefilm.kept_arrays import CACHE_VARIABLE
+from squeezefilm.kept.folder import CACHE_VARIABLE
 
 STATOR = load_display("biet2008-stator")
 

@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from squeezefilm import quantities as si
 from squeezefilm.cli import app
-from squeezefilm.kept_arrays import KeptArrays, clear_kept, kept_sizes
+from squeezefilm.kept.folder import clear_kept, kept_sizes
+from squeezefilm.kept.store import Kept
 
 
 def test_what_is_kept_is_shown_and_cleared_and_nothing_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SQUEEZEFILM_CACHE", str(tmp_path))
-    kept = KeptArrays("some-kind", [Path(__file__)])
+    kept: Kept[si.FloatArray] = Kept("some-kind", si.FloatArray)
     kept.put("a", np.arange(4.0))
     mine = tmp_path / "some-kind" / "notes.txt"
     mine.write_text("my own file")
@@ -27,7 +29,7 @@ def test_what_is_kept_is_shown_and_cleared_and_nothing_else(
     data = json.loads(CliRunner().invoke(app, ["cache", "--json"]).stdout)
     assert data["kept"]["some-kind"]["files"] == 1
     assert "1 files deleted" in CliRunner().invoke(app, ["cache", "--clear"]).stdout
-    assert kept.get("a", 4) is None
+    assert kept.get("a") is None
     assert mine.read_text() == "my own file"
     assert clear_kept() == 0
 

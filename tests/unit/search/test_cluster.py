@@ -174,7 +174,7 @@ def test_what_cannot_be_used_is_refused(monkeypatch: pytest.MonkeyPatch) -> None
         cluster.start_workers(1)
         monkeypatch.setattr(clusters, "__version__", "0.0.1")
         with (
-            pytest.raises(WorkersError, match=r"and here it is 0\.0\.1; install the same"),
+            pytest.raises(WorkersError, match=r"here it is 0\.0\.1 \(code \w+\); install the same"),
             workers(scheduler=cluster.address) as pool,
         ):
             list(pool.answers(whose, {1: (1,)}))

@@ -6,7 +6,7 @@ path: at given frequency, width and gas it depends on the mean gap u and on ε =
 table holds ln((W − 1)/ε²), ln of stiffness and of damping over ln(u/ℓ) and −ln(1 − ε²), as
 Chebyshev interpolants in panels that are solved when first needed. Nothing is fitted: every node
 is a solved film, and each panel is checked against films solved between its nodes. Solved panels
-are kept on disk (`kept_arrays`): a display that is asked again finds them. A panel depends on the
+are kept on disk (`kept.store`): a display that is asked again finds them. A panel depends on the
 frequency by Λ/ℓ alone, and smoothly: `across_frequencies`, for thousands of displays each at one of
 its own, panels are interpolated over it, so that two octaves are solved once.
 """
@@ -18,17 +18,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 
-from squeezefilm import film
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.gas import slip_law
 from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.kept.store import Kept
 from squeezefilm.materials import Gas
 
 if TYPE_CHECKING:
@@ -51,7 +49,7 @@ _SMOOTH_LAWS = ("first", "second", "veijola")
 _SPAN = float(np.log(2.0))
 _SPAN_NODES = 4
 _ACROSS: ContextVar[bool] = ContextVar("across_frequencies", default=False)
-_PANELS = KeptArrays("film-panels", (Path(film.__path__[0]), Path(__file__)))
+_PANELS: Kept[si.FloatArray] = Kept("film-panels", si.FloatArray)
 
 
 def default_tolerance(slip: str) -> float:
@@ -226,7 +224,7 @@ class _Panel(NamedTuple):
 def _kept(slip_length: float, which: _Panel) -> si.FloatArray:
     """The coefficients of a panel's three quantities, and the bound on its error."""
     asked = repr((slip_length.hex(), *which))
-    found = _PANELS.get(asked, 3 * which.nodes[0] * which.nodes[1] + 1)
+    found = _PANELS.get(asked)
     if found is None:
         found = _solved(slip_length, which)
         _PANELS.put(asked, found)

@@ -7,7 +7,6 @@ the air in a slot is at ambient pressure, and the film on each tooth is a strip 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -17,11 +16,11 @@ from squeezefilm.errors import InputError
 from squeezefilm.film.gas import ISOTHERMAL, FilmGas
 from squeezefilm.film.planar.film import FilmPlanar, solve_planar
 from squeezefilm.film.planar.gap import GapFunction, PlanarGap
-from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.kept.store import Kept
 
 _PHASES = 5
 # Some twenty films in the plane: seconds, for one number that an analysis asks for every time.
-_KEPT = KeptArrays("toothed-films", [Path(__file__).parents[1]])
+_KEPT: Kept[float] = Kept("toothed-films", float)
 
 
 @dataclass(frozen=True)
@@ -86,11 +85,10 @@ def compare_teeth(
     )
     local = squeeze_number * tooth_width**2
     of_tooth = (gap, local, tooth_width, aspect_ratio / tooth_width, gas, tolerance)
-    kept = _KEPT.get(repr(of_tooth), 1)
-    if kept is None:
-        kept = np.array([_over_teeth(*of_tooth)])
-        _KEPT.put(repr(of_tooth), kept)
-    total = float(kept[0])
+    total = _KEPT.get(repr(of_tooth))
+    if total is None:
+        total = _over_teeth(*of_tooth)
+        _KEPT.put(repr(of_tooth), total)
     toothed = total * tooth_width / tooth_pitch
     ratio = toothed / surface.over_pressure
     return ToothedFilm(

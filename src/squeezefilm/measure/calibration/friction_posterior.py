@@ -13,18 +13,16 @@ import dataclasses
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 
-import squeezefilm
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, between_limits
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import OutOfRangeError, SqueezefilmError
-from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.kept.store import Kept
 from squeezefilm.measure.calibration.discrepancy import Misfit
 from squeezefilm.measure.calibration.friction_likelihood import (
     GRID,
@@ -41,10 +39,7 @@ FEWEST: float = 60.0
 _DEFENSIVE = 0.25
 _WIDER = 1.3
 _CHUNK = 64
-_ROOT = Path(squeezefilm.__file__).parent
-_KEPT = KeptArrays(
-    "friction_draws", [_ROOT / room for room in ("analysis", "chain", "contact", "film")]
-)
+_KEPT: Kept[si.FloatArray] = Kept("friction_draws", si.FloatArray)
 
 
 def finger_mixture(display: Display, prediction: Prediction) -> Mixture:
@@ -102,7 +97,7 @@ def friction_of_points(
     for first in range(0, len(points), _CHUNK):
         piece = points[first : first + _CHUNK]
         question = f"{about} {piece.tobytes().hex()}"
-        kept = _KEPT.get(question, piece.shape[0] * len(where))
+        kept = _KEPT.get(question)
         if kept is None:
             if first % (4 * _CHUNK) == 0:
                 tell(f"friction of draw {first + 1} of {len(points)}")

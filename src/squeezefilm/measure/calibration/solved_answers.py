@@ -10,15 +10,13 @@ import contextlib
 import json
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-import squeezefilm.plate
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.kept_arrays import KeptArrays, in_passing
+from squeezefilm.kept.store import Kept, in_passing
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.plate.electronics import ring_admittance
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
@@ -48,7 +46,7 @@ PLATE_ANSWERS = (
 # What a bench's impedance sweep usually is: half-bandwidths on each side, points, noise.
 _BAND, _READ_POINTS, _READ_NOISE = 8.0, 161, 0.01
 
-_KEPT = KeptArrays("plate_answers", [Path(squeezefilm.plate.__file__).parent, Path(__file__)])
+_KEPT: Kept[si.FloatArray] = Kept("plate_answers", si.FloatArray)
 
 
 class Asked(NamedTuple):
@@ -138,7 +136,7 @@ def _question(actuator: Actuator, mode: object) -> str:
 def _working(actuator: RectangularPlate | DiscPlate) -> dict[Asked, tuple[float, ...]]:
     """All answers of the working mode, each with its relative errors, of solver and reading."""
     question = _question(actuator, "working")
-    kept = _KEPT.get(question, 3 * len(PLATE_ANSWERS))
+    kept = _KEPT.get(question)
     if kept is None:
         named, read = (
             _of_plate(actuator) if isinstance(actuator, RectangularPlate) else _of_disc(actuator)
@@ -242,7 +240,7 @@ def _of_disc(disc: DiscPlate) -> tuple[_Named, Mapping[str, float]]:
 
 def _other_mode(plate: RectangularPlate, lines: tuple[int, int]) -> tuple[float, ...]:
     question = _question(plate, list(lines))
-    kept = _KEPT.get(question, 2)
+    kept = _KEPT.get(question)
     if kept is None:
         try:
             modes = solve_modes(plate, mode=lines)

@@ -10,13 +10,12 @@ import dataclasses
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.kept_arrays import KeptResults
+from squeezefilm.kept.store import Kept
 from squeezefilm.plate.elements.nodal_lines import within_nodes, zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
@@ -30,8 +29,6 @@ from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.size import solve_size
 from squeezefilm.plate.solid.solve import solve_for_response
 from squeezefilm.progress import NO_HURRY, Deadline, Pace
-
-_KEPT = KeptResults("solved-plates", [Path(__file__).parents[1]])
 
 RESPONSE_POINTS = 200
 _LINE_POINTS = 401
@@ -149,6 +146,9 @@ class SolidMode:
         return _response(self.modes.plate, tuple(frequencies.tolist()), self.modes.resolution)
 
 
+_KEPT: Kept[SolidMode] = Kept("solved-plates", SolidMode, large=True)
+
+
 @functools.lru_cache(maxsize=4)
 def _response(
     plate: RectangularPlate, frequencies: tuple[float, ...], resolution: Resolution
@@ -183,7 +183,7 @@ def solid_mode(
     Without a label the plate's working mode. `pace` is told a text and a fraction, and its budget
     bounds the time: where finer meshes would not end in time the coarse one's answer is given, with
     its larger error (`coarseness`). The last plates that were solved are kept, those under each
-    budget by themselves; in full also on disk, from one process to the next (`KeptResults`).
+    budget by themselves; in full also on disk, from one process to the next (`Kept`).
     Raises what `solve_modes` and `harmonic_response` raise: `InputError` where there is no such
     mode or nothing drives the plate, `GeometryError` for a plate that the elements cannot carry,
     `OutOfTimeError` where not even the coarse mesh would end in time.
@@ -195,11 +195,11 @@ def solid_mode(
 @functools.lru_cache(maxsize=8)
 def _solid_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pace) -> SolidMode:
     asked = repr((plate, label))
-    kept: SolidMode | None = _KEPT.get(asked)
+    kept = _KEPT.get(asked, [plate])
     if kept is None:
         kept = _solved_mode(plate, label, pace)
         if not kept.coarseness:
-            _KEPT.put(asked, _solved_again(kept, None, None))
+            _KEPT.put(asked, _solved_again(kept, None, None), [plate])
     # Without its bulk wherever else it is sent.
     return _solved_again(
         kept,

@@ -16,7 +16,7 @@ from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.contact.sharing.gas_table import across_frequencies
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.kept_arrays import in_passing
+from squeezefilm.kept.store import in_passing
 from squeezefilm.plate.beam.modes import timoshenko_frequency
 from squeezefilm.plate.laminate import plate_laminate, section_with
 from squeezefilm.plate.layout import RectangularPlate

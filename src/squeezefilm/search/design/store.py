@@ -12,7 +12,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, get_args
 
-from squeezefilm import __version__
+from squeezefilm.kept.computed_by import computed_by
 from squeezefilm.results import config_hash, to_json
 from squeezefilm.search.design.candidate import Design, Evaluated, Level
 from squeezefilm.search.design.criteria import breaches
@@ -25,12 +25,12 @@ FILE = "designs.jsonl"
 
 
 def asked_hash(requirements: Requirements, level: Level) -> str:
-    """A hash of all that a design's numbers depend on beside the design: version, display,
+    """A hash of all that a design's numbers depend on beside the design: code, display,
     materials and shapes, and what is computed of solved plates only where a limit asks for it. That
     the limits are kept is judged anew."""
     limits = requirements.limits
     asked = [
-        __version__,
+        computed_by(),
         config_hash(requirements.base),
         to_json(requirements.shapes),
         to_json(requirements.workspace),

@@ -14,7 +14,7 @@ from scipy.stats import norm, qmc
 from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.kept_arrays import in_passing
+from squeezefilm.kept.store import in_passing
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate, turned
 from squeezefilm.plausibility.checks import checked_before
 from squeezefilm.search.design.candidate import (

@@ -20,6 +20,7 @@ from scipy import stats
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import STUDIES, require_within
+from squeezefilm.kept.computed_by import computed_by
 from squeezefilm.results import config_hash, write_whole
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import proportion_interval
@@ -185,7 +186,8 @@ def power_curve(
         seed: each number of people n draws from (seed, n), whatever else is simulated.
         progress: called with the sizes done and their number.
         cache: folder that keeps each size's result; a later call takes it from there.
-        key: names simulator and test in the cache; wanted with `cache`, since code has no name.
+        key: names simulator and test in the cache; wanted with `cache`, since functions have no
+            name there. Give another when their code changes; this package's own is seen to.
 
     Raises:
         InputError: no sizes or one below 2, fewer than 10 studies, a share not between 0 and 1,
@@ -241,7 +243,8 @@ def _significant(
 ) -> int:
     file = None
     if cache is not None:
-        name = {"key": key, "people": people, "studies": studies, "alpha": alpha, "seed": seed}
+        name: dict[str, Any] = {"key": key, "computed_by": computed_by()}
+        name |= {"people": people, "studies": studies, "alpha": alpha, "seed": seed}
         file = Path(cache) / f"power-{config_hash(name)}.json"
         if file.is_file():
             return int(json.loads(file.read_text(encoding="utf-8"))["significant"])

@@ -9,19 +9,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-import squeezefilm
 from squeezefilm import quantities as si
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
-from squeezefilm.kept_arrays import KeptArrays
+from squeezefilm.kept.store import Kept
 from squeezefilm.perception.observer import FingerClass, Observer
 from squeezefilm.perception.percepts import Apparatus, grating_percept, percept
-from squeezefilm.perception.senses import Candidates, line_periods
+from squeezefilm.perception.senses import Candidates
 from squeezefilm.perception.stimuli import Grating, Stimulus
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import config_hash
@@ -47,9 +43,8 @@ class FeltSurface:
     across_rhythm: si.DimensionlessArray | None = None
 
 
-_KEPT = KeptArrays("percepts", [Path(squeezefilm.__file__).parent])
-_REASONS = len(dataclasses.fields(Causes))
-_NO_CAUSES: Causes = Causes(*(math.nan,) * _REASONS)
+_KEPT: Kept[FeltSurface] = Kept("percepts", FeltSurface)
+_NO_CAUSES: Causes = Causes(*(math.nan,) * len(dataclasses.fields(Causes)))
 _MOST_REMEMBERED = 8192
 _REMEMBERED: dict[str, FeltSurface] = {}
 """What this process has met, by what was asked: where nothing is kept on disk, and to be quick."""
@@ -65,10 +60,7 @@ class Asked:
 
     def known(self) -> list[FeltSurface] | None:
         """What was computed before; None unless all was."""
-        count = next(one for one in self.rest if isinstance(one, Observer)).candidates
-        ways = 2 if self.feel is felt_freely else 1
-        names = (_name(self.feel, one, self.rest) for one in self.surfaces)
-        found = [_known(name, count, ways) for name in names]
+        found = [_known(_name(self.feel, one, self.rest)) for one in self.surfaces]
         return None if None in found else [one for one in found if one is not None]
 
     def remember(self, found: list[FeltSurface]) -> None:
@@ -122,21 +114,11 @@ def _name(feel: Callable[..., FeltSurface], surface: Stimulus | Grating, rest: A
     return f"{feel.__name__} {parts} {texture!r} {config_hash(texture)} {surface.period!r}"
 
 
-def _known(asked: str, count: int, ways: int = 1) -> FeltSurface | None:
+def _known(asked: str) -> FeltSurface | None:
     """What was computed before: in this process, or by what is on disk."""
-    if asked in _REMEMBERED:
-        return _REMEMBERED[asked]
-    lines = line_periods().size
-    each = [count, count, lines]
-    kept = _KEPT.get(asked, ways * sum(each) + _REASONS)
-    if kept is None:
-        return None
-    *parts, reasons = np.split(kept, np.cumsum(each * ways))
-    across, rhythm = (Candidates(parts[3], parts[4]), parts[5]) if ways == 2 else (None, None)
-    why = Causes(*reasons.tolist())
-    found = FeltSurface(Candidates(parts[0], parts[1]), parts[2], why, across, rhythm)
-    _remember(asked, found)
-    return found
+    if asked not in _REMEMBERED and (kept := _KEPT.get(asked)) is not None:
+        _remember(asked, kept)
+    return _REMEMBERED.get(asked)
 
 
 def _remember(asked: str, found: FeltSurface) -> None:
@@ -146,11 +128,7 @@ def _remember(asked: str, found: FeltSurface) -> None:
 
 
 def _keep(asked: str, found: FeltSurface) -> FeltSurface:
-    one, other = found.candidates, found.across
-    parts = [one.period, one.d_prime, found.rhythm]
-    if other is not None and found.across_rhythm is not None:
-        parts += [other.period, other.d_prime, found.across_rhythm]
-    _KEPT.put(asked, np.concatenate([*parts, dataclasses.astuple(found.causes)]))
+    _KEPT.put(asked, found)
     _remember(asked, found)
     return found
 
@@ -160,7 +138,7 @@ def felt_by_strokes(
 ) -> FeltSurface:
     """A virtual surface under strokes along x."""
     asked = _name(felt_by_strokes, stimulus, (display, observer, finger, run))
-    if (known := _known(asked, observer.candidates)) is not None:
+    if (known := _known(asked)) is not None:
         return known
     found, played = percept(display, stimulus, observer, finger, run)
     why = causes(stimulus, found, played, observer, finger)
@@ -172,7 +150,7 @@ def felt_freely(
 ) -> FeltSurface:
     """A virtual surface under a plain hand that explores the face freely."""
     asked = _name(felt_freely, stimulus, (display, observer, finger, run))
-    if (known := _known(asked, observer.candidates, ways=2)) is not None:
+    if (known := _known(asked)) is not None:
         return known
     from squeezefilm.perception.path_percepts import path_percept
     from squeezefilm.texture_file import TextureFile
@@ -198,7 +176,7 @@ def felt_freely(
 def felt_really(grating: Grating, observer: Observer, finger: FingerClass) -> FeltSurface:
     """A real grating."""
     asked = _name(felt_really, grating, (observer, finger))
-    if (known := _known(asked, observer.candidates)) is not None:
+    if (known := _known(asked)) is not None:
         return known
     found = grating_percept(grating, observer, finger)
     return _keep(asked, FeltSurface(found.candidates, found.evidence.rhythm, _NO_CAUSES))

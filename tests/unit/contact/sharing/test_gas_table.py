@@ -11,7 +11,7 @@ import pytest
 
 from squeezefilm.contact.sharing import gas_table
 from squeezefilm.contact.sharing.gas_table import FilmTable
-from squeezefilm.kept_arrays import CACHE_VARIABLE
+from squeezefilm.kept.folder import CACHE_VARIABLE
 from squeezefilm.materials import Gas
 
 GAP, AMPLITUDE = 2e-6, 1e-6

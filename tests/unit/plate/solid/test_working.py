@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.kept_arrays import CACHE_VARIABLE
+from squeezefilm.kept.folder import CACHE_VARIABLE
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.solid.layers import FINE

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from squeezefilm import second_process
-from squeezefilm.kept_arrays import CACHE_VARIABLE
+from squeezefilm.kept.folder import CACHE_VARIABLE
 from squeezefilm.perception.observer import Observer, load_observer
 from squeezefilm.perception.senses import line_amplitudes, line_periods
 from squeezefilm.study.design.study_design import StudyDesign, load_design
