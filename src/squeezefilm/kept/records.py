@@ -70,7 +70,7 @@ class _Writer:
         if dtype.str not in _DTYPES:
             raise TypeError(f"an array of {value.dtype} is not kept")
         # The order in memory decides the last digit of a product.
-        order = "C" if value.flags.c_contiguous else "F"
+        order: Literal["C", "F"] = "C" if value.flags.c_contiguous else "F"
         self.arrays.append(value.astype(dtype).tobytes(order))
         return [dtype.str, list(value.shape), order]
 
@@ -145,4 +145,4 @@ class _Reader:
 def _fields(kind: type) -> dict[str, Any]:
     """The types of a dataclass's fields by name, in order."""
     hints = get_type_hints(kind)
-    return {one.name: hints[one.name] for one in fields(kind)}  # type: ignore[arg-type]
+    return {one.name: hints[one.name] for one in fields(kind)}
