@@ -58,9 +58,18 @@ def require_within(
     offender = float(values[outside].flat[0])
     raise InputError(
         f"{quantity or limit.name} = {_shown(offender, limit.unit)} cannot be used: it must be "
-        f"{limit.range} ({limit.name}: {limit.reason})" + (f"; {enough}" if enough else ""),
+        f"{limit.range} ({limit.name}: {limit.reason})"
+        + (f"; {enough}" if enough else _probably_meant(limit, offender)),
         quantity=quantity,
     )
+
+
+def _probably_meant(limit: HardLimit, value: float) -> str:
+    """The same number with another prefix, where the limit allows that: metres for millimetres."""
+    for scale in (1e-3, 1e-6, 1e3, 1e6):
+        if limit.unit != _ONE and value and limit.least <= scale * value <= limit.most:
+            return f'; did you mean "{si.typed_quantity(scale * value, limit.unit)}"?'
+    return ""
 
 
 def require_motion(limit: HardLimit, steps: float, duration: float, rate: float) -> None:
@@ -106,8 +115,14 @@ STRESS_COEFFICIENT = HardLimit(
 PERMITTIVITY = HardLimit("a relative permittivity", 1.0, 1e7, "vacuum to beyond any ceramic")
 RESISTANCE = HardLimit("a resistance", 1e-6, 1e15, "a busbar to the best insulator", si.Unit("ohm"))
 FREQUENCY = HardLimit("a frequency", 1.0, 1e9, "of a vibration in a solid; " + _SLIP, _HZ)
-ROUGHNESS = HardLimit("a roughness", 1e-11, 1e-3, "below an atom to a rasp; " + _SLIP, _M)
-SKIN_ROUGHNESS = HardLimit("a skin's roughness", 0.0, 1e-3, "none to a rasp; " + _SLIP, _M)
+ROUGHNESS = HardLimit(
+    "a roughness", 1e-11, 1e-4, "below an atom to coarse sandpaper, on which no film forms", _M
+)
+SKIN_ROUGHNESS = HardLimit("a skin's roughness", 0.0, 2e-4, "none to cracked skin; " + _SLIP, _M)
+HEIGHTS = HardLimit("a height or a wavelength", 1e-11, 1e-2, "of any roughness; " + _SLIP, _M)
+TEXTURE_LENGTH = HardLimit(
+    "a texture's period or width", 1e-9, 0.5, "no finger's stroke on a display is longer", _M
+)
 RIDGE_AMPLITUDE = HardLimit("half a ridge's height", 0.0, 1e-2, "none to a glove; " + _SLIP, _M)
 CONTACT_LENGTH = HardLimit("a contact's length", 1e-6, 1.0, "a hair to a forearm; " + _SLIP, _M)
 RIDGE_PERIOD = HardLimit("a ridge's period", 1e-6, 1.0, "a hair to a forearm; " + _SLIP, _M)

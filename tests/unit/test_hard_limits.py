@@ -2,6 +2,7 @@
 
 import dataclasses
 import re
+from collections.abc import Callable
 from typing import Annotated
 
 import numpy as np
@@ -12,7 +13,7 @@ from squeezefilm.analysis.film.command import FilmRequest
 from squeezefilm.analysis.plate.command import parse_mode
 from squeezefilm.chain.played_texture import FingerMotion
 from squeezefilm.config.load import load_text
-from squeezefilm.display import Display, load_display
+from squeezefilm.display import Display, Surface, load_display
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import HardLimit, require_motion, require_within
 from squeezefilm.plate.beam.modes import free_beam_mode
@@ -24,6 +25,8 @@ from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.presets import path as preset_path
 from squeezefilm.quantities import Unit, checked_numbers
 from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke
+from squeezefilm.render.texture.noise import Noise
+from squeezefilm.render.texture.shapes import Bump, SquareWave
 from squeezefilm.search.axes import axis_of
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import load_design
@@ -166,3 +169,20 @@ def test_limits_are_shown_with_units_and_counts_in_full() -> None:
     limit = HardLimit("a size", 1e-6, 2.0, "a reason", Unit("m"))
     assert limit.range == "at least 1 µm and at most 2 m"
     assert hard.RENDER_STEPS.range == "at least 2 and at most 3 000 000"
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: SquareWave(2.0), 'spatial_period = 2 m .* did you mean "2 mm"'),
+        (lambda: SquareWave("2.5 m"), 'spatial_period = 2.5 m .* did you mean "2.5 mm"'),
+        (lambda: Bump(0.0, 3.0), 'width = 3 m .* did you mean "3 mm"'),
+        (lambda: Noise(0.7, 1), 'finest_period = 700 mm .* did you mean "700 um"'),
+        (lambda: Surface("rough", 0.6e-3, 0.5), 'roughness = 600 µm .* did you mean "600 nm"'),
+    ],
+)
+def test_a_length_of_another_prefix_is_refused_with_the_one_that_was_probably_meant(
+    make: Callable[[], object], says: str
+) -> None:
+    with pytest.raises(InputError, match=says):
+        make()

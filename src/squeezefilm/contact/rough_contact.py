@@ -39,7 +39,7 @@ from squeezefilm.contact.asperities import (
     cubics,
 )
 from squeezefilm.errors import InputError, OutOfRangeError
-from squeezefilm.hard_limits import MODULUS, ROUGHNESS
+from squeezefilm.hard_limits import HEIGHTS, MODULUS
 
 LEAST_GAP: si.Dimensionless = 0.05
 """The least gap, in h_rms, of the tabulated law: there nearly everything is in contact."""
@@ -163,11 +163,11 @@ class RoughContact:
     Raises `InputError` for values out of bounds or wavelengths the wrong way round.
     """
 
-    roughness: Annotated[si.Metre, ROUGHNESS] = 1.25e-6
+    roughness: Annotated[si.Metre, HEIGHTS] = 1.25e-6
     modulus: Annotated[si.Pascal, MODULUS] = 3.2e6
     hurst_exponent: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.8
-    longest_wavelength: Annotated[si.Metre, ROUGHNESS] = 250e-6
-    shortest_wavelength: Annotated[si.Metre, ROUGHNESS] = 2.5e-6
+    longest_wavelength: Annotated[si.Metre, HEIGHTS] = 250e-6
+    shortest_wavelength: Annotated[si.Metre, HEIGHTS] = 2.5e-6
     type: Literal["rough_contact"] = "rough_contact"
 
     def __post_init__(self) -> None:

@@ -253,11 +253,12 @@ def _parsed(text: str, unit: Unit) -> float:
     if not number.is_finite():
         raise QuantityError(f"'{text}' is not a finite number; a quantity must be finite")
     scale = _scale(text, match, unit)
-    added = _CELSIUS_ZERO if unit.absolute and match["unit"] in _CELSIUS else Decimal(0)
+    if unit.absolute and match["unit"] in _CELSIUS:
+        number += _CELSIUS_ZERO
     try:
         with localcontext() as context:
             context.prec = 60
-            value = float(number * scale + added)
+            value = float(number * scale)
     except DecimalException:
         value = float("inf")
     if not np.isfinite(value):

@@ -106,6 +106,10 @@ def test_a_temperature_has_the_zero_of_its_scale_and_a_difference_has_none() -> 
         parse_quantity("-300 degC", unit_of(AbsoluteKelvin))
 
 
+def test_a_negative_zero_stays_one() -> None:
+    assert math.copysign(1, parse_quantity("-0 rad", Unit("rad"))) == -1
+
+
 def test_a_level_is_read_in_decibels_where_a_level_is_wanted() -> None:
     assert parse_quantity("125 dB", unit_of(Decibel)) == 125.0
     assert parse_quantity(format_quantity(-3.25, Unit("dB")), Unit("dB")) == -3.25

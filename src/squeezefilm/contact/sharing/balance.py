@@ -243,8 +243,10 @@ def _refuse(rows: si.FloatArray, amplitude: si.FloatArray, pressure: si.FloatArr
         )
     if status == kernel.OUT_OF_TABLE:
         raise OutOfRangeError(
-            f"{asked} leads to a gap for which the film is not tabulated; its squeeze number is "
-            "out of 3e-4 to 1.6e5. Check frequency, plateau width and ambient pressure"
+            f"{asked} leads to a gap for which the film is not tabulated: the asperities hold skin "
+            "and surface too far apart or too near for a film, whose squeeze number is out of 3e-4 "
+            "to 1.6e5. Check the roughness of surface and skin, frequency, plateau width and "
+            "ambient pressure"
         )
     raise ConvergenceError(
         f"{asked} was not balanced; the residual is {rows[at, kernel.RESIDUAL]:.3g} of the load",

@@ -10,6 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import TEXTURE_LENGTH
 from squeezefilm.render.opcodes import ALONG, RADIUS, Assembler
 
 METRE = si.Unit("m")
@@ -22,8 +23,8 @@ Place = Annotated[si.Metre, si.AtLeast(-FARTHEST), si.AtMost(FARTHEST)]
 FINEST: si.Metre = 1e-9
 """No texture is finer than a nanometre (m): a width below is a slip of unit."""
 
-Length = Annotated[si.Metre, si.AtLeast(FINEST), si.AtMost(FARTHEST)]
-"""A period or a width on a display, in annotations: from 1 nm to 10 m."""
+Length = Annotated[si.Metre, TEXTURE_LENGTH]
+"""A period or a width on a display, in annotations: from 1 nm to 0.5 m."""
 
 
 class Finger(NamedTuple):

@@ -18,6 +18,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.hard_limits import TEXTURE_LENGTH
 from squeezefilm.render.opcodes import ADD, NOISE, NOISE_FIELD, WEIGH, Assembler
 from squeezefilm.render.texture.coordinate import X_AXIS, Coordinate, Finger, require_coordinate
 from squeezefilm.render.texture.pattern import Pattern, part
@@ -28,7 +29,7 @@ STEP_ACROSS = 0x85EBCA77
 
 _MASK = 0xFFFFFFFF
 # So that lattice numbers stay far within 32 bits over ten metres.
-Spacing = Annotated[si.Metre, si.AtLeast(1e-6), si.AtMost(1.0)]
+Spacing = Annotated[si.Metre, si.AtLeast(1e-6), TEXTURE_LENGTH]
 Seed = Annotated[int, si.AtLeast(0), si.AtMost(_MASK)]
 Octaves = Annotated[int, si.AtLeast(1), si.AtMost(8)]
 Persistence = Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)]
@@ -126,7 +127,7 @@ class Noise(_Added):
     """Seeded noise along one coordinate, with nothing finer than `finest_period`.
 
     Args:
-        finest_period: spacing of the lattice (m); from 1 µm to 1 m.
+        finest_period: spacing of the lattice (m); from 1 µm to 0.5 m.
         seed: a whole number from 0 to 2³² − 1; the same seed is the same noise everywhere.
         octaves: how many noises are added, each with twice the period of the one before; 1 to 8.
         persistence: weight of an octave over that of the next coarser one; above 0, at most 1.

@@ -80,7 +80,7 @@ class SquareWave(_Along):
     g/(g + r). In an `Amplitude` a stretch at 1 is slippery, so it plays the groove.
 
     Args:
-        spatial_period: one whole period (m); from 1 nm to 10 m.
+        spatial_period: one whole period (m); from 1 nm to 0.5 m.
         duty: share of the period at 1; above 0, below 1.
         phase: shifts the pattern back by phase/2π of a period (rad).
         along: the coordinate it runs along.
@@ -131,7 +131,7 @@ class Pulse(_Along):
 
     Args:
         centre: its place (m), within ±10 m.
-        width: full width at half height (m); from 1 nm to 10 m.
+        width: full width at half height (m); from 1 nm to 0.5 m.
         shape: "gaussian", or "raised_cosine", which is 0 from `width` on.
         along: the coordinate it lies on; from a point it is a ring.
 
@@ -269,7 +269,7 @@ class Bump(_Along):
 
     Args:
         centre: of the Gaussian (m), within ±10 m.
-        width: its standard deviation (m), at which the slope is steepest; from 1 nm to 10 m.
+        width: its standard deviation (m), at which the slope is steepest; from 1 nm to 0.5 m.
         kind: "bump" or "hole".
         along: the coordinate it lies on.
 
