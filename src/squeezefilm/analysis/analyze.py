@@ -362,7 +362,7 @@ def _what_follows(
         unsure, why_not = None, "the budget left no time for its interval"
     # After the interval, of whose draws its odds are.
     tell("friction over the active area")
-    area = judged_area(display, prediction, samples=samples)
+    area = judged_area(display, prediction, samples=0 if unsure is None else samples)
     tell("verdict")
     (table,) = values(survives)
     return Analysis(

@@ -25,6 +25,13 @@ _CONSTANTS = "ceramic.constants."
 _APART = 1.1
 
 
+def require_bent(display: Display, prediction: Prediction) -> None:
+    """Raise `OutOfRangeError` for a rectangular plate whose drive does not bend it: how its
+    amplitude changes with what it is made of is not known."""
+    if prediction.voltage is not None and isinstance(display.actuator, RectangularPlate):
+        beam_response(display.actuator).require_driven()
+
+
 class FreeAmplitude:
     """The amplitude (m) without a finger of a display with other values, from a prediction's.
 
@@ -34,6 +41,7 @@ class FreeAmplitude:
     """
 
     def __init__(self, display: Display, prediction: Prediction) -> None:
+        require_bent(display, prediction)
         self.nominal, self.prediction = display, prediction
         self.free = prediction.touch.free_amplitude
         self.reference = self._per_volt(display.actuator) if prediction.voltage is not None else 1.0

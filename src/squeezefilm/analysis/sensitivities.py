@@ -269,6 +269,7 @@ class _Bench:
             if self.glued is not None and path.startswith(_GLUE):
                 f, a = self.glued.to(actuator)
             else:
+                self.beam.require_driven()
                 there = beam_response(actuator)
                 f = there.mode.frequency / self.beam.mode.frequency - 1
                 a = there.amplitude_per_volt / self.beam.amplitude_per_volt - 1

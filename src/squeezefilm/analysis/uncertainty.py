@@ -19,6 +19,7 @@ from squeezefilm.analysis.draws import (
     between_limits,
     mixture_of,
 )
+from squeezefilm.analysis.free_amplitude import require_bent
 from squeezefilm.analysis.influences import (
     GroupInfluence,
     Influence,
@@ -156,12 +157,13 @@ def uncertain_friction(
     2010, 10.1016/j.cpc.2009.09.018.
 
     Raises `InputError` for `samples` that are no power of two, `OutOfRangeError` where more than
-    2 % of the draws have no friction.
+    2 % of the draws have no friction or the drive does not bend the plate.
     """
     if samples < 8 or samples > 65536 or samples & (samples - 1):
         raise InputError(
             f"samples = {samples} cannot be used: take a power of two from 8 to 65536, like 128"
         )
+    require_bent(display, prediction)
     mixture = mixture_of(display, prediction)
     count = POINTS * samples
     tell = progress or (lambda _: None)

@@ -21,6 +21,7 @@ from squeezefilm.chain.prediction import Prediction
 from squeezefilm.config.stated import source_doubt
 from squeezefilm.display import Display
 from squeezefilm.plate.heat.warming import too_hot
+from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.render.fidelity.survival import FidelityTable
 
 # Below this drop of the relative friction a difference is not noticed: Fehlberg 2022 reports about
@@ -67,6 +68,7 @@ def verdict(
         amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
         yield from friction_verdict(p, unsure, why_not, area)
         yield from _of_needed_amplitude(p, own)
+        yield from _of_ceramics_touched(display)
         if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
             yield Finding(
                 "doubt",
@@ -210,6 +212,19 @@ def _of_needed_amplitude(p: Prediction, own: FrictionCurve) -> Iterator[Finding]
             f"{by} µ′/µ is {p.relative_friction:.2f} as described; {ask} would bring it to "
             f"{PAPER_CRITERION:.2f}.",
         )
+
+
+def _of_ceramics_touched(display: Display) -> Iterator[Finding]:
+    """What is to be known of ceramics that lie on the face that is touched."""
+    plate = display.actuator
+    if not isinstance(plate, RectangularPlate) or not (share := plate.coverage_of("top")):
+        return
+    yield Finding(
+        "limit",
+        f"Ceramics lie on {si.percent(share)} of the face that is touched. The friction is "
+        "computed as if the surface went on over them: their steps and their material are left "
+        "out.",
+    )
 
 
 def _of_gratings(table: FidelityTable) -> Finding:

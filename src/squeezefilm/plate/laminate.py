@@ -83,7 +83,7 @@ def plate_laminate(
 ) -> Laminate:
     """The section of a plate where it carries ceramic, on one face or on both; the gaps between
     ceramics are neglected. `cross_section` as in `section_with`."""
-    return section_with(plate, cross_section, *_ceramics(plate))
+    return section_with(plate, cross_section, *ceramics_of(plate))
 
 
 def section_with(
@@ -124,8 +124,9 @@ def section_with(
     return laminate([*upper, metal, *lower])
 
 
-def _ceramics(plate: RectangularPlate | DiscPlate) -> tuple[si.Metre, si.Metre]:
-    """The thickness (m) of the ceramic on the upper and on the lower face."""
+def ceramics_of(plate: RectangularPlate | DiscPlate) -> tuple[si.Metre, si.Metre]:
+    """The thickness (m) of the ceramics on the upper and on the lower face, their mean by area; 0
+    where a face carries none."""
     if isinstance(plate, DiscPlate):
         return 0.0, plate.ceramic_thickness
     return plate.ceramic_thickness_on("top"), plate.ceramic_thickness_on("bottom")

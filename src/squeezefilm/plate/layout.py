@@ -198,10 +198,33 @@ class RectangularPlate:
         """That of the ceramics on one face, their mean by area; 0 where it carries none."""
         return _mean_thickness([patch for patch in self.patches if patch.face == face])
 
+    def coverage_of(self, face: Face) -> si.Dimensionless:
+        """The share of one face that carries ceramic."""
+        on_it = (patch for patch in self.patches if patch.face == face)
+        return sum(patch.length * patch.width for patch in on_it) / self.area
+
     @property
     def coverage(self) -> si.Dimensionless:
-        """The area of all ceramics over that of one face."""
-        return sum(patch.length * patch.width for patch in self.patches) / self.area
+        """The share of the plate, seen from above, that carries ceramic on one face or on both."""
+        both = sum(
+            max(0.0, _shared(a.x, a.length, b.x, b.length))
+            * max(0.0, _shared(a.y, a.width, b.y, b.width))
+            for a in self.patches
+            for b in self.patches
+            if (a.face, b.face) == ("top", "bottom")
+        )
+        return self.coverage_of("bottom") + self.coverage_of("top") - both / self.area
+
+    @si.checked_numbers
+    def ceramics_at(self, x: si.Metre, y: si.Metre) -> tuple[si.Metre, si.Metre]:
+        """The thickness (m) of the ceramic above and below a place (m from the plate's corner);
+        0 where there is none."""
+        there = {
+            patch.face: patch.thickness
+            for patch in self.patches
+            if patch.x <= x <= patch.x + patch.length and patch.y <= y <= patch.y + patch.width
+        }
+        return there.get("top", 0.0), there.get("bottom", 0.0)
 
 
 def _mean_thickness(patches: Sequence[CeramicPatch]) -> si.Metre:
@@ -233,9 +256,14 @@ def turned(plate: RectangularPlate) -> RectangularPlate:
     )
 
 
+def _shared(start: float, extent: float, other: float, other_extent: float) -> float:
+    """How long two intervals lie over each other; negative for how far they lie apart."""
+    return min(start + extent, other + other_extent) - max(start, other)
+
+
 def _overlap(a: CeramicPatch | FoamSupport, b: CeramicPatch | FoamSupport) -> str | None:
-    x = min(a.x + a.length, b.x + b.length) - max(a.x, b.x)
-    y = min(a.y + a.width, b.y + b.width) - max(a.y, b.y)
+    x = _shared(a.x, a.length, b.x, b.length)
+    y = _shared(a.y, a.width, b.y, b.width)
     if x > 1e-9 and y > 1e-9:
         return f"{si.format_quantity(x, _M)} × {si.format_quantity(y, _M)}"
     return None

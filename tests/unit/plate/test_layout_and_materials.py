@@ -2,6 +2,7 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from squeezefilm.display import load_display
@@ -74,6 +75,23 @@ def test_ceramics_may_touch_but_not_overlap_or_overhang(plate: RectangularPlate)
             dataclasses.replace(plate, patches=(a, bad))
     with pytest.raises(GeometryError, match="empty"):
         dataclasses.replace(plate, patches=())
+
+
+def test_ceramics_over_each_other_cover_a_place_once(plate: RectangularPlate) -> None:
+    """Coverage against the share of random places that have ceramic above or below them."""
+    below = [CeramicPatch(0, 0, 0.03, 0.049, 0.001), CeramicPatch(0.04, 0.01, 0.02, 0.03, 0.001)]
+    above = [
+        CeramicPatch(0.02, 0.005, 0.05, 0.02, 0.0005, face="top"),
+        CeramicPatch(0.02, 0.03, 0.01, 0.01, 0.0005, face="top"),
+    ]
+    both = dataclasses.replace(plate, patches=(*below, *above))
+    places = np.random.default_rng(1).random((20000, 2)) * both.extent
+    there = np.array([both.ceramics_at(x, y) for x, y in places.tolist()]) > 0
+    assert both.coverage == pytest.approx(there.any(axis=1).mean(), abs=0.015)
+    assert both.coverage_of("top") == pytest.approx(there[:, 0].mean(), abs=0.015)
+    assert both.coverage_of("bottom") == pytest.approx(there[:, 1].mean(), abs=0.015)
+    one_face = dataclasses.replace(plate, patches=tuple(below))
+    assert one_face.coverage == one_face.coverage_of("bottom")
 
 
 @pytest.mark.parametrize("field", ["length", "width", "thickness", "quality_factor"])

@@ -72,7 +72,8 @@ def face_mode(plate: RectangularPlate, theory: PlateTheory = "solid") -> FaceMod
     beam = mode.beam
     if beam is None or mode.line is None:
         raise OutOfRangeError(f"the model '{mode.model}' has no shape over the face")
-    h = beam.section.neutral_axis
+    # The feet stand on the substrate: what is bonded beside them lies above that face.
+    h = beam.section.neutral_axis - plate.ceramic_thickness_on("top")
     shape = beam.mode
     top = float(shape.deflection_at(mode.lobe[1 if wide else 0]))
     return FaceMode(mode, shape.position, shape.deflection / top, -h * shape.rotation / top, wide)

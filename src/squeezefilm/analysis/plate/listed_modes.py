@@ -22,6 +22,9 @@ CROWDED: si.Dimensionless = 0.2
 SAME_LABEL: si.Dimensionless = 0.1
 """Two modes of one label are worth telling apart if the weaker has this share of the stronger."""
 
+DRIVEN_SHARE: si.Dimensionless = 1e-3
+"""Share of the strongest mode's amplitude per volt below which a mode counts as not driven."""
+
 # A product of one profile along and one across makes this share of a shape with straight lines.
 _STRAIGHT = 0.6
 
@@ -151,14 +154,17 @@ def wanted_frequency(actuator: Actuator) -> si.Hertz | None:
 
 
 def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) -> Suggestion:
-    """The mode to work in: of those that can be asked for, are inaudible and have straight nodal
-    lines, the one that moves most when what its neighbours take part with is held against it.
+    """The mode to work in: of those that are driven (`DRIVEN_SHARE`), can be asked for, are
+    inaudible and have straight nodal lines, the one that moves most when what its neighbours take
+    part with is held against it.
 
     `described` is the mode that the display's file asks for: then there is nothing to write."""
+    strongest = max((mode.amplitude_per_volt for mode in modes), default=0.0)
     able = [
         mode
         for mode in modes
-        if mode.choice is not None
+        if mode.amplitude_per_volt >= DRIVEN_SHARE * strongest > 0
+        and mode.choice is not None
         and not (mode.audible or mode.perhaps_audible)
         and (mode.straightness is None or mode.straightness >= _STRAIGHT)
     ]

@@ -9,6 +9,7 @@ from typing import Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.listed_modes import (
+    DRIVEN_SHARE,
     HEARING,
     SAME_LABEL,
     ListedMode,
@@ -155,4 +156,6 @@ def _screened(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> tuple
         found = screened_modes(plate, band)
     except SqueezefilmError:
         return ()
-    return with_neighbours([listed_mode(mode) for mode in found if mode.antinode_per_volt > 0])
+    strongest = max((mode.antinode_per_volt for mode in found), default=0.0)
+    driven = [mode for mode in found if mode.antinode_per_volt >= DRIVEN_SHARE * strongest > 0]
+    return with_neighbours([listed_mode(mode) for mode in driven])

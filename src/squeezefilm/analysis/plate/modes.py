@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.listed_modes import (
+    DRIVEN_SHARE,
     HEARING,
     ListedMode,
     Suggestion,
@@ -30,14 +31,11 @@ from squeezefilm.plate.ring.body import ring_body
 from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, clamped_capacitance
 from squeezefilm.plate.solid.resonances import DrivenMode
 from squeezefilm.plate.solid.screening import SCREENING_ERROR, forbidden_by, screened_modes
-from squeezefilm.plate.solid.symmetry import drive_classes
+from squeezefilm.plate.solid.symmetry import drive_classes, only_stretches
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import Result, stamp, to_json
 
 DEFAULT_BAND: tuple[si.Hertz, si.Hertz] = (15e3, 60e3)
-
-LISTED: si.Dimensionless = 1e-3
-"""Share of the strongest mode's amplitude per volt below which a mode counts as not driven."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -127,7 +125,7 @@ def _of_plate(
 ) -> ModeList:
     found = [mode for mode in screened_modes(plate, band) if mode.antinode_per_volt > 0]
     strongest = max((mode.antinode_per_volt for mode in found), default=0.0)
-    found = [mode for mode in found if mode.antinode_per_volt >= LISTED * strongest]
+    found = [mode for mode in found if mode.antinode_per_volt >= DRIVEN_SHARE * strongest]
     listed = with_neighbours([listed_mode(mode) for mode in found])
     label = plate.working_label
     working = f"({label[0]},{label[1]})"
@@ -147,6 +145,11 @@ def _of_plate(
 
 def _rules(plate: RectangularPlate) -> tuple[str, ...]:
     """Which modes symmetry keeps the drive from, along each side where it does."""
+    if only_stretches(plate):
+        return (
+            "No mode of bending is driven: every ceramic has its mirror image on the other face, "
+            "with the same sign, which only stretches the plate.",
+        )
     said = []
     for axis, side in enumerate(("length", "width")):
         driven = {parity[axis] for parity in drive_classes(plate)}
@@ -190,7 +193,7 @@ def _of_ring(
                 f"{mode.harmonic}",
             )
             for mode, row in zip(found, rows, strict=True)
-            if row.amplitude_per_volt >= LISTED * strongest
+            if row.amplitude_per_volt >= DRIVEN_SHARE * strongest
         ]
     )
     driven = working.modal_force(body.drive) > 1e-9 * abs(working.modal_force_all_round)

@@ -60,17 +60,21 @@ export class PlanView {
     g.fillStyle = c.ink;
     const mm = (metres) => `${plain(metres * 1e3, 4)} mm`;
     if (outline.kind !== "plate") return this.drawRound(g, left, top, scale, w, h, c, phase, box);
-    g.fillText(`from above, ${mm(size[0])} × ${mm(size[1])}; ceramics dashed, nodal lines dotted`, box.left, 14);
+    const above = outline.patches.some((patch) => patch.face === "top");
+    const ceramics = above ? "ceramics below dashed, above solid (second sign)" : "ceramics dashed";
+    g.fillText(`from above, ${mm(size[0])} × ${mm(size[1])}; ${ceramics}, nodal lines dotted`, box.left, 14);
     g.fillStyle = c.metal;
     g.fillRect(left, top, w, h);
     if (this.shape) this.drawSurface(g, left, top, w, h, c, phase);
     g.save();
     g.setLineDash([5, 3]);
     g.strokeStyle = c.ink;
-    for (const one of outline.patches) {
-      g.strokeRect(left + one.x_m * scale, top + h - (one.y_m + one.width_m) * scale, one.length_m * scale, one.width_m * scale);
+    for (const patch of outline.patches) {
+      // What lies on the upper face is seen, what lies below is hidden by the plate.
+      g.setLineDash(patch.face === "top" ? [] : [5, 3]);
+      g.strokeRect(left + patch.x_m * scale, top + h - (patch.y_m + patch.width_m) * scale, patch.length_m * scale, patch.width_m * scale);
       g.fillStyle = c.ink;
-      g.fillText(one.polarity > 0 ? "+" : "−", left + (one.x_m + one.length_m / 2) * scale - 4, top + 14);
+      g.fillText(patch.polarity > 0 ? "+" : "−", left + (patch.x_m + patch.length_m / 2) * scale - 4, top + (patch.face === "top" ? 28 : 14));
     }
     g.setLineDash([2, 4]);
     g.strokeStyle = c.blue;

@@ -39,6 +39,11 @@ def resonant_amplitude_per_volt(
     return quality_factor * modal_force / ((2 * np.pi * frequency) ** 2 * modal_mass)
 
 
+DRIVEN: si.Dimensionless = 1e-3
+"""Share of what single ceramics do to a mode, one by one, below which a drive that has them all
+cancels and does not move the mode."""
+
+
 @dataclass(frozen=True, eq=False)
 class BeamResponse(SolvedAgain):
     """A plate driven as a beam: its working mode, and how strongly the ceramics drive it.
@@ -74,6 +79,17 @@ class BeamResponse(SolvedAgain):
             )
         )
 
+    def require_driven(self) -> None:
+        """Raise `OutOfRangeError` where the ceramics' forces on the working mode cancel to less
+        than `DRIVEN` of their sum: what is left says nothing of how an amplitude changes."""
+        (parts,) = _forces(self.plate, self.theory, self.cross_section, (self.mode,))
+        if abs(self.force_per_width) < DRIVEN * np.sum(np.abs(parts)) or not np.any(parts):
+            raise OutOfRangeError(
+                f"the drive does not bend the plate in its mode with {self.plate.nodal_lines} "
+                f"nodal lines: what its ceramics do cancels to less than {si.percent(DRIVEN, 1)}; "
+                "turn the polarity of some of them, or choose another mode"
+            )
+
     @property
     def modes(self) -> tuple[BeamMode, ...]:
         """The bending modes up to twice the working mode's frequency, or up to the cut-off."""
@@ -98,7 +114,8 @@ class BeamResponse(SolvedAgain):
         total = np.zeros((frequency.size, np.size(position)), dtype=complex)
         modes = self.modes
         forces = _forces(self.plate, self.theory, self.cross_section, modes)
-        for mode, force in zip(modes, forces, strict=True):
+        for mode, parts in zip(modes, forces, strict=True):
+            force = float(np.sum(parts))
             own = (2 * np.pi * mode.frequency) ** 2
             denominator = own * (1 + 1j / self.plate.quality_factor) - omega2
             total += force / mode.modal_mass_per_width / denominator * mode.deflection_at(position)
@@ -137,14 +154,14 @@ def _driven(
 ) -> BeamResponse:
     section = plate_laminate(plate, cross_section)
     working = _finder(plate, theory, cross_section)(plate.nodal_lines)
-    (force,) = _forces(plate, theory, cross_section, (working,))
+    (forces,) = _forces(plate, theory, cross_section, (working,))
     return BeamResponse(
         plate,
         section,
         theory,
         cross_section,
         working,
-        force,
+        float(np.sum(forces)),
         functools.partial(beam_response, plate, theory, cross_section),
     )
 
@@ -181,8 +198,8 @@ def _forces(
     theory: BeamTheory,
     cross_section: CrossSection,
     modes: Iterable[BeamMode],
-) -> Iterator[float]:
-    """The force of one volt on each mode (N/V per m of width)."""
+) -> Iterator[si.FloatArray]:
+    """The force of one volt in each ceramic on each mode (N/V per m of width)."""
     # Work of the piezo moment on the section's rotation where each ceramic begins and ends to pull;
     # a ceramic narrower than the plate drives in proportion to its width.
     pushed = np.array(
@@ -197,21 +214,15 @@ def _forces(
         spans = [stressed_span(plate, one) for one in plate.patches]
     begin, end = np.array(spans).T
     for mode in modes:
-        yield float(pushed @ (mode.rotation_at(end) - mode.rotation_at(begin)))
+        yield pushed * (mode.rotation_at(end) - mode.rotation_at(begin))
 
 
 def _moment(
     plate: RectangularPlate, cross_section: CrossSection, patch: CeramicPatch
 ) -> si.NewtonPerVolt:
     """The moment of one volt in a ceramic, of the section in its middle."""
-    x, y = patch.x + patch.length / 2, patch.y + patch.width / 2
-    there = {
-        one.face: one.thickness
-        for one in plate.patches
-        if one.x <= x <= one.x + one.length and one.y <= y <= one.y + one.width
-    }
-    above, below = there.get("top", 0.0), there.get("bottom", 0.0)
-    section = section_with(plate, cross_section, above, below)
+    middle = patch.x + patch.length / 2, patch.y + patch.width / 2
+    section = section_with(plate, cross_section, *plate.ceramics_at(*middle))
     return moment_per_volt(plate, section, cross_section, patch.face)
 
 

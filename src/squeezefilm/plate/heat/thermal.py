@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 
 from squeezefilm import quantities as si
 from squeezefilm.materials import SOLID_HEAT
+from squeezefilm.plate.laminate import ceramics_of
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 
 LOSS_TANGENT = 0.02
@@ -117,9 +118,8 @@ def thermal_body(actuator: Actuator) -> ThermalBody:
         ceramic = sum(one.length * one.width * one.thickness for one in actuator.patches)
     metal, piezo = actuator.substrate, actuator.ceramic
     capacity = area * actuator.thickness * metal.heat_per_volume + ceramic * piezo.heat_per_volume
-    through = (
-        actuator.thickness / GLASS_CONDUCTIVITY + actuator.ceramic_thickness / CERAMIC_CONDUCTIVITY
-    )
+    bonded = sum(ceramics_of(actuator))
+    through = actuator.thickness / GLASS_CONDUCTIVITY + bonded / CERAMIC_CONDUCTIVITY
     said = tuple(
         f"specific heat of {one.name}" for one in (metal, piezo) if one.specific_heat is None
     )

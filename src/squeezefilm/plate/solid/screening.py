@@ -21,7 +21,13 @@ from squeezefilm.plate.solid.mesh import wave_number
 from squeezefilm.plate.solid.modes import Label, check_band
 from squeezefilm.plate.solid.reduced import reduced_class
 from squeezefilm.plate.solid.resonances import DrivenMode, driven_modes
-from squeezefilm.plate.solid.symmetry import Symmetry, drive_classes, drive_signs, symmetric_axes
+from squeezefilm.plate.solid.symmetry import (
+    Symmetry,
+    drive_classes,
+    drive_signs,
+    only_stretches,
+    symmetric_axes,
+)
 
 SCREENING_ERROR: si.Dimensionless = 0.05
 """Bound on the share by which a screened frequency lies off the solved one, as tested."""
@@ -94,6 +100,13 @@ def forbidden_by(plate: RectangularPlate, label: Label) -> str | None:
     that side, one with an even number is its own image. Where the plate is symmetric, a drive that
     is its own image moves the second kind only, one that is turned over the first.
     """
+    if only_stretches(plate):
+        return (
+            f"symmetry forbids ({label[0]},{label[1]}): every ceramic has its mirror image on the "
+            "other face, with the same sign, so that both stretch the plate alike and bend it "
+            "against each other. No mode of bending is driven; turn the polarity of the ceramics "
+            "on one face"
+        )
     classes = drive_classes(plate)
     for axis, lines in enumerate(label):
         driven = {parity[axis] for parity in classes}

@@ -64,6 +64,28 @@ def drive_signs(plate: RectangularPlate) -> si.FloatArray:
     return np.array([float(patch.drive_sign) for patch in plate.patches])
 
 
+def only_stretches(plate: RectangularPlate) -> bool:
+    """Whether plate and drive are their own image in the plate's middle plane: every ceramic and
+    support has its like on the other face, with the same sign. Such a drive bends nothing."""
+    other_face = {"bottom": "top", "top": "bottom"}
+
+    def place(part: CeramicPatch | FoamSupport) -> tuple[int, ...]:
+        sizes = part.x, part.y, part.length, part.width, part.thickness
+        return tuple(round(size / SNAP / 4) for size in sizes)
+
+    def kind(part: CeramicPatch | FoamSupport) -> tuple[object, ...]:
+        if isinstance(part, FoamSupport):
+            return (part.stiffness_per_area, part.quality_factor)
+        return (part.drive_sign, part.electrode, part.shunt_resistance)
+
+    def mirrored(part: CeramicPatch | FoamSupport, other: CeramicPatch | FoamSupport) -> bool:
+        near = all(abs(a - b) <= 1 for a, b in zip(place(part), place(other), strict=True))
+        return near and other.face == other_face[part.face] and kind(part) == kind(other)
+
+    groups: tuple[tuple[CeramicPatch | FoamSupport, ...], ...] = (plate.patches, plate.supports)
+    return all(any(mirrored(part, other) for other in group) for group in groups for part in group)
+
+
 def drive_classes(plate: RectangularPlate) -> list[Symmetry]:
     """The classes of symmetry that the drive excites: those on which its signs have a part, and the
     first of all where nothing is driven."""

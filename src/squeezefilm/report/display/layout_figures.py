@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.plate.laminate import plate_laminate
-from squeezefilm.plate.layout import AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.plate.laminate import section_with
+from squeezefilm.plate.layout import AnnularStator, DiscPlate, Face, RectangularPlate
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import M, shown
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.plate.laminate import Laminate
 
 
+_FACES: dict[Face, str] = {"bottom": "lower", "top": "upper"}
 _SIGN = {1: "+", -1: "−"}
 FILL = {1: style.PLUS, -1: style.MINUS}
 
@@ -33,52 +33,85 @@ def layout(analysis: Analysis) -> Figure:
         return _ring(actuator, analysis)
     if isinstance(actuator, DiscPlate):
         return _disc(actuator, analysis)
-    return _plate(actuator, plate_laminate(actuator))
+    return _plate(actuator)
 
 
-def _plate(plate: RectangularPlate, section: Laminate) -> Figure:
-    count = len(plate.patches)
-    neutral = section.neutral_axis
-    noun = "ceramic covers" if count == 1 else "ceramics cover"
-    title = (
-        f"{count} {noun} {100 * plate.coverage:.0f} % of the lower face; the plate bends about an "
-        f"axis {shown(neutral, M, 3)} below the touched face"
-    )
-    plan_height = float(np.clip(6.9 * plate.width / plate.length, 1.0, 5.2))
+def _plate(plate: RectangularPlate) -> Figure:
+    faces: list[Face] = [face for face in _FACES if plate.coverage_of(face) > 0]
+    largest = max(plate.patches, key=lambda patch: patch.length * patch.width)
+    above, below = plate.ceramics_at(largest.x + largest.length / 2, largest.y + largest.width / 2)
+    neutral = section_with(plate, "plane_strain", above, below).neutral_axis - above
+    plan_height = float(np.clip(6.9 * plate.width / plate.length, 1.0, 5.2 / len(faces)))
     figure = style.new_figure(
-        title,
-        "neutral axis of a section with ceramic; thicknesses and positions as described",
-        plan_height + 2.6,
+        f"{_covered(plate, faces)}; the plate bends about an axis {shown(neutral, M, 3)} "
+        "below the touched face",
+        "section and neutral axis through the largest ceramic; thicknesses and positions as "
+        "described",
+        len(faces) * (plan_height + 0.6) + 2.0,
     )
-    grid = figure.add_gridspec(2, 2, width_ratios=[4.6, 1.2], height_ratios=[plan_height, 0.55])
-    plan, side = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
-    detail = figure.add_subplot(grid[:, 1])
-    length, width = 1e3 * plate.length, 1e3 * plate.width
+    heights = [plan_height] * len(faces)
+    grid = figure.add_gridspec(
+        len(faces) + 1, 2, width_ratios=[4.6, 1.2], height_ratios=[*heights, 0.55]
+    )
+    plans = [figure.add_subplot(grid[row, 0]) for row in range(len(faces))]
+    for plan, face in zip(plans, faces, strict=True):
+        _plan(plan, plate, face)
+    side = figure.add_subplot(grid[-1, 0])
+    _side(side, plate, neutral)
+    _without_height(*plans, side)
+    _section(figure.add_subplot(grid[:, 1]), plate, (above, below), neutral)
+    return figure
 
-    plan.set_title("lower face, seen through the plate; + and − say how it follows the drive")
-    _box(plan, (0, 0), length, width, style.METAL)
-    side.set_title("side view, to scale")
-    thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
-    _box(side, (0, -thick), length, thick, style.METAL)
+
+def _covered(plate: RectangularPlate, faces: list[Face]) -> str:
+    """How many ceramics cover how much of which face."""
+    said = []
+    for face in faces:
+        count = sum(patch.face == face for patch in plate.patches)
+        noun = "ceramic covers" if count == 1 else "ceramics cover"
+        said.append(
+            f"{count} {noun} {si.percent(plate.coverage_of(face))} of the {_FACES[face]} face"
+        )
+    return " and ".join(said)
+
+
+def _plan(axes: Axes, plate: RectangularPlate, face: Face) -> None:
+    """One face with its ceramics, x and y as the description has them."""
+    through = ", seen through the plate" if face == "bottom" else ", which is touched"
+    axes.set_title(f"{_FACES[face]} face{through}; + and − say how it follows the drive")
+    length, width = 1e3 * plate.length, 1e3 * plate.width
+    _box(axes, (0, 0), length, width, style.METAL)
     for patch in plate.patches:
+        if patch.face != face:
+            continue
         x, y, dx, dy = (1e3 * v for v in (patch.x, patch.y, patch.length, patch.width))
-        fill = FILL[patch.polarity]
-        _box(plan, (x, y), dx, dy, fill)
-        _box(side, (x, -thick - ceramic), dx, ceramic, fill)
+        _box(axes, (x, y), dx, dy, FILL[patch.polarity])
         # A sign needs some two percent of the picture to be read.
         if min(dx, dy) > 0.02 * length:
             sign = _SIGN[patch.polarity]
-            plan.text(x + dx / 2, y + dy / 2, sign, ha="center", va="center", fontsize=15)
-    side.axhline(-1e3 * neutral, color=style.ORANGE, lw=1.2, ls=(0, (5, 2)))
+            axes.text(x + dx / 2, y + dy / 2, sign, ha="center", va="center", fontsize=15)
     pad = 0.015 * length
-    plan.set(xlim=(-pad, length + pad), ylim=(-pad, width + pad), aspect="equal")
-    plan.set(xlabel="x along the plate (mm)", ylabel="y (mm)")
-    deep = thick + ceramic
-    side.set(xlim=(-pad, length + pad), ylim=(-1.5 * deep, 0.5 * deep), aspect="equal")
-    side.set(xlabel="x along the plate (mm)")
-    _without_height(plan, side)
-    _section(detail, plate, neutral)
-    return figure
+    axes.set(xlim=(-pad, length + pad), ylim=(-pad, width + pad), aspect="equal")
+    axes.set(xlabel="x along the plate (mm)", ylabel="y (mm)")
+
+
+def _side(axes: Axes, plate: RectangularPlate, neutral: float) -> None:
+    """The plate from its long side, with the neutral axis at a depth (m) below the upper face."""
+    axes.set_title("side view, to scale")
+    length, thick = 1e3 * plate.length, 1e3 * plate.thickness
+    _box(axes, (0, -thick), length, thick, style.METAL)
+    for patch in plate.patches:
+        height = 1e3 * patch.thickness
+        low = 0.0 if patch.face == "top" else -thick - height
+        _box(axes, (1e3 * patch.x, low), 1e3 * patch.length, height, FILL[patch.polarity])
+    axes.axhline(-1e3 * neutral, color=style.ORANGE, lw=1.2, ls=(0, (5, 2)))
+    above, below = (
+        1e3 * max((patch.thickness for patch in plate.patches if patch.face == face), default=0.0)
+        for face in ("top", "bottom")
+    )
+    pad, free = 0.015 * length, 0.5 * (thick + above + below)
+    axes.set(xlim=(-pad, length + pad), ylim=(-thick - below - free, above + free), aspect="equal")
+    axes.set(xlabel="x along the plate (mm)")
 
 
 def _box(axes: Axes, corner: tuple[float, float], dx: float, dy: float, fill: str) -> None:
@@ -88,11 +121,11 @@ def _box(axes: Axes, corner: tuple[float, float], dx: float, dy: float, fill: st
     axes.add_patch(Rectangle(corner, dx, dy, facecolor=fill, **style.OUTLINED))
 
 
-def _without_height(plan: Axes, side: Axes) -> None:
-    """No grid on either; the side view has no heights to read."""
-    side.set_yticks([])
-    side.spines["left"].set_visible(False)
-    for axes in (plan, side):
+def _without_height(*views: Axes) -> None:
+    """No grid on any view; the last, from the side, has no heights to read."""
+    views[-1].set_yticks([])
+    views[-1].spines["left"].set_visible(False)
+    for axes in views:
         axes.grid(visible=False)
 
 
@@ -142,22 +175,29 @@ def _finger(axes: Axes, contact: float, y: float) -> None:
     axes.add_patch(Rectangle(corner, contact, contact, **look, zorder=3, label=name))
 
 
-def _section(axes: Axes, plate: RectangularPlate, neutral: float) -> None:
-    """The layers through the thickness, with the neutral axis."""
-    thick, ceramic = 1e3 * plate.thickness, 1e3 * plate.ceramic_thickness
+def _section(
+    axes: Axes, plate: RectangularPlate, ceramics: tuple[float, float], neutral: float
+) -> None:
+    """The layers through the thickness, with `ceramics` (m) above and below, and the neutral axis
+    at a depth (m) below the upper face."""
+    thick, above, below = (1e3 * height for height in (plate.thickness, *ceramics))
     axes.set_title("section, enlarged")
     for top, height, fill, name in (
+        (-above, above, style.PLUS, plate.ceramic.name),
         (0.0, thick, style.METAL, plate.substrate.name),
-        (thick, ceramic, style.PLUS, plate.ceramic.name),
+        (thick, below, style.PLUS, plate.ceramic.name),
     ):
+        if not height:
+            continue
         _box(axes, (0, top), 1, height, fill)
         # Named at the edge that the neutral axis is further from, so that it crosses no name.
         middle = top + height / 2
-        at = middle - 0.22 * height if 1e3 * neutral > middle else middle + 0.22 * height
+        place = middle - 0.22 * height if 1e3 * neutral > middle else middle + 0.22 * height
         words = f"{style.plain(name, 16)}\n{height:.3g} mm"
-        axes.text(0.5, at, words, ha="center", va="center", fontsize=8.5, linespacing=1.1)
+        axes.text(0.5, place, words, ha="center", va="center", fontsize=8.5, linespacing=1.1)
     axes.axhline(1e3 * neutral, color=style.ORANGE, lw=1.6, ls=(0, (5, 2)), label="neutral axis")
-    axes.set(xlim=(0, 1), ylim=(1.04 * (thick + ceramic), -0.04 * (thick + ceramic)))
+    margin = 0.04 * (above + thick + below)
+    axes.set(xlim=(0, 1), ylim=(thick + below + margin, -above - margin))
     axes.set(ylabel="depth below the touched face (mm)")
     axes.set_xticks([])
     axes.grid(visible=False)
@@ -232,11 +272,22 @@ def _explain_ring(axes: Axes) -> None:
 
 
 def drive_strip(axes: Axes, plate: RectangularPlate, reach: float) -> float:
-    """The ceramics under the mode that they drive; the new bottom of the axes."""
-    low, high = -1.62 * reach, -1.28 * reach
-    for patch in plate.patches:
-        x, dx = 1e3 * patch.x, 1e3 * patch.length
-        _box(axes, (x, low), dx, high - low, FILL[patch.polarity])
-        if patch.length > 0.02 * plate.length:
-            axes.text(x + dx / 2, (low + high) / 2, _SIGN[patch.polarity], ha="center", va="center")
-    return -1.75 * reach
+    """The ceramics under the mode that they drive, a strip for each face that carries some, the
+    upper face's first; the new bottom of the axes."""
+    faces: list[Face] = [face for face in ("top", "bottom") if plate.coverage_of(face) > 0]
+    high = -1.28 * reach
+    for face in faces:
+        low = high - 0.34 * reach
+        for patch in plate.patches:
+            if patch.face != face:
+                continue
+            x, dx, middle = 1e3 * patch.x, 1e3 * patch.length, (low + high) / 2
+            _box(axes, (x, low), dx, high - low, FILL[patch.polarity])
+            if patch.length > 0.02 * plate.length:
+                sign = _SIGN[patch.polarity]
+                axes.text(x + dx / 2, middle, sign, ha="center", va="center")
+        if len(faces) > 1:
+            name = f"{_FACES[face]} "
+            axes.text(0, (low + high) / 2, name, ha="left", va="center", fontsize=8)
+        high = low - 0.08 * reach
+    return high - 0.05 * reach

@@ -200,7 +200,7 @@ def rough_frequency(requirements: Requirements, design: Design) -> si.Hertz:
     except SqueezefilmError:
         return math.nan
     assert isinstance(body, RectangularPlate), "strips are on a plate"
-    half, covered = body.length / (body.nodal_lines - 0.5), min(body.coverage, 1.0)
+    half, covered = body.length / (body.nodal_lines - 0.5), body.coverage
     bare = timoshenko_frequency(half, section_with(body, "plane_strain", 0.0, 0.0))
     return float(
         bare ** (1 - covered) * timoshenko_frequency(half, plate_laminate(body)) ** covered

@@ -28,7 +28,7 @@ from squeezefilm.perception.observer import Observer, load_observer
 from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.electronics import load_of_mode
 from squeezefilm.plate.heat.thermal import driven_thickness
-from squeezefilm.plate.laminate import Laminate, plate_laminate
+from squeezefilm.plate.laminate import Laminate, ceramics_of, plate_laminate
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.plate.parts import parts_of
 from squeezefilm.plate.press import bending_stress, pressed_deflection, pressed_disc_deflection
@@ -307,8 +307,10 @@ def _stress(
 ) -> float:
     """At the ceramic's outer face, of the working mode's wave without a finger."""
     total = sum(layer.thickness for layer in section.layers)
-    distance = max(section.neutral_axis, total - section.neutral_axis)
-    if body.ceramic_thickness == 0 or section.layers[0].density == body.substrate.density:
-        distance = total - section.neutral_axis
+    above, below = ceramics_of(body)
+    distance = max(
+        section.neutral_axis if above else 0.0,
+        total - section.neutral_axis if below or not above else 0.0,
+    )
     modulus = body.ceramic.in_plane_stiffness
     return float(bending_stress(free, p.mode.half_wavelength, distance, modulus))

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.plate.beam.response import beam_response
 from squeezefilm.plate.layout import CeramicPatch, Electrode, RectangularPlate
 from squeezefilm.plate.solid import screening
 from squeezefilm.plate.solid.layers import SCREENING
@@ -70,6 +71,42 @@ def test_symmetry_says_which_modes_it_forbids(
         assert said is not None
         assert f"lines across the {kept}" in said
         assert f"({label[0]},{label[1]})" in said
+
+
+def on_both_faces(plate: RectangularPlate, sign: int) -> RectangularPlate:
+    """The plate with the same ceramics on its upper face, their signs times `sign`."""
+    above = tuple(
+        dataclasses.replace(patch, face="top", polarity=sign * patch.polarity)
+        for patch in plate.patches
+    )
+    return dataclasses.replace(plate, patches=(*plate.patches, *above))
+
+
+def test_ceramics_that_only_stretch_a_plate_bend_nothing() -> None:
+    """Equal signs on both faces: symmetry forbids every mode of bending, the beam says so, and the
+    light mesh finds only rounding errors of it, where opposite signs double the moment."""
+    plate, label = strips(1, -1, 1), (4, 0)
+    alike, against = on_both_faces(plate, 1), on_both_faces(plate, -1)
+    said = forbidden_by(alike, label)
+    assert said is not None
+    assert "(4,0)" in said
+    assert "other face" in said
+    assert forbidden_by(against, label) is None
+    # One ceramic elsewhere, and the mirror is broken.
+    moved = dataclasses.replace(alike.patches[-1], x=alike.patches[-1].x + 1e-3)
+    broken = dataclasses.replace(alike, patches=(*alike.patches[:-1], moved))
+    assert forbidden_by(broken, label) is None
+    beam_response(against).require_driven()
+    with pytest.raises(OutOfRangeError, match="does not bend the plate"):
+        beam_response(alike).require_driven()
+    amplitudes = {
+        plate: max(
+            (mode.antinode_per_volt for mode in screened_modes(plate, (20e3, 70e3)) if mode.label),
+            default=0.0,
+        )
+        for plate in (alike, against)
+    }
+    assert amplitudes[alike] < 1e-3 * amplitudes[against]
 
 
 @pytest.mark.parametrize("electrode", ["driven", "open", "shorted"])

@@ -113,6 +113,26 @@ def test_a_plate_is_drawn_to_scale_with_every_ceramic() -> None:
     assert set(names) == {"copper-beryllium\n2 mm", "P1-91\n1 mm"}
 
 
+def test_ceramics_on_both_faces_are_drawn_on_both() -> None:
+    """A bimorph bends about its middle, 1 mm below the touched face of a plate of 2 mm."""
+    plate = paper()
+    below = dataclasses.replace(plate.patches[3], x=30e-3)
+    above = dataclasses.replace(below, face="top", polarity=-below.polarity)
+    figure = layout(described(dataclasses.replace(plate, patches=(below, above))))
+    assert words(figure.get_suptitle()) == (
+        "1 ceramic covers 13 % of the lower face and 1 ceramic covers 13 % of the upper face; "
+        "the plate bends about an axis 1 mm below the touched face"
+    )
+    lower, upper, side, section = figure.axes
+    place = [pytest.approx((30, 0, 11, 49))]
+    assert (boxes(lower, MINUS), boxes(lower, PLUS)) == (place, [])
+    assert (boxes(upper, MINUS), boxes(upper, PLUS)) == ([], place)
+    assert boxes(side, MINUS) == [pytest.approx((30, -3, 11, 1))]
+    assert boxes(side, PLUS) == [pytest.approx((30, 0, 11, 1))]
+    assert boxes(section, PLUS) == [pytest.approx((0, -1, 1, 1)), pytest.approx((0, 2, 1, 1))]
+    assert data(labelled(section)["neutral axis"])[1] == pytest.approx([1, 1])
+
+
 @pytest.mark.parametrize("thickness", [0.2e-3, 0.7e-3, 1e-3, 3e-3])
 def test_the_names_of_the_layers_keep_off_the_neutral_axis(thickness: float) -> None:
     """Each is nearer to the edge of its layer that is further from the axis."""
