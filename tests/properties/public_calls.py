@@ -118,6 +118,7 @@ NOT_CALLED = {
     plate.elements.krylov.prolonged plate.elements.krylov.with_open_electrodes
     plate.elements.lobatto.LineMesh
     plate.elements.lobatto.LineMesh.interpolation
+    plate.elements.lobatto.LineMesh.located
     plate.elements.lobatto.hierarchic_values
     plate.elements.lobatto.lagrange_basis plate.elements.lobatto.line_matrices
     plate.elements.lobatto.lobatto_nodes
