@@ -338,10 +338,13 @@ class StudyRun:
 
 
 def spoiled_by(design: StudyDesign, response: Response) -> str:
-    """Which of a design's rules the exploration of an answer breaks; empty for none, and where
-    nothing was recorded of it."""
+    """Why the exploration of an answer does not count: a surface that was not played as planned, or
+    one of the design's rules that is broken; empty where it counts, and where nothing was recorded
+    of it."""
     rules = design.rules or TrialRules()
     for one in response.explorations:
+        if one.unusable:
+            return f"the surface was not played as planned: {one.unusable}"
         broken = rules.broken(one.path_length, one.mean_speed, one.mean_normal_force, one.touch)
         if broken:
             return broken

@@ -140,7 +140,8 @@ def run_session(
                 remove_rows(store, who)
             raise
         desk.tell(f"participant {who}: go on with --participant {who}")
-        if again := why_begun_again(store, session):
+        again = why_begun_again(store, session)
+        if again:
             desk.tell(again)
         run = StudyRun(store, session)
         try:
@@ -153,6 +154,8 @@ def run_session(
     said = f"{count} trials on {display} recorded"
     if after.problems:
         said += f". CAUTION, the device is off after the session: {'; '.join(after.problems)}"
+    if (aside := why_begun_again(store, session)) != again:
+        said += f". CAUTION, {aside}"
     said += _attended(store, who, display)
     if run.state == "display changes":
         said += f"; next display: {display_wanted(store, who)}"
