@@ -65,8 +65,9 @@ def test_a_plan_says_what_it_takes(tmp_path: Path) -> None:
 def test_a_study_is_run_interrupted_resumed_exported_merged_and_forgotten(tmp_path: Path) -> None:
     (tmp_path / "tiny.toml").write_text(DESIGN, encoding="utf-8")
     start = ("run", "tiny.toml", "--store", "a.sqlite", "--consent", "--drive", "none")
-    # Two gratings to feel, one practice trial, one answer (after a slip), then the input ends.
-    first = run(*start, cwd=tmp_path, keys="\n\n\n1\n\n9\n2\n")
+    # Two gratings to feel, one practice trial, one answer (after a slip), each once its surface is
+    # in place; then a surface is in place, and the input ends.
+    first = run(*start, cwd=tmp_path, keys="\n\n\n1\n\n9\n2\n\n")
     assert first.returncode == 130
     assert "Traceback" not in first.stderr
     who = first.stdout.split("participant ")[1].split(":")[0]

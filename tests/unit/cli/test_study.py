@@ -276,7 +276,9 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     written = stands_in("report.study.page:write_overview", tmp_path / "index.html")
     done = run("analyze", store)
     assert asked.given == (store,)
-    assert asked.named == {"design": None, "columns": {}, "mixed": False, "seed": 0}
+    assert asked.named == {
+        "design": None, "columns": {}, "mixed": False, "reruns": 0, "seed": 0,
+    }  # fmt: skip
     assert shown.given == (found,)
     assert "  a step …" in done.stderr
     assert done.stdout == ""

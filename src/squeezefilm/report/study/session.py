@@ -72,7 +72,7 @@ def run_study(asked: SessionRequest) -> str:
                 asked.tell,
                 asked.progress,
                 _told_by_hand(asked) if asked.drive == "none" else None,
-                *(() if markers is None else (markers.push,)),
+                mark=(lambda *_: None) if markers is None else markers.push,
                 placed=placed,
             ),
             drive=asked.drive,

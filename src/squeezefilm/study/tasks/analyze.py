@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -89,7 +90,7 @@ def analyze_study(
         InputError: stimuli that have no right answer, no answer yet, or reruns of what has none.
         RecordError: the file is damaged.
     """
-    how = {"mixed": mixed, "resamples": resamples, "reruns": reruns, "seed": seed}
+    how: dict[str, Any] = {"mixed": mixed, "resamples": resamples, "reruns": reruns, "seed": seed}
     if design is not None and not isinstance(store, StudyStore):
         if design.task == "match-to-sample":
             stimuli_and_answers(design)
