@@ -285,8 +285,10 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     assert written.calls == []
 
     out = tmp_path / "pages"
-    done = run("analyze", store, "--out", out, "--mixed", "--seed", "6")
-    assert asked.calls[-1][1] == {"design": None, "columns": {}, "mixed": True, "seed": 6}
+    done = run("analyze", store, "--out", out, "--mixed", "--reruns", "99", "--seed", "6")
+    assert asked.calls[-1][1] == {
+        "design": None, "columns": {}, "mixed": True, "reruns": 99, "seed": 6,
+    }  # fmt: skip
     assert [given[:2] for given, _ in written.calls] == [(found, out)]
     assert done.stdout == f"page: {tmp_path / 'index.html'}\n"
     done = run("analyze", store, "--json")
