@@ -142,7 +142,7 @@ def frequency_response(analysis: Analysis) -> Figure:
     top = int(np.argmax(per_volt))
     peak = float(per_volt[top])
     solid = p.mode.solid
-    own = p.mode.amplitude_per_volt if solid is None else solid.modal_amplitude_per_volt
+    own = p.mode.amplitude_per_volt if solid is None else solid.alone_per_volt
     driven = own > 0.1e-9 * peak
     band = half_power(f, per_volt) if driven else None
     at = shown(p.mode.resonance_frequency, HZ)

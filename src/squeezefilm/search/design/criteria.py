@@ -32,7 +32,7 @@ from squeezefilm.plate.laminate import Laminate, ceramics_of, plate_laminate
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.plate.parts import parts_of
 from squeezefilm.plate.press import bending_stress, pressed_deflection, pressed_disc_deflection
-from squeezefilm.plate.working_mode import TAKES_PART
+from squeezefilm.plate.working_mode import CROWDED
 from squeezefilm.search.design.requirements import Limits, Requirements
 
 # Periods tried over the 0.25 to 20 mm of the observer: steps of 1.8 %, and between them a line.
@@ -215,7 +215,7 @@ def numbers_of_solved(
         found["current"] = load.current
     beside = p.mode.neighbour
     found["neighbour"] = (
-        math.inf if beside is None or beside.share < TAKES_PART else abs(beside.distance)
+        math.inf if beside is None or beside.share < CROWDED else abs(beside.distance)
     )
     if limits.least_area is not None or limits.most_relative_friction is not None:
         area = active_area(display, p)
