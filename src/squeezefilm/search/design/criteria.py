@@ -93,7 +93,7 @@ CRITERIA: Mapping[str, Criterion] = dict(
         _one("resonance_frequency", "Hz", "resonance", "least_frequency"),
         _one("highest_frequency", "Hz", "resonance", "most_frequency", "resonance_frequency"),
         _one("squeeze_number", "1", "squeeze number", "least_squeeze_number"),
-        _one("vibration_amplitude", "m", "amplitude under the finger"),
+        _one("vibration_amplitude", "m", "amplitude at the antinode, finger on"),
         _one("half_wavelength", "m", "half wavelength"),
         _one("current", "A", "current", "most_current"),
         _one("power", "W", "power", "most_power"),
