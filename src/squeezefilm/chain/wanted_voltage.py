@@ -19,7 +19,6 @@ from squeezefilm.from_text import reads_text
 from squeezefilm.plate.working_mode import PlateTheory, WorkingMode
 from squeezefilm.plausibility.checks import require_plausible
 
-
 WantedFriction = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
 """A µ′/µ that is asked for."""
 

@@ -45,7 +45,6 @@ def resonance_factor(
 
 
 PlateTheory = Literal["solid", "timoshenko", "euler_bernoulli", "shear"]
-MEASURED_STATOR = "measured_stator"
 PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
 
 
@@ -94,9 +93,8 @@ class WorkingMode:
 
     @property
     def has_shape(self) -> bool:
-        """Whether the shape of the vibration over the face is known: solved, or of a measured
-        stator, whose antinodes are taken to be alike; not of a beam."""
-        return self.solid is not None or self.disc is not None or self.model == MEASURED_STATOR
+        """Whether the shape of the vibration is solved: not of a beam, nor of a measured stator."""
+        return self.solid is not None or self.disc is not None
 
     @property
     def neighbour(self) -> Neighbour | None:
@@ -162,7 +160,7 @@ def working_mode(
             half_wavelength=actuator.wavelength / 2,
             quality_factor=actuator.quality_factor,
             amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage,
-            model=MEASURED_STATOR,
+            model="measured_stator",
             lobe=(0.0, actuator.radial_width / 2),
         )
     if isinstance(actuator, DiscPlate):
