@@ -31,6 +31,9 @@ from squeezefilm.plate.working_mode import WorkingMode
 _TO_A_HALF_WAVE = 12
 _LEAST_PLACES, _MOST_PLACES = 49, 96
 _KNOTS = 129
+# Of the mean square under a pad, over that of the antinode: with more the antinode hardly moves
+# beside the rest of the face, and no finger's load is known by it.
+_MOST_BESIDE_LOBE = 1e3
 # Places times points of the pad at a time, some 100 MB.
 _AT_A_TIME = 2_000_000
 
@@ -97,7 +100,7 @@ def area_map(
     """The active area of a display that vibrates in a mode, under a finger with a friction law.
 
     Wherever the law has its own pad. Kept for the last few. None where the mode has no shape over
-    a face. Raises `GeometryError` for an active area beside the face.
+    a face, or its antinode hardly moves beside the rest of it. Raises `GeometryError` for an active area beside the face.
     """
     over = dataclasses.replace(law, place=None, position=0.0)
     return _area_map(display.actuator, display.active_area, mode, over, drive, refinement)
@@ -122,6 +125,8 @@ def _area_map(
     at = np.argwhere(_inside(shape, side, x, y, region))
     swings, weights = _met(shape, (x, y), at, pad_points(law.finger, side))
     mean_square = np.sum(weights * swings**2, axis=1)
+    if np.max(mean_square) > _MOST_BESIDE_LOBE:
+        return None
     lobe = touched_amplitudes(mode, law, drive.amplitude, mean_square)
 
     def over(values: si.FloatArray) -> si.FloatArray:

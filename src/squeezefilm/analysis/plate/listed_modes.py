@@ -196,11 +196,11 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
     part with is held against it.
 
     `described` is the mode that the display's file asks for: then there is nothing to write."""
-    strongest = max((mode.amplitude_per_volt for mode in modes), default=0.0)
+    strongest = max((mode.alone_per_volt for mode in modes), default=0.0)
     able = [
         mode
         for mode in modes
-        if mode.amplitude_per_volt >= DRIVEN_SHARE * strongest > 0
+        if mode.alone_per_volt >= DRIVEN_SHARE * strongest > 0
         and mode.choice is not None
         and not (mode.audible or mode.perhaps_audible)
         and (mode.straightness is None or mode.straightness >= _STRAIGHT)

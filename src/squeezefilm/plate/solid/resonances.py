@@ -79,11 +79,14 @@ class Neighbour:
 
 
 def strongest_neighbour(own: Moving, others: Iterable[Moving]) -> Neighbour | None:
-    """The mode that adds most at a mode's resonance; None where there is no other.
+    """The mode that adds most at a mode's resonance; None where there is no other, or nothing of
+    the mode itself to compare it with.
 
     A mode of amplitude A' and half-bandwidth b' adds A'/√(1 + n²) at a distance of n b'.
     """
     found: Neighbour | None = None
+    if own.amplitude_per_volt == 0:
+        return None
     for other in others:
         distance = abs(other.frequency - own.frequency) / other.half_bandwidth
         share = other.amplitude_per_volt / (1 + distance**2) ** 0.5 / own.amplitude_per_volt
