@@ -114,7 +114,7 @@ def check_listed(display: Display, mode: Any, band: tuple[float, float]) -> None
 
 
 def check_circuit(mode: Any) -> None:
-    """Assert that a circuit is physical, with the frequency and Q of its mode, or said to be none."""
+    """Assert that a circuit is physical, with frequency and Q of its mode, or said to be none."""
     circuit, said = mode.solid.circuit, mode.solid.circuit_said
     if circuit is None:
         assert said.startswith("none: ")

@@ -100,7 +100,8 @@ def area_map(
     """The active area of a display that vibrates in a mode, under a finger with a friction law.
 
     Wherever the law has its own pad. Kept for the last few. None where the mode has no shape over
-    a face, or its antinode hardly moves beside the rest of it. Raises `GeometryError` for an active area beside the face.
+    a face, or its antinode hardly moves beside the rest of it. Raises `GeometryError` for an active
+    area beside the face.
     """
     over = dataclasses.replace(law, place=None, position=0.0)
     return _area_map(display.actuator, display.active_area, mode, over, drive, refinement)
