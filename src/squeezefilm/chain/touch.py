@@ -85,11 +85,13 @@ def touch(
 def held_touch(mode: WorkingMode, law: FrictionLaw, amplitude: si.Metre) -> Touch:
     """The finger on a vibration whose amplitude with the finger on it is known (m): `touch` from
     its end to its beginning. Range and errors as those of `touch`."""
-    if amplitude < _LEAST_AMPLITUDE:
+    if amplitude == 0:
         return Touch(amplitude, amplitude, None, None)
     felt = _carried(_Pad.of(law), amplitude)
     loaded = None if mode.modal_mass is None else _loaded(mode, mode.modal_mass, felt)
     kept = 1.0 if loaded is None else loaded.amplitude_ratio(law.frequency) / _alone(mode, law)
+    if amplitude / kept < _LEAST_AMPLITUDE:
+        return Touch(amplitude, amplitude, None, None)
     sharing = law.sharing(amplitude, law.kind.limit)
     return Touch(amplitude / kept, amplitude, loaded, sharing, felt.impedance(law.frequency))
 
