@@ -276,8 +276,10 @@ def _felt(
     display: Display, mode: WorkingMode, drive: FreeVibration, law: FrictionLaw, *, strict: bool
 ) -> Prediction:
     """The finger on the vibration, the film under it, and the friction that is left."""
-    feel = held_touch if drive.voltage is None else touch
-    felt = feel(mode, law, drive.amplitude)
+    if drive.voltage is None:
+        felt = held_touch(mode, law, drive.amplitude)
+    else:
+        felt = touch(mode, law, drive.amplitude)
     gap, gas = law.gap(felt.amplitude), law.gas
     validity = film_validity(gap, drive.frequency, gas, strict=strict)
     load = law.load(felt.amplitude)
