@@ -55,7 +55,7 @@ def results(verb: str) -> Iterator[Result]:
 def keys(verb: str) -> list[str]:
     """The keys of a verb, in the order in which its JSON has them."""
     if verb == "followed":
-        fields = to_json(ModeRow("", *(1.0,) * 7))
+        fields = to_json(ModeRow("", *(1.0,) * 8))
         return [key for key in fields if key not in ("label", "modal_force")]
     found: dict[str, None] = {}
     for result in results(verb):

@@ -100,9 +100,10 @@ def test_a_shunted_mode_is_the_peak_of_the_harmonic_response() -> None:
     f0, q = modes.frequencies[0], modes.quality_factors[0]
     f = f0 * (1 + np.linspace(-1.5, 1.5, 301) / q)
     response = harmonic_response(plate, f)
-    circuit = response.equivalent_circuit()
-    assert circuit.frequency == pytest.approx(f0, rel=5e-4)
-    assert circuit.quality_factor == pytest.approx(q, rel=0.03)
+    conductance = response.admittance.real
+    half = f[conductance > conductance.max() / 2]
+    assert f[np.argmax(conductance)] == pytest.approx(f0, rel=5e-4)
+    assert f0 / (half[-1] - half[0]) == pytest.approx(q, rel=0.03)
 
 
 @pytest.mark.slow

@@ -78,7 +78,7 @@ def test_open_ceramics_stiffen_like_open_terminals(frequencies: SensitivityTable
     terminals = frequencies.reference.open_frequency / frequencies.reference.frequency - 1
     assert row.frequency_shift is not None
     assert terminals < row.frequency_shift < terminals + 1e-3
-    assert row.amplitude_per_volt is None
+    assert row.largest_per_volt is None
 
 
 @pytest.mark.slow

@@ -81,14 +81,14 @@ def _asked(mixture: Mixture, points: si.DimensionlessArray, more: object = None)
     """A hash of all that draws come from: the display with its ranges and the working point, the
     solved plate by the numbers that draws take of it; and of what `more` is made of them."""
     p = mixture.prediction
-    mode, law, felt = p.mode, p.law, p.touch
+    mode, law = p.mode, p.law
     numbers = (
         mode.resonance_frequency,
         mode.quality_factor,
         mode.modal_mass,
         mode.half_wavelength,
         mode.amplitude_per_volt,
-        felt.free_amplitude,
+        p.held_amplitude,
         p.frequency,
         p.voltage,
         p.normal_force,

@@ -151,8 +151,7 @@ def moving_surface(display: Display, prediction: Prediction) -> RadiatingSurface
             for side in (plate.length, plate.width)
         )
         # The shape at resonance; off it as much as its lobe moves less.
-        share = free / (mode.solid.amplitude_per_volt)
-        w = response.displacement(x, y)[response.resonance] * share
+        w = response.motion(mode.solid.resonance, x, y) * free / mode.solid.amplitude_per_volt
         return rectangular_surface(x, y, 1j * omega * w, p.frequency)
     if isinstance(actuator, DiscPlate):
         found = ring_body(actuator).mode()

@@ -33,7 +33,8 @@ def require_bent(display: Display, prediction: Prediction) -> None:
 
 
 class FreeAmplitude:
-    """The amplitude (m) without a finger of a display with other values, from a prediction's.
+    """The amplitude (m) without a finger of a display with other values, from a prediction's; where
+    an amplitude was given, that one.
 
     What a plate or disc is made of moves it constant by constant, as three beams or three solved
     discs say (`_moved`), a disc's dimensions likewise; a rectangular plate's layout moves it as a
@@ -43,7 +44,7 @@ class FreeAmplitude:
     def __init__(self, display: Display, prediction: Prediction) -> None:
         require_bent(display, prediction)
         self.nominal, self.prediction = display, prediction
-        self.free = prediction.touch.free_amplitude
+        self.free = prediction.held_amplitude
         self.reference = self._per_volt(display.actuator) if prediction.voltage is not None else 1.0
         self._curves: dict[str, tuple[float, float]] = {}
         self._last: tuple[Actuator, float] = display.actuator, 1.0

@@ -297,7 +297,7 @@ class _Bench:
         there = dataclasses.replace(p, mode=mode, frequency=mode.resonance_frequency * detuning)
         mixture = self.mixture.at(there, changed)
         draw = mixture.made({}, {})
-        free = p.touch.free_amplitude * share
+        free = p.held_amplitude * share
         return float(outcome_of(mixture, draw, free, settled=TOLERANCE).friction)
 
     def _outcome(self, values: dict[str, float]) -> si.Dimensionless:
@@ -306,5 +306,5 @@ class _Bench:
         draw = self.mixture.made(values, {})
         nominal, here = self.display.drive.voltage, draw.display.drive.voltage
         share = here / nominal if p.voltage is not None and nominal > 0 else 1.0
-        free = p.touch.free_amplitude * share
+        free = p.held_amplitude * share
         return float(outcome_of(self.mixture, draw, free, settled=TOLERANCE).friction)

@@ -42,7 +42,7 @@ def least_amplitude(
             # So strong a vibration closes the gap at some ridge: it is no way to get there.
             break
         if left <= 0:
-            return float(brentq(excess, low, high, xtol=1e-13, rtol=1e-6))
+            return float(brentq(excess, low, high, xtol=1e-20, rtol=1e-12))
         low, least = float(high), min(least, left + wanted)
     raise UnreachableError(
         f"relative_friction = {wanted:.4g} is not reached by any vibration amplitude up to "

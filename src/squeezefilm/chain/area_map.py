@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from squeezefilm import quantities as si
-from squeezefilm.chain.free_vibration import FreeVibration
+from squeezefilm.chain.free_vibration import FreeVibration, free_vibration
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.pad_place import PadPlace, met_by_pads, place_words
 from squeezefilm.chain.touch import touched_amplitudes
@@ -31,6 +31,9 @@ from squeezefilm.plate.working_mode import WorkingMode
 _TO_A_HALF_WAVE = 12
 _LEAST_PLACES, _MOST_PLACES = 49, 96
 _KNOTS = 129
+# Of the mean square under a pad, over that of the antinode: with more the antinode hardly moves
+# beside the rest of the face, and no finger's load is known by it.
+_MOST_BESIDE_LOBE = 1e3
 # Places times points of the pad at a time, some 100 MB.
 _AT_A_TIME = 2_000_000
 
@@ -65,20 +68,19 @@ def lowest(relative_friction: si.DimensionlessArray, moved: si.FloatArray) -> in
     return int(np.argmax(np.where(alike, np.round(size / (np.nanmax(size) or 1.0), 9), -1.0)))
 
 
-def at_best_place(
-    display: Display, mode: WorkingMode, law: FrictionLaw, drive: FreeVibration
-) -> FrictionLaw:
-    """A law with its pad at the best place of the active area, of a vibration whose shape is
-    solved.
+def at_best_place(display: Display, mode: WorkingMode, law: FrictionLaw) -> FrictionLaw:
+    """A law with its pad at the best place of the active area: where friction is lowest at the
+    display's own voltage (1 V where that is 0) and the law's frequency.
 
-    As it is, over an antinode of an even wave, where the shape is not solved (a beam, a measured
-    stator), nothing moves, or friction is not known.
+    One place for all voltages and amplitudes, so that an amplitude, a voltage and a friction stand
+    for each other whichever of them was asked for; another voltage may have its lowest friction a
+    little beside it. As it is, over an antinode of an even wave, where the shape is not solved
+    (a beam, a measured stator), or friction is not known.
     """
-    if not mode.has_shape:
+    if not mode.has_shape or law.kind.film != "shared" or law.kind.limit != "own":
         return law
-    if drive.amplitude == 0 or law.kind.film != "shared" or law.kind.limit != "own":
-        return law
-    found = area_map(display, mode, law, drive)
+    own = free_vibration(display, mode, law.frequency, display.drive.voltage or 1.0, None)
+    found = area_map(display, mode, law, own)
     if found is None or found.relative_friction is None:
         return law
     best = lowest(found.relative_friction, found.at_centre * found.lobe_amplitude)
@@ -97,9 +99,9 @@ def area_map(
 ) -> AreaMap | None:
     """The active area of a display that vibrates in a mode, under a finger with a friction law.
 
-    Wherever the law has its own pad; a given amplitude is the same wherever the finger is. Kept for
-    the last few. None where the mode has no shape over a face. Raises `GeometryError` for an
-    active area beside the face.
+    Wherever the law has its own pad. Kept for the last few. None where the mode has no shape over
+    a face, or its antinode hardly moves beside the rest of it. Raises `GeometryError` for an active
+    area beside the face.
     """
     over = dataclasses.replace(law, place=None, position=0.0)
     return _area_map(display.actuator, display.active_area, mode, over, drive, refinement)
@@ -124,9 +126,9 @@ def _area_map(
     at = np.argwhere(_inside(shape, side, x, y, region))
     swings, weights = _met(shape, (x, y), at, pad_points(law.finger, side))
     mean_square = np.sum(weights * swings**2, axis=1)
-    lobe = np.full(mean_square.shape, drive.amplitude)
-    if drive.voltage is not None:
-        lobe = touched_amplitudes(mode, law, drive.amplitude, mean_square)
+    if np.max(mean_square) > _MOST_BESIDE_LOBE:
+        return None
+    lobe = touched_amplitudes(mode, law, drive.amplitude, mean_square)
 
     def over(values: si.FloatArray) -> si.FloatArray:
         """Values of the places there are, where they belong."""

@@ -14,7 +14,7 @@ from squeezefilm.plate.working_mode import WorkingMode
 
 class FreeVibration(NamedTuple):
     """A plate that vibrates without a finger: its voltage where that is known, and what made the
-    amplitude (m, zero-to-peak, at the best antinode)."""
+    amplitude (m, zero-to-peak, at the antinode)."""
 
     frequency: si.Hertz
     voltage: si.Volt | None

@@ -82,7 +82,9 @@ class PadPlace:
     @functools.cached_property
     def at_centre(self) -> si.Dimensionless:
         """The amplitude at the pad's centre."""
-        return float(self.shape.grid(np.array([self.x]), np.array([self.y]))[0, 0])
+        share = float(self.shape.grid(np.array([self.x]), np.array([self.y]))[0, 0])
+        # On a node, but for rounding.
+        return 0.0 if share < 1e-9 else share
 
     @property
     def antinode_said(self) -> str:

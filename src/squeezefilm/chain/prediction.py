@@ -22,7 +22,7 @@ from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.pad_place import FacePlace, pad_place, place_words
-from squeezefilm.chain.touch import Touch, touch
+from squeezefilm.chain.touch import Touch, held_touch, touch
 from squeezefilm.display import Display, NamedDisplay, Surface
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.film.gap import squeeze_number
@@ -42,13 +42,14 @@ from squeezefilm.results import Result, to_json
 class Prediction(Result):
     """What a display does at one voltage, frequency and force on one surface.
 
-    The pad is at the best place of the active area, or where it was asked for, on the solved shape
-    of the vibration; where no shape is solved it is over an antinode of a wave whose antinodes are
-    taken to be all alike. `place` is its centre. `amplitude_model` made the vibration
-    amplitude (zero-to-peak, at the best antinode wherever the finger is, with it on), `touch` says
-    what the finger took from it, `model` made pressure and friction. `mean_pressure` is the film's,
-    averaged over contact and period, divided by ambient, `mean_pressure_error` the solver's
-    estimate of its error (0 for a closed form).
+    The pad is at the best place of the active area (see `at_best_place`), or where it was asked
+    for, on the solved shape of the vibration; where no shape is solved it is over an antinode of a
+    wave whose antinodes are taken to be all alike. `place` is its centre. `amplitude_model` made
+    the vibration amplitude (zero-to-peak, at the antinode wherever the finger is, with it on;
+    `amplitude_at_place` is that under the pad's centre), `touch` says what the finger took from
+    it, `model` made pressure and friction. `mean_pressure` is the film's, averaged over contact
+    and period, divided by ambient, `mean_pressure_error` the solver's estimate of its error (0 for
+    a closed form).
     `relative_friction_limits` are µ′/µ with each ridge at its own balance and with all ridges at
     one mean gap, None for a model that shares no load or where one of the two is out of range.
     `friction_reduction` is µ − µ′, `tangential_force` µ′ F of a finger that slides steadily.
@@ -100,6 +101,12 @@ class Prediction(Result):
         Raises `InputError` where nothing vibrates or the friction does not fall.
         """
         return self.friction.inverse(self.law.over_speeds, self.vibration_amplitude)
+
+    @property
+    def held_amplitude(self) -> si.Metre:
+        """What stays as it was asked for while all else is uncertain (m): at a voltage the
+        amplitude without a finger, where an amplitude was given that with the finger on it."""
+        return self.vibration_amplitude if self.voltage is None else self.touch.free_amplitude
 
     @property
     def drive(self) -> FreeVibration:
@@ -212,7 +219,8 @@ def predict(
 
     The frequency defaults to the resonance without a finger; voltage, force, surface and the
     finger's `speed` of sliding (m/s) to the display's own. A `vibration_amplitude` (m,
-    zero-to-peak, with the finger on it) given directly takes the place of voltage and plate.
+    zero-to-peak, at the antinode with the finger on) given directly takes the place of the voltage:
+    that of a prediction gives the same friction again.
     The pad is at the best place of the active area, where the solved shape of the vibration says
     what each of its ridges meets; `place` (x, y in m, from a plate's corner, a disc's middle or
     along a stator's track) puts it elsewhere on that shape, and `position` that far from an
@@ -256,7 +264,7 @@ def predict(
             place=pad_place(display.actuator, mode, drive.frequency, place),
         )
         if place is None and position is None:
-            law = at_best_place(display, mode, law, drive)
+            law = at_best_place(display, mode, law)
         asked_for_asymptote = model is not None and law.kind.film == "asymptote"
         found = _felt(display, mode, drive, law, strict=strict and asked_for_asymptote)
     objections = (*unusual, *replaced)
@@ -268,8 +276,10 @@ def _felt(
     display: Display, mode: WorkingMode, drive: FreeVibration, law: FrictionLaw, *, strict: bool
 ) -> Prediction:
     """The finger on the vibration, the film under it, and the friction that is left."""
-    taking = mode if drive.voltage is not None else dataclasses.replace(mode, modal_mass=None)
-    felt = touch(taking, law, drive.amplitude)
+    if drive.voltage is None:
+        felt = held_touch(mode, law, drive.amplitude)
+    else:
+        felt = touch(mode, law, drive.amplitude)
     gap, gas = law.gap(felt.amplitude), law.gas
     validity = film_validity(gap, drive.frequency, gas, strict=strict)
     load = law.load(felt.amplitude)

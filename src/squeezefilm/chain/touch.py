@@ -25,7 +25,7 @@ _MOST_STEPS = 40
 _BELOW = np.concatenate([np.linspace(1.0, 0.05, 120), np.geomspace(0.05, 1e-6, 41)[1:]])
 # Of the mean square of the mode under a pad, between which amplitudes are interpolated.
 _KNOTS = 17
-TOLERANCE: si.Dimensionless = 1e-8
+TOLERANCE: si.Dimensionless = 1e-11
 """To which amplitude and load fit where nothing else is asked, a share of the free amplitude."""
 
 _LEAST_AMPLITUDE: si.Metre = 1e-12
@@ -79,6 +79,21 @@ def touch(
     sharing = law.sharing(left.amplitude, law.kind.limit)
     impedance = left.felt.impedance(law.frequency)
     return Touch(free_amplitude, left.amplitude, left.mode, sharing, impedance)
+
+
+@si.checked_numbers
+def held_touch(mode: WorkingMode, law: FrictionLaw, amplitude: si.Metre) -> Touch:
+    """The finger on a vibration whose amplitude with the finger on it is known (m): `touch` from
+    its end to its beginning. Range and errors as those of `touch`."""
+    if amplitude == 0:
+        return Touch(amplitude, amplitude, None, None)
+    felt = _carried(_Pad.of(law), amplitude)
+    loaded = None if mode.modal_mass is None else _loaded(mode, mode.modal_mass, felt)
+    kept = 1.0 if loaded is None else loaded.amplitude_ratio(law.frequency) / _alone(mode, law)
+    if amplitude / kept < _LEAST_AMPLITUDE:
+        return Touch(amplitude, amplitude, None, None)
+    sharing = law.sharing(amplitude, law.kind.limit)
+    return Touch(amplitude / kept, amplitude, loaded, sharing, felt.impedance(law.frequency))
 
 
 @si.checked_numbers

@@ -7,7 +7,7 @@ from typing import Annotated
 from squeezefilm import quantities as si
 from squeezefilm.chain.area_map import at_best_place
 from squeezefilm.chain.chosen_mode import chosen_mode
-from squeezefilm.chain.free_vibration import FreeVibration, amplitude_per_volt
+from squeezefilm.chain.free_vibration import amplitude_per_volt
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.pad_place import FacePlace, pad_place
@@ -18,9 +18,6 @@ from squeezefilm.errors import UnreachableError
 from squeezefilm.from_text import reads_text
 from squeezefilm.plate.working_mode import PlateTheory, WorkingMode
 from squeezefilm.plausibility.checks import require_plausible
-
-_MOST_PLACES = 4
-
 
 WantedFriction = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
 """A µ′/µ that is asked for."""
@@ -43,8 +40,9 @@ def voltage_for_friction(
 ) -> tuple[si.Volt, si.Metre]:
     """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
 
-    The inverse of `predict`, the finger's damping and detuning included; linear in the voltage up
-    to there. The amplitude is the best antinode's, wherever the pad is. Raises
+    The inverse of `predict`, with the pad where that has it, the finger's damping and detuning
+    included; linear in the voltage up to there. The amplitude is the antinode's, with the finger
+    on, wherever the pad is. Raises
     `UnreachableError` where no amplitude does, or where the voltage would be more than the 2 kV
     that a `Drive` may have.
     """
@@ -63,20 +61,9 @@ def voltage_for_friction(
         position=position or 0.0,
         place=pad_place(display.actuator, mode, drive_frequency, place),
     )
-    if place is not None or position is not None:
-        return _needed(mode, law, relative_friction)
-    # Which place is best may change with the voltage, by little: found at the drive's own first.
-    volts, per_volt = display.drive.voltage, amplitude_per_volt(mode, drive_frequency)
-    found, before = (0.0, 0.0), None
-    for _ in range(_MOST_PLACES):
-        drive = FreeVibration(drive_frequency, volts, volts * per_volt, mode.model)
-        law = at_best_place(display, mode, law, drive)
-        here = law.place and (law.place.x, law.place.y)
-        if here is not None and here == before:
-            break
-        found = _needed(mode, law, relative_friction)
-        volts, before = found[0], here
-    return found
+    if place is None and position is None:
+        law = at_best_place(display, mode, law)
+    return _needed(mode, law, relative_friction)
 
 
 def _needed(

@@ -10,12 +10,12 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
-from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
+from squeezefilm.errors import OutOfRangeError, UnreachableError
+from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit, with_static_capacitance
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.ring.body import RingBody, ring_body
 from squeezefilm.plate.ring.modes import annular_admittance, clamped_capacitance
-from squeezefilm.plate.ring.response import modal_circuit, with_static_capacitance
+from squeezefilm.plate.ring.response import modal_circuit
 from squeezefilm.plate.solid.working import response_frequencies
 from squeezefilm.plate.working_mode import WorkingMode
 
@@ -82,7 +82,7 @@ class ElectricalLoad:
     """What a plate without a finger, which is when it takes most, asks of its amplifier.
 
     Amplitudes are zero-to-peak. `capacitance` is that of the electrodes beside the mode (None where
-    no circuit was fitted), `channels` how many ceramics are driven, in parallel; what is `per
+    the mode has no circuit), `channels` how many ceramics are driven, in parallel; what is `per
     channel` is their mean. `parallel_inductance` takes the reactive current away, so that the
     amplifier gives `matched_current` at the same voltage; `series_inductance` takes the reactive
     voltage away, so that it gives the same current at `matched_voltage`; both are None where the
@@ -114,7 +114,7 @@ def electrical_load(
     voltage: Annotated[si.Volt, si.AtLeast(0)],
     frequency: Annotated[si.Hertz, si.Above(0)],
     *,
-    circuit: EquivalentCircuit | None = None,
+    capacitance: si.Farad | None = None,
     channels: Annotated[int, si.AtLeast(1)] = 1,
 ) -> ElectricalLoad:
     """The load of a body at a voltage amplitude (V) and a frequency (Hz) of its response.
@@ -136,11 +136,10 @@ def electrical_load(
     Z = 1 / Y
     current, slew = abs(Y) * voltage, omega * voltage
     capacitive = Y.imag > 0
-    static = None if circuit is None else circuit.static_capacitance
     return ElectricalLoad(
         frequency=frequency,
         voltage=voltage,
-        capacitance=static,
+        capacitance=capacitance,
         current=current,
         apparent_power=current * voltage / 2,
         real_power=Y.real * voltage**2 / 2,
@@ -152,7 +151,7 @@ def electrical_load(
         matched_voltage=current * Z.real if capacitive else voltage,
         channels=channels,
         current_per_channel=current / channels,
-        capacitance_per_channel=None if static is None else static / channels,
+        capacitance_per_channel=None if capacitance is None else capacitance / channels,
         amplifiers=tuple(amplifier_check(one, voltage, current, slew) for one in AMPLIFIERS),
     )
 
@@ -173,23 +172,28 @@ def load_of_mode(
     if isinstance(actuator, AnnularStator | DiscPlate):
         try:
             ring = ring_admittance(actuator)
-            load = electrical_load(ring, voltage, frequency, circuit=ring.circuit)
+            load = electrical_load(ring, voltage, frequency, capacitance=_beside(ring.circuit))
         except (OutOfRangeError, UnreachableError):
             return None
         return replace(load, assumed=ring.assumed)
     if mode.solid is None:
         return None
-    response = mode.solid.response
-    try:
-        circuit = response.equivalent_circuit()
-    except InputError:
-        circuit = None
+    solid = mode.solid
     try:
         return electrical_load(
-            response, voltage, frequency, circuit=circuit, channels=driven_ceramics(actuator)
+            solid.response,
+            voltage,
+            frequency,
+            capacitance=_beside(solid.circuit),
+            channels=driven_ceramics(actuator),
         )
     except OutOfRangeError:
         return None
+
+
+def _beside(circuit: EquivalentCircuit | None) -> si.Farad | None:
+    """The capacitance beside a mode (F), where its circuit is known."""
+    return None if circuit is None else circuit.static_capacitance
 
 
 _FITTED = (

@@ -17,6 +17,7 @@ from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.plate.ring.body import (
+    RingBody,
     half_wavelength_of,
     ring_body,
     surface_profile,
@@ -47,8 +48,9 @@ PlateTheory = Literal["solid", "timoshenko", "euler_bernoulli", "shear"]
 PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
 
 
-TAKES_PART: si.Dimensionless = 0.1
-"""The share of a mode's amplitude from which on it is said that a neighbour adds it."""
+CROWDED: si.Dimensionless = 0.2
+"""A mode is crowded if a neighbour adds at least this share of its amplitude at its resonance,
+and hidden if it adds as much as the mode has."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,15 +105,12 @@ class WorkingMode:
     def company(self) -> str | None:
         """What is to be said of a neighbour that takes part in this mode; None where none does."""
         beside = self.neighbour
-        if beside is None or beside.share < TAKES_PART:
+        if beside is None or beside.share < CROWDED:
             return None
-        adds = (
-            f"adds {100 * beside.share:.0f} % of the amplitude at resonance"
-            if beside.share <= 1
-            else "moves more at resonance than this mode"
-        )
+        adds = f"adds {100 * beside.share:.0f} % of what this mode moves at its resonance"
+        kind = "hidden" if beside.share >= 1 else "crowded"
         return (
-            f"{self.label} is crowded: the mode {beside.name} at "
+            f"{self.label} is {kind}: the mode {beside.name} at "
             f"{si.format_quantity(beside.frequency, si.Unit('Hz'))} lies {beside.distance:.2g} "
             f"half-bandwidths away and {adds}. Where two modes cross they share the motion, so "
             "that the amplitude has a dip there; small changes of the plate move it, and nodal "
@@ -168,21 +167,7 @@ def working_mode(
         return _disc(actuator)
     si.require_one_of("theory", theory, PLATE_THEORIES)
     if theory == "solid":
-        solid = solid_mode(actuator, pace=pace)
-        return WorkingMode(
-            label="({},{})".format(*actuator.working_label),
-            resonance_frequency=solid.frequency,
-            half_wavelength=solid.half_wavelength,
-            quality_factor=solid.quality_factor,
-            amplitude_per_volt=solid.amplitude_per_volt,
-            model=solid.model,
-            lobe=solid.lobe,
-            frequency_error=solid.frequency_error,
-            modal_mass=solid.modal_mass,
-            line=ModeLine(solid.position, solid.deflection),
-            solid=solid,
-            beam=_beam_beside(actuator),
-        )
+        return solid_working_mode(actuator, solid_mode(actuator, pace=pace))
     if theory == "shear":
         return _sheared(actuator)
     beam = beam_response(actuator, theory)
@@ -199,6 +184,27 @@ def working_mode(
         modal_mass=_beam_mass(beam),
         line=ModeLine(shape.position, shape.deflection),
         beam=beam,
+    )
+
+
+def solid_working_mode(
+    plate: RectangularPlate, solid: SolidMode, label: tuple[int, int] | None = None
+) -> WorkingMode:
+    """A solved mode of a plate as the mode that a display works in; without a label of nodal lines
+    it is the one that the plate asks for."""
+    return WorkingMode(
+        label="({},{})".format(*(label or plate.working_label)),
+        resonance_frequency=solid.frequency,
+        half_wavelength=solid.half_wavelength,
+        quality_factor=solid.quality_factor,
+        amplitude_per_volt=solid.amplitude_per_volt,
+        model=solid.model,
+        lobe=solid.lobe,
+        frequency_error=solid.frequency_error,
+        modal_mass=solid.modal_mass,
+        line=ModeLine(solid.position, solid.deflection),
+        solid=solid,
+        beam=_beam_beside(plate),
     )
 
 
@@ -224,7 +230,20 @@ def _sheared(plate: RectangularPlate) -> WorkingMode:
 
 def _disc(disc: DiscPlate) -> WorkingMode:
     body = ring_body(disc)
-    mode = body.mode()
+    return _solved_ring(body, body.mode())
+
+
+def ring_working_mode(
+    actuator: AnnularStator | DiscPlate, body: RingBody, mode: AnnularMode
+) -> WorkingMode:
+    """A solved mode of a disc or stator as the mode that a display works in: a stator's own is as
+    it was measured. Raises `InputError` for one that crosses no two nodal lines."""
+    if isinstance(actuator, AnnularStator) and mode.harmonic == body.label[1]:
+        return working_mode(actuator)
+    return _solved_ring(body, mode)
+
+
+def _solved_ring(body: RingBody, mode: AnnularMode) -> WorkingMode:
     half, _ = half_wavelength_of(mode)
     if half is None:
         raise InputError(

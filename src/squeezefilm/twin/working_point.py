@@ -11,7 +11,6 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.chain.area_map import at_best_place
 from squeezefilm.chain.chosen_mode import chosen_mode
-from squeezefilm.chain.free_vibration import free_vibration
 from squeezefilm.chain.friction import TABLE_SPEEDS, friction_law
 from squeezefilm.chain.touch import load_ratios
 from squeezefilm.display import Display
@@ -128,7 +127,7 @@ def _tables(
     `highest`; the amplitude first. The pad is where `predict` has it, as described and driven."""
     half, frequency = mode.half_wavelength, mode.resonance_frequency
     law = friction_law(display, half, frequency)
-    place = at_best_place(display, mode, law, free_vibration(display, mode, None, None, None)).place
+    place = at_best_place(display, mode, law).place
     for _ in range(12):
         grid = highest * (np.arange(POINTS) / (POINTS - 1)) ** 2
         try:

@@ -75,12 +75,31 @@ def test_of_a_pad_all_points_are_what_few_nodes_say() -> None:
     assert law.mean_square == pytest.approx(float(np.mean(met**2)), rel=1e-9)
 
 
-def test_the_voltage_for_a_friction_gives_it_at_the_best_place() -> None:
+@pytest.mark.parametrize("frequency", [None, 25.9e3])
+def test_an_answer_put_in_as_a_question_returns_itself(frequency: float | None) -> None:
+    """By voltage, by amplitude and by friction, from each of them."""
     display = load_display("winfield2007-tpad")
-    volts, amplitude = voltage_for_friction(display, 0.5)
-    p = predict(display, voltage=volts)
-    assert p.relative_friction == pytest.approx(0.5, abs=1e-5)
-    assert p.vibration_amplitude == pytest.approx(amplitude, rel=1e-5)
+    for volts in (0.3 * display.drive.voltage, display.drive.voltage):
+        p = predict(display, voltage=volts, frequency=frequency)
+        given = predict(display, vibration_amplitude=p.vibration_amplitude, frequency=frequency)
+        assert given.place == p.place
+        for name in ("relative_friction", "vibration_amplitude", "amplitude_at_place"):
+            assert getattr(given, name) == pytest.approx(getattr(p, name), rel=1e-9)
+        assert given.touch.free_amplitude == pytest.approx(p.touch.free_amplitude, rel=1e-9)
+        found, amplitude = voltage_for_friction(display, p.relative_friction, frequency=frequency)
+        assert found == pytest.approx(volts, rel=1e-9)
+        assert amplitude == pytest.approx(p.vibration_amplitude, rel=1e-9)
+    for wanted in (0.9, 0.5):
+        volts, amplitude = voltage_for_friction(display, wanted, frequency=frequency)
+        p = predict(display, voltage=volts, frequency=frequency)
+        assert p.relative_friction == pytest.approx(wanted, rel=1e-9)
+        assert p.vibration_amplitude == pytest.approx(amplitude, rel=1e-9)
+
+
+def test_the_best_place_is_one_for_all_voltages() -> None:
+    display = load_display("winfield2007-tpad")
+    places = {predict(display, voltage=volts).place for volts in (0.0, 1.0, 20.0)}
+    assert places == {predicted("winfield2007-tpad").place}
 
 
 # Where no shape is solved, or the model knows none.
@@ -93,7 +112,6 @@ def test_the_voltage_for_a_friction_gives_it_at_the_best_place() -> None:
         ("biet2008-stator", {}),
         ("winfield2007-tpad", {"model": "paper2008"}),
         ("winfield2007-tpad", {"model": "partial-levitation-one-gap"}),
-        ("winfield2007-tpad", {"voltage": 0.0}),
         ("winfield2007-tpad", {"position": 0.0}),
     ],
 )
@@ -122,7 +140,7 @@ def test_a_map_is_kept_whatever_place_its_law_has() -> None:
     here = area_map(display, p.mode, p.law, p.drive)
     even = dataclasses.replace(p.law, place=None)
     assert area_map(display, p.mode, even, p.drive) is here
-    law = at_best_place(display, p.mode, even, p.drive)
+    law = at_best_place(display, p.mode, even)
     assert isinstance(law, PadLaw)
     assert law.place is not None
     assert (law.place.x, law.place.y) == p.place

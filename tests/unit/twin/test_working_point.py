@@ -62,7 +62,7 @@ def laws(monkeypatch: pytest.MonkeyPatch) -> Laws:
 
 def use(monkeypatch: pytest.MonkeyPatch, laws: Laws) -> Laws:
     monkeypatch.setattr(module, "friction_law", laws.friction_law)
-    monkeypatch.setattr(module, "at_best_place", lambda display, mode, law, drive: law)
+    monkeypatch.setattr(module, "at_best_place", lambda display, mode, law: law)
     monkeypatch.setattr(
         module, "load_ratios", lambda mode, law, amplitude: (1 + 2j) * law.force * (1 + amplitude)
     )

@@ -274,8 +274,8 @@ def _() -> ClaimValue:
 
 def _amplitude(point: WorkingPoint) -> si.Metre:
     """The largest amplitude on the upper face at the drive's voltage."""
-    assert point.amplitude_per_volt is not None
-    return load_display("biet2008-plate").drive.voltage * point.amplitude_per_volt
+    assert point.largest_per_volt is not None
+    return load_display("biet2008-plate").drive.voltage * point.largest_per_volt
 
 
 def _amplitudes(note: str) -> ClaimValue:

@@ -21,6 +21,7 @@ from squeezefilm.analysis.draws import (
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, refusal_words, sobol_points
 from squeezefilm.chain.amplitude_search import HIGHEST_AMPLITUDE
+from squeezefilm.chain.free_vibration import amplitude_per_volt
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.touch import kept_at
@@ -192,9 +193,8 @@ def uncertain_voltage(
     """
     tell = progress or (lambda _: None)
     p = prediction
-    free = p.touch.free_amplitude
     # The amplitude per volt at this frequency, whatever voltage or amplitude was asked for.
-    per_volt = free / p.voltage if p.voltage else float(p.mode.response(np.array([p.frequency]))[0])
+    per_volt = amplitude_per_volt(p.mode, p.frequency)
     unit = dataclasses.replace(
         p, voltage=1.0, touch=dataclasses.replace(p.touch, free_amplitude=per_volt)
     )

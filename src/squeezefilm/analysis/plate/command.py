@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import re
 from dataclasses import KW_ONLY, dataclass, field
@@ -15,7 +16,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.hurry import Hurry
 from squeezefilm.analysis.plate.ring import RingAnalysis, analyze_ring
-from squeezefilm.analysis.plate.solved import ModeRow, Remarks, SolvedBody, sweep_around
+from squeezefilm.analysis.plate.solved import ModeRow, Remarks, SolvedBody
 from squeezefilm.analysis.sound import plate_sound
 from squeezefilm.arguments import called_with
 from squeezefilm.display import Display, NamedDisplay
@@ -24,49 +25,67 @@ from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
-from squeezefilm.plate.elements.nodal_lines import within_nodes, zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
-from squeezefilm.plate.solid.layers import COARSE, Resolution
-from squeezefilm.plate.solid.modes import Label, PlateModes, check_band, profiles
-from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
-from squeezefilm.plate.solid.solve import solve_for_response, solve_modes
+from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
+from squeezefilm.plate.solid.resonances import antinode, label_name
+from squeezefilm.plate.solid.response import HarmonicResponse
+from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.plate.solid.working import SolidMode, response_frequencies, solid_mode
 from squeezefilm.plate.sound import SoundField
+from squeezefilm.plate.working_mode import WorkingMode, solid_working_mode
 from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.progress import Pace, SayProgress, said_with_time_left
 
-# Estimated errors (relative) above which a finer mesh is taken: of the working mode, and of the
-# other modes of the band, in whose table they stand.
-_WORKING, _BESIDE = 1e-3, 3e-3
+# Estimated error (relative) of the band's modes above which a finer mesh is taken.
+_BESIDE = 3e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PlateAnalysis(SolvedBody):
-    """The solved plate: table of modes, the working mode, its response and equivalent circuit."""
+    """The solved plate: table of modes, the working mode as every verb has it, its response.
+
+    `solid` is the solved mode behind `mode`, `modes` those of the band, whose table is `rows`;
+    `response` is that of `solid`, at the number of frequencies that was asked for.
+    """
 
     display: Display
     plate: RectangularPlate
-    modes: PlateModes
+    mode: WorkingMode
+    solid: SolidMode
     working_label: Label
-    alone: PlateModes
+    modes: PlateModes
     rows: tuple[ModeRow, ...]
     working: ModeRow
     response: HarmonicResponse
-    amplitude_per_volt: si.MetrePerVolt
-    centreline_per_volt: si.MetrePerVolt
-    circuit: EquivalentCircuit | None
+    resonance: int
     beam_frequency: si.Hertz
     beam_amplitude_per_volt: si.MetrePerVolt
     shear_frequency: si.Hertz | None
     sound: SoundField
     objections: tuple[str, ...] = ()
+
     remarks = Remarks(
         "(estimated)",
         "largest, upper face",
-        "centreline, between outer nodes",
         "from the losses of its materials",
         "loudest direction",
     )
+
+    @property
+    def largest_per_volt(self) -> si.MetrePerVolt:
+        """See `SolidMode` (m/V)."""
+        return self.solid.largest_per_volt
+
+    @property
+    def circuit(self) -> EquivalentCircuit | None:
+        """See `SolidMode.circuit`."""
+        return self.solid.circuit
+
+    @property
+    def circuit_said(self) -> str:
+        """See `SolidMode.circuit_said`."""
+        return self.solid.circuit_said
 
     @property
     def model(self) -> str:
@@ -123,10 +142,10 @@ class PlateRequest:
 def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
     """The modes of a display's plate in a band, and the response around the working mode.
 
-    `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. `alone` in the
-    result is the working mode solved by itself, to an estimated 0.1 % where meshes allow, those of
-    the band to 0.3 %. Within a `budget` (s) meshes are left coarser, with
-    larger errors, and the other modes of the band left out, as time asks.
+    `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. The mode and
+    its response are those of `solid_mode`, which every other verb reads too. Within a `budget` (s)
+    meshes are left coarser, with larger errors, and the other modes of the band left out, as time
+    asks.
 
     Raises `InputError` for a display without a rectangular plate or one that cannot be right (see
     `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and what `solve_modes`
@@ -138,28 +157,40 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         check_band(band)
     tell = asked.progress or (lambda _: None)
     label = asked.mode or plate.working_label
-    found = solved_plate(plate, label, band, asked.points, _Teller(asked.budget, tell))
+    found = solved_plate(plate, label, band, _Teller(asked.budget, tell))
+    solid = found.solid
+    response, at = _resampled(solid, asked.points)
     tell("airborne sound")
-    response, alone = found.response, found.alone
-    frequency = float(alone.frequencies[alone.index(label)])
     return PlateAnalysis(
         display=display,
         plate=plate,
-        modes=found.modes,
+        mode=solid_working_mode(plate, solid, label),
+        solid=solid,
         working_label=label,
-        alone=alone,
+        modes=found.modes,
         rows=tuple(mode_row(found.modes, index) for index in range(found.modes.count)),
-        working=mode_row(alone, alone.index(label)),
+        working=dataclasses.replace(
+            mode_row(solid.modes, solid.index), alone_per_volt=solid.alone_per_volt
+        ),
         response=response,
-        amplitude_per_volt=float(response.maximum[response.resonance]),
-        centreline_per_volt=_centreline_per_volt(response, alone, label),
-        circuit=found.circuit,
+        resonance=at,
         beam_frequency=found.beam.mode.frequency,
         beam_amplitude_per_volt=found.beam.amplitude_per_volt,
         shear_frequency=found.shear_frequency,
-        sound=plate_sound(response, response.resonance, frequency, display.drive.voltage),
+        sound=plate_sound(response, at, solid.frequency, display.drive.voltage),
         objections=(*require_plausible(display), *found.left_out),
     )
+
+
+def _resampled(solid: SolidMode, points: int) -> tuple[HarmonicResponse, int]:
+    """A mode's response at so many frequencies, its resonance among them; and which that is."""
+    if points == solid.response.frequencies.size:
+        return solid.response, solid.resonance
+    top = float(solid.response.frequencies[solid.resonance])
+    asked = response_frequencies(solid.frequency, solid.quality_factor, points)
+    known = solid.response.frequencies[[0, -1]]
+    frequencies = np.union1d(np.clip(asked, *known), top)
+    return solid.response.at(frequencies), int(np.searchsorted(frequencies, top))
 
 
 @dataclass(frozen=True)
@@ -173,10 +204,8 @@ class _Teller:
 class SolvedPlate(NamedTuple):
     """What a plate's analysis knows of the plate alone, whatever drives it and by which voltage."""
 
-    alone: PlateModes
+    solid: SolidMode
     modes: PlateModes
-    response: HarmonicResponse
-    circuit: EquivalentCircuit | None
     beam: BeamResponse
     shear_frequency: si.Hertz | None
     left_out: tuple[str, ...]
@@ -188,52 +217,27 @@ def solved_plate(
     plate: RectangularPlate,
     label: Label,
     band: tuple[si.Hertz, si.Hertz] | None,
-    points: int,
     teller: _Teller,
 ) -> SolvedPlate:
     """The solves behind `analyze_plate`; those of the last two plates are kept."""
     tell, hurry = teller.tell, Hurry.of(plate, label, Pace(teller.budget))
-    tell(f"mode ({label[0]},{label[1]})")
-    shares = said_with_time_left(tell)
-    alone, pieces = solve_for_response(plate, label, _WORKING, shares, hurry.modes)
-    at = alone.index(label)
-    frequency, quality = float(alone.frequencies[at]), float(alone.quality_factors[at])
+    tell(f"mode ({label[0]},{label[1]}) and its response")
+    solid = solid_mode(plate, label, pace=Pace(teller.budget, said_with_time_left(tell)))
+    frequency, modes = solid.frequency, solid.modes
     wanted = band or (0.92 * frequency, 1.08 * frequency)
-    modes = alone
     if hurry.allows_band(plate, wanted):
         tell("all modes in the band")
         shares = said_with_time_left(tell)
         modes = solve_modes(
-            plate, band=wanted, tolerance=_BESIDE, deadline=hurry.modes, progress=shares
+            plate, band=wanted, tolerance=_BESIDE, deadline=hurry.whole, progress=shares
         )
-    tell(f"response at {points} frequencies")
-    asked, mesh = sweep_around(frequency, quality, points), hurry.response_mesh(alone)
-    # What a deadline left coarse would not be solved so again.
-    solved_so = functools.partial(_response_again, plate, label, asked, mesh)
-    again = None if mesh is COARSE else solved_so
-    response = harmonic_response(plate, asked, resolution=mesh, solved=pieces, again=again)
-    del pieces  # hundreds of megabytes
-    try:
-        circuit = response.equivalent_circuit()
-    except InputError:
-        circuit = None
     return SolvedPlate(
-        alone,
+        solid,
         modes,
-        response,
-        circuit,
         beam_response(plate),
         _shear_frequency(plate, label, frequency),
-        hurry.left_out(alone, modes),
+        hurry.left_out(solid.modes, modes),
     )
-
-
-def _response_again(
-    plate: RectangularPlate, label: Label, frequencies: si.HertzArray, resolution: Resolution
-) -> HarmonicResponse:
-    """The response of `solved_plate`: without its modes the reduced space would be another."""
-    _, pieces = solve_for_response(plate, label, _WORKING)
-    return harmonic_response(plate, frequencies, resolution=resolution, solved=pieces)
 
 
 @reads_text
@@ -268,41 +272,6 @@ def _driven_plate(display: Display) -> RectangularPlate:
     return plate
 
 
-def _centreline_per_volt(
-    response: HarmonicResponse, alone: PlateModes, label: tuple[int, int]
-) -> si.MetrePerVolt:
-    """The largest amplitude on the centre line at resonance, between the mode's outer nodes."""
-    x, line = centre_scan(response, response.resonance, label)
-    nodes = zero_crossings(x, centre_profile(alone.shapes[alone.index(label)], alone, x, label))
-    return float(np.max(np.abs(line)[within_nodes(x, nodes)]))
-
-
-def scan_axis(label: tuple[int, int]) -> int:
-    """The axis that the nodal lines cross: 0 along the length, 1 along the width."""
-    return 0 if label[0] >= label[1] else 1
-
-
-def centre_scan(
-    response: HarmonicResponse, at: int, label: tuple[int, int], points: int = 201
-) -> tuple[si.MetreArray, si.ComplexArray]:
-    """Position and w per volt (m/V) at frequency number `at` along the middle of the plate, across
-    the nodal lines of the mode."""
-    plate = response.plate
-    if scan_axis(label) == 0:
-        return response.line(at, points)
-    y = np.linspace(0, plate.width, points)
-    return y, response.displacement(np.array([plate.length / 2]), y)[at, 0, :]
-
-
-def centre_profile(
-    shape: si.FloatArray, modes: PlateModes, position: si.MetreArray, label: tuple[int, int]
-) -> si.FloatArray:
-    """The profile of a mode's shape across its nodal lines, at `position` (m)."""
-    axis = scan_axis(label)
-    own = (modes.x, modes.y)[axis]
-    return np.asarray(np.interp(position, own, profiles(shape)[axis]))
-
-
 def _shear_frequency(
     plate: RectangularPlate, label: tuple[int, int], near: si.Hertz
 ) -> si.Hertz | None:
@@ -317,14 +286,15 @@ def mode_row(modes: PlateModes, index: int) -> ModeRow:
     """One line of the table of modes: that of the mode number `index` of a solved plate."""
     label, frequency = modes.labels[index], float(modes.frequencies[index])
     quality, force = float(modes.quality_factors[index]), float(modes.drive_forces[index])
-    largest = float(np.max(np.abs(modes.shapes[index])))
-    half = modes.half_wavelength(index)
+    shape, half = modes.shapes[index], modes.half_wavelength(index)
+    answer = quality * abs(force) / (2 * np.pi * frequency) ** 2
     return ModeRow(
-        label="in plane" if label is None else f"({label[0]},{label[1]})",
+        label=label_name(label),
         frequency=frequency,
         frequency_error=float(modes.errors[index]),
         quality_factor=quality,
-        amplitude_per_volt=quality * abs(force) * largest / (2 * np.pi * frequency) ** 2,
+        alone_per_volt=answer * antinode(shape, label),
+        largest_alone_per_volt=answer * float(np.max(np.abs(shape))),
         coupling_coefficient=float(modes.couplings[index]),
         coupling_coefficient_error=float(modes.coupling_errors[index]),
         parallel_resonance_frequency=float(modes.open_frequencies[index]),

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from squeezefilm import quantities as si
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
-from squeezefilm.plate.solid.layers import COARSE, Resolution
 from squeezefilm.plate.solid.modes import Label, PlateModes
 from squeezefilm.plate.solid.size import SolveSize, band_seconds, solve_size
 from squeezefilm.plausibility.expected import expectation
@@ -41,16 +40,9 @@ class Hurry:
         size.require_within(whole, pace.budget, instead)
         return cls(size, whole)
 
-    @property
-    def modes(self) -> Deadline | None:
-        """When the working mode and the band's modes must be there."""
-        if self.whole is None or self.size is None:
-            return None
-        return self.whole.earlier(self.size.response)
-
     def allows_band(self, plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> bool:
         """Whether all modes of a band (Hz, Hz) can be looked for, on the coarse meshes at least."""
-        return self.modes is None or self.modes.allows(band_seconds(plate, band[1]))
+        return self.whole is None or self.whole.allows(band_seconds(plate, band[1]))
 
     def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:
         """What the budget left out of the working mode and the band's modes, in sentences."""
@@ -58,9 +50,3 @@ class Hurry:
         if self.whole is not None and modes is alone:
             said.append(ALONE)
         return tuple(said)
-
-    def response_mesh(self, alone: PlateModes) -> Resolution:
-        """How fine the response is meshed: as the mode, or coarser where time has run short."""
-        if self.whole is None or self.size is None or self.whole.allows(self.size.response):
-            return alone.resolution
-        return COARSE

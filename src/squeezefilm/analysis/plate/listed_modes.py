@@ -8,16 +8,15 @@ from dataclasses import dataclass
 
 from squeezefilm import quantities as si
 from squeezefilm.plate.layout import Actuator, RectangularPlate
+from squeezefilm.plate.solid.modes import profiles
 from squeezefilm.plate.solid.resonances import DrivenMode, Moving, strongest_neighbour
 from squeezefilm.plate.solid.screening import SCREENING_ERROR, symmetry_in_words
+from squeezefilm.plate.working_mode import CROWDED, WorkingMode
 
 _HZ, _PER_VOLT = si.Unit("Hz"), si.Unit("m/V")
 
 HEARING: si.Hertz = 20e3
 """Below it people hear a plate; the young and animals somewhat above it too."""
-
-CROWDED: si.Dimensionless = 0.2
-"""A mode is crowded if a neighbour adds at least this share of its amplitude at its resonance."""
 
 SAME_LABEL: si.Dimensionless = 0.1
 """Two modes of one label are worth telling apart if the weaker has this share of the stronger."""
@@ -33,8 +32,8 @@ _STRAIGHT = 0.6
 class ListedMode:
     """One driven mode: its label, frequency, Q and amplitude per volt on the drive at resonance.
 
-    `amplitude_per_volt` is at the highest antinode inside the face, `largest_per_volt` anywhere on
-    it; both of this mode alone, zero to peak, without a finger. `neighbour` is the mode that adds
+    `alone_per_volt` is at its antinode, `largest_alone_per_volt` anywhere on the face; both of this
+    mode alone, zero to peak, without a finger. `neighbour` is the mode that adds
     most at this one's resonance, `neighbour_distance` how far it lies in half-bandwidths f/2Q of
     its own, `neighbour_share` how much it adds, over this mode's amplitude. `unique` is whether no
     other mode of the list with at least a tenth of its amplitude has the label. `straightness` is
@@ -46,8 +45,8 @@ class ListedMode:
     label: str
     frequency: si.Hertz
     quality_factor: si.Dimensionless
-    amplitude_per_volt: si.MetrePerVolt
-    largest_per_volt: si.MetrePerVolt
+    alone_per_volt: si.MetrePerVolt
+    largest_alone_per_volt: si.MetrePerVolt
     symmetry: str
     audible: bool
     neighbour: str | None = None
@@ -88,8 +87,8 @@ def listed_mode(mode: DrivenMode) -> ListedMode:
         label=mode.name,
         frequency=mode.frequency,
         quality_factor=mode.quality_factor,
-        amplitude_per_volt=mode.antinode_per_volt,
-        largest_per_volt=mode.largest_per_volt,
+        alone_per_volt=mode.alone_per_volt,
+        largest_alone_per_volt=mode.largest_alone_per_volt,
         symmetry=symmetry_in_words(mode.parity),
         audible=mode.frequency < HEARING,
         straightness=mode.straightness,
@@ -97,6 +96,46 @@ def listed_mode(mode: DrivenMode) -> ListedMode:
         # Screened frequencies are too high if anything.
         perhaps_audible=HEARING <= mode.frequency < HEARING * (1 + SCREENING_ERROR),
     )
+
+
+def with_working_mode(
+    modes: Sequence[ListedMode], working: WorkingMode, plate: RectangularPlate
+) -> tuple[tuple[ListedMode, ...], ListedMode]:
+    """Screened modes with a display's own as it was solved in place of what screening has of it;
+    and that one.
+
+    The one replaced is of those with its label, or else of all, the nearest in frequency, as far as
+    screening lies off; where none is so near the solved mode is added.
+    """
+    solid, frequency = working.solid, working.resonance_frequency
+    assert solid is not None
+    row = ListedMode(
+        label=working.label,
+        frequency=frequency,
+        quality_factor=working.quality_factor,
+        alone_per_volt=solid.alone_per_volt,
+        largest_alone_per_volt=solid.largest_alone_per_volt,
+        symmetry=symmetry_in_words(solid.modes.parities[solid.index]),
+        audible=frequency < HEARING,
+        straightness=profiles(solid.modes.shapes[solid.index])[2],
+        choice=_choice(plate.working_label),
+    )
+    near = [mode for mode in modes if abs(mode.frequency / frequency - 1) < 1.2 * SCREENING_ERROR]
+    same = [mode for mode in near if mode.label == row.label] or near
+    screened = min(same, key=lambda mode: abs(mode.frequency - frequency), default=None)
+    others = [mode for mode in modes if mode is not screened]
+    listed = with_neighbours(sorted([*others, row], key=lambda mode: mode.frequency))
+    beside = working.neighbour
+    own = next(mode for mode in listed if mode.frequency == frequency)
+    if beside is None:
+        return listed, own
+    told = dataclasses.replace(
+        own,
+        neighbour=beside.name,
+        neighbour_distance=beside.distance,
+        neighbour_share=beside.share,
+    )
+    return tuple(told if mode is own else mode for mode in listed), told
 
 
 def _choice(label: tuple[int, int] | None) -> str | None:
@@ -123,14 +162,12 @@ def _beside(mode: ListedMode, others: Sequence[ListedMode]) -> ListedMode:
         neighbour=found.name,
         neighbour_distance=found.distance,
         neighbour_share=found.share,
-        unique=all(
-            other.amplitude_per_volt < SAME_LABEL * mode.amplitude_per_volt for other in same
-        ),
+        unique=all(other.alone_per_volt < SAME_LABEL * mode.alone_per_volt for other in same),
     )
 
 
 def _moving(mode: ListedMode) -> Moving:
-    return Moving(mode.label, mode.frequency, mode.half_bandwidth, mode.amplitude_per_volt)
+    return Moving(mode.label, mode.frequency, mode.half_bandwidth, mode.alone_per_volt)
 
 
 def shown_frequency(mode: ListedMode) -> str:
@@ -145,7 +182,7 @@ def chosen(
     found = [mode for mode in modes if mode.label == label]
     if near is not None:
         return min(found, key=lambda mode: abs(mode.frequency - near), default=None)
-    return max(found, key=lambda mode: mode.amplitude_per_volt, default=None)
+    return max(found, key=lambda mode: mode.alone_per_volt, default=None)
 
 
 def wanted_frequency(actuator: Actuator) -> si.Hertz | None:
@@ -159,11 +196,11 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
     part with is held against it.
 
     `described` is the mode that the display's file asks for: then there is nothing to write."""
-    strongest = max((mode.amplitude_per_volt for mode in modes), default=0.0)
+    strongest = max((mode.alone_per_volt for mode in modes), default=0.0)
     able = [
         mode
         for mode in modes
-        if mode.amplitude_per_volt >= DRIVEN_SHARE * strongest > 0
+        if mode.alone_per_volt >= DRIVEN_SHARE * strongest > 0
         and mode.choice is not None
         and not (mode.audible or mode.perhaps_audible)
         and (mode.straightness is None or mode.straightness >= _STRAIGHT)
@@ -175,7 +212,7 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
             "lines across one side only, so that none can be suggested: look in a wider band "
             "(--band), or change the ceramics' polarity, place or size.",
         )
-    best = max(able, key=lambda mode: mode.amplitude_per_volt / (1 + 4 * mode.neighbour_share))
+    best = max(able, key=lambda mode: mode.alone_per_volt / (1 + 4 * mode.neighbour_share))
     straight = "" if best.straightness is None else ", its nodal lines cross one side only"
     others = (
         f", and of {len(able)} such modes it moves most, counting against it what neighbours add"
@@ -189,7 +226,7 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
         write = f"Write {best.choice}{alone}"
     said = (
         f"{write}: at {shown_frequency(best)} {best.label} is above the hearing range"
-        f"{straight}{others} ({si.format_quantity(best.amplitude_per_volt, _PER_VOLT, 3)} at an "
+        f"{straight}{others} ({si.format_quantity(best.alone_per_volt, _PER_VOLT, 3)} at an "
         "antinode"
     )
     if best.neighbour is not None and best.neighbour_distance is not None:

@@ -56,11 +56,11 @@ def why_undriven(display: Display, mode: WorkingMode) -> str | None:
     if (forbidden := forbidden_by(plate, plate.working_label)) is not None:
         return f"The working mode {mode.label} is not driven: {forbidden}."
     solid = mode.solid
-    if solid is None or solid.modal_amplitude_per_volt >= _OWN_SHARE * solid.amplitude_per_volt:
+    if solid is None or solid.alone_per_volt >= _OWN_SHARE * solid.amplitude_per_volt:
         return None
     own, all_of_it = (
         si.format_quantity(value, _PER_VOLT, 3)
-        for value in (solid.modal_amplitude_per_volt, solid.amplitude_per_volt)
+        for value in (solid.alone_per_volt, solid.amplitude_per_volt)
     )
     return (
         f"The working mode {mode.label} is hardly driven: of {all_of_it} at its antinode it has "
@@ -125,11 +125,11 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
         for other in modes
         if other.label == mode.label
         and other is not own
-        and other.amplitude_per_volt >= SAME_LABEL * own.amplitude_per_volt
+        and other.alone_per_volt >= SAME_LABEL * own.alone_per_volt
     ]
     if same and plate.working_frequency is None:
         listed = " and ".join(
-            f"{shown_frequency(one)} ({si.format_quantity(one.amplitude_per_volt, _PER_VOLT, 3)})"
+            f"{shown_frequency(one)} ({si.format_quantity(one.alone_per_volt, _PER_VOLT, 3)})"
             for one in sorted([own, *same], key=lambda one: one.frequency)
         )
         yield ModeDoubt(
@@ -156,6 +156,6 @@ def _screened(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> tuple
         found = screened_modes(plate, band)
     except SqueezefilmError:
         return ()
-    strongest = max((mode.antinode_per_volt for mode in found), default=0.0)
-    driven = [mode for mode in found if mode.antinode_per_volt >= DRIVEN_SHARE * strongest > 0]
+    strongest = max((mode.alone_per_volt for mode in found), default=0.0)
+    driven = [mode for mode in found if mode.alone_per_volt >= DRIVEN_SHARE * strongest > 0]
     return with_neighbours([listed_mode(mode) for mode in driven])

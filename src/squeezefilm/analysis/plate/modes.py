@@ -20,18 +20,20 @@ from squeezefilm.analysis.plate.listed_modes import (
     suggested,
     wanted_frequency,
     with_neighbours,
+    with_working_mode,
 )
 from squeezefilm.analysis.plate.ring import mode_row, modes_in_band
 from squeezefilm.analysis.plate.ring_pair import RingPair, ring_pair
 from squeezefilm.display import Display, NamedDisplay
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.from_text import reads_text
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.plate.ring.body import ring_body
 from squeezefilm.plate.ring.modes import DEFAULT_DEGREE, clamped_capacitance
-from squeezefilm.plate.solid.resonances import DrivenMode
+from squeezefilm.plate.solid.resonances import DrivenMode, label_name
 from squeezefilm.plate.solid.screening import SCREENING_ERROR, forbidden_by, screened_modes
 from squeezefilm.plate.solid.symmetry import drive_classes, only_stretches
+from squeezefilm.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import Result, stamp, to_json
 
@@ -42,7 +44,8 @@ DEFAULT_BAND: tuple[si.Hertz, si.Hertz] = (15e3, 60e3)
 class ModeList(Result):
     """The driven modes of a display in a band, ascending, and what follows for the choice of one.
 
-    `working` is the label of the mode that the display asks for; `forbidden` says which symmetry
+    `working` is the label of the mode that the display asks for, `solved` that mode as every other
+    verb has it, where it is driven and in the band; `forbidden` says which symmetry
     keeps its drive from it, `rules` which modes it keeps it from altogether; `frequency_error` is
     the bound on how far a frequency lies off. `pair` is what a ring's one channel makes of the two
     orientations of the working mode. `screened` are a plate's modes with their shapes.
@@ -59,12 +62,17 @@ class ModeList(Result):
     frequency_error: si.Dimensionless
     pair: RingPair | None = None
     screened: tuple[DrivenMode, ...] = ()
+    solved: WorkingMode | None = None
     _shown: ClassVar[str] = "display.name band working suggestion.text model"
 
     @property
     def working_mode(self) -> ListedMode | None:
         """The listed mode that the display asks for, the strongest of several; None without."""
-        return chosen(self.modes, self.working, wanted_frequency(self.display.actuator))
+        solved = self.solved
+        near = wanted_frequency(self.display.actuator)
+        if solved is not None:
+            near = solved.resonance_frequency
+        return chosen(self.modes, self.working, near)
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
@@ -82,6 +90,7 @@ class ModeList(Result):
             ],
             "working": self.working,
             "working_mode": to_json(self.working_mode),
+            "working_mode_per_volt": self._solved_summary(),
             "forbidden": self.forbidden,
             "rules": list(self.rules),
             "suggestion": to_json(self.suggestion),
@@ -89,6 +98,21 @@ class ModeList(Result):
             "model": self.model,
             "frequency_error": self.frequency_error,
             "provenance": stamp(self.display),
+        }
+
+    def _solved_summary(self) -> dict[str, Any] | None:
+        """The display's own mode with all others in, as `predict` and `plate` have it."""
+        solved = self.solved
+        if solved is None:
+            return None
+        largest = None if solved.solid is None else solved.solid.largest_per_volt
+        return {
+            "resonance_frequency_Hz": solved.resonance_frequency,
+            "amplitude_per_volt_m_per_V": solved.amplitude_per_volt,
+            "largest_per_volt_m_per_V": largest,
+            "antinode_m": list(solved.lobe),
+            "neighbour": to_json(solved.neighbour),
+            "model": solved.model,
         }
 
     def _table(self) -> Any:
@@ -106,7 +130,8 @@ def list_modes(
     """The modes of a display's plate, disc or stator in a band (Hz) that its drive can move.
 
     `split` (Hz) is by how much a ring's pair was measured to be apart, of rings only. A plate's
-    modes are screened: see `screened_modes` for range and error. Raises `InputError` for a band
+    modes are screened (see `screened_modes` for range and error), but for the one that the display
+    works in, which is solved as every other verb has it. Raises `InputError` for a band
     that is none or has no driven mode, and what the solvers raise.
     """
     tell = progress or (lambda _: None)
@@ -116,31 +141,52 @@ def list_modes(
                 "--split is of the two orientations of a ring's mode; a rectangular plate has none"
             )
         tell("driven modes on a light mesh")
-        return _of_plate(display, display.actuator, band)
+        return _of_plate(display, display.actuator, band, tell)
     return _of_ring(display, band, split, tell)
 
 
 def _of_plate(
-    display: Display, plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]
+    display: Display,
+    plate: RectangularPlate,
+    band: tuple[si.Hertz, si.Hertz],
+    tell: SayProgress,
 ) -> ModeList:
-    found = [mode for mode in screened_modes(plate, band) if mode.antinode_per_volt > 0]
-    strongest = max((mode.antinode_per_volt for mode in found), default=0.0)
-    found = [mode for mode in found if mode.antinode_per_volt >= DRIVEN_SHARE * strongest]
+    found = [mode for mode in screened_modes(plate, band) if mode.alone_per_volt > 0]
+    strongest = max((mode.alone_per_volt for mode in found), default=0.0)
+    found = [mode for mode in found if mode.alone_per_volt >= DRIVEN_SHARE * strongest]
     listed = with_neighbours([listed_mode(mode) for mode in found])
     label = plate.working_label
-    working = f"({label[0]},{label[1]})"
+    working, forbidden = label_name(label), forbidden_by(plate, label)
+    own = chosen(listed, working, wanted_frequency(plate))
+    solved = None if forbidden is not None else _solved(plate, band, tell)
+    if solved is not None:
+        listed, own = with_working_mode(listed, solved, plate)
     return ModeList(
         display=display,
         band=band,
         modes=listed,
         working=working,
-        forbidden=forbidden_by(plate, label),
+        forbidden=forbidden,
         rules=_rules(plate),
-        suggestion=suggested(listed, chosen(listed, working, wanted_frequency(plate))),
+        suggestion=suggested(listed, own),
         model="piezoelectric_solid_3d, light mesh",
         frequency_error=SCREENING_ERROR,
         screened=tuple(found),
+        solved=solved,
     )
+
+
+def _solved(
+    plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz], tell: SayProgress
+) -> WorkingMode | None:
+    """The plate's working mode where it lies in a band; None where it does not, or has no solution
+    in three dimensions."""
+    tell("the display's own mode")
+    try:
+        mode = working_mode(plate)
+    except SqueezefilmError:
+        return None
+    return mode if band[0] <= mode.resonance_frequency <= band[1] else None
 
 
 def _rules(plate: RectangularPlate) -> tuple[str, ...]:
@@ -176,15 +222,15 @@ def _of_ring(
     found = modes_in_band(body, band, tell, degree=DEFAULT_DEGREE - 1)
     capacitance = clamped_capacitance(body.section, body.drive)
     rows = [mode_row(body, mode, capacitance) for mode in found]
-    strongest = max(row.amplitude_per_volt for row in rows)
+    strongest = max(row.alone_per_volt for row in rows)
     listed = with_neighbours(
         [
             ListedMode(
                 label=row.label,
                 frequency=row.frequency,
                 quality_factor=row.quality_factor,
-                amplitude_per_volt=row.amplitude_per_volt,
-                largest_per_volt=row.amplitude_per_volt,
+                alone_per_volt=row.alone_per_volt,
+                largest_alone_per_volt=row.largest_alone_per_volt,
                 symmetry="alike all round" if mode.harmonic == 0 else "one of a pair",
                 audible=row.frequency < HEARING,
                 choice=None
@@ -193,7 +239,7 @@ def _of_ring(
                 f"{mode.harmonic}",
             )
             for mode, row in zip(found, rows, strict=True)
-            if row.amplitude_per_volt >= DRIVEN_SHARE * strongest
+            if row.alone_per_volt >= DRIVEN_SHARE * strongest
         ]
     )
     driven = working.modal_force(body.drive) > 1e-9 * abs(working.modal_force_all_round)

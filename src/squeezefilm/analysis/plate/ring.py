@@ -32,6 +32,7 @@ from squeezefilm.plate.ring.response import (
 )
 from squeezefilm.plate.solid.modes import check_band
 from squeezefilm.plate.sound import SoundField, ring_surface, sound_field
+from squeezefilm.plate.working_mode import WorkingMode, ring_working_mode
 from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.plausibility.expected import expectation
 from squeezefilm.progress import NO_HURRY, Deadline, Pace, SayProgress
@@ -49,38 +50,48 @@ _RADII_OF_SOUND = slice(None, None, 4)
 class RingAnalysis(SolvedBody):
     """A solved disc or stator: table of modes, the working mode, its response and circuit.
 
-    Modes are B(nodal circles, nodal diameters), or R and T in the plane.
-    `described_amplitude_per_volt` is what a stator's description says was measured, beside what is
-    computed here.
+    Modes are B(nodal circles, nodal diameters), or R and T in the plane. `annular` is the solved
+    mode behind `mode`; of a stator `mode` is as measured, and what is computed of its amplitude
+    stands beside it.
     """
 
     display: Display
     body: RingBody
     modes: tuple[AnnularMode, ...]
     rows: tuple[ModeRow, ...]
-    mode: AnnularMode
+    mode: WorkingMode
+    annular: AnnularMode
     working: ModeRow
     half_wavelength_along: Direction
     circles: si.MetreArray
     response: RingResponse
     circuit: EquivalentCircuit | None
     sound: SoundField
-    described_amplitude_per_volt: si.MetrePerVolt | None
     objections: tuple[str, ...] = ()
 
     @property
-    def amplitude_per_volt(self) -> si.MetrePerVolt:
-        """At the surface's highest antinode, at resonance."""
-        return float(self.response.maximum[self.response.resonance])
+    def resonance(self) -> int:
+        """The number of the response's frequency with the largest amplitude."""
+        return self.response.resonance
 
     @property
-    def centreline_per_volt(self) -> si.MetrePerVolt:
-        """At an antinode of the mean circumference; without nodal diameters in the middle lobe."""
-        w = np.abs(self.response.motion[self.response.resonance])
-        if self.mode.harmonic:
-            return float(np.interp(self.scan_radius, self.response.radius, w))
-        first = self.circles[0] if self.circles.size else self.response.radius[-1]
-        return float(np.max(w[self.response.radius <= first]))
+    def largest_per_volt(self) -> si.MetrePerVolt:
+        """At the touched face's highest point, at resonance, as computed (m/V)."""
+        return float(self.response.maximum[self.resonance])
+
+    @property
+    def circuit_said(self) -> str:
+        """Why there is no circuit; empty where there is one."""
+        return "" if self.circuit is not None else "none: the channel does not drive this mode"
+
+    @property
+    def computed_per_volt(self) -> si.MetrePerVolt | None:
+        """Of a stator, whose amplitude is measured, the computed one at the same place: at an
+        antinode of the mean circumference (m/V). None for a disc, whose amplitude is computed."""
+        if not isinstance(self.display.actuator, AnnularStator):
+            return None
+        w = np.abs(self.response.motion[self.resonance])
+        return float(np.interp(self.scan_radius, self.response.radius, w))
 
     @property
     def scan_radius(self) -> si.Metre:
@@ -90,7 +101,7 @@ class RingAnalysis(SolvedBody):
     @property
     def model(self) -> str:
         """What made the numbers."""
-        return self.mode.model + (", fitted stator" if self.body.fit is not None else "")
+        return self.annular.model + (", fitted stator" if self.body.fit is not None else "")
 
     @property
     def status(self) -> str:
@@ -104,7 +115,6 @@ class RingAnalysis(SolvedBody):
         return Remarks(
             "(estimated)" + ("; fitted, not predicted" if self.body.fit is not None else ""),
             "largest, touched face",
-            "antinodes of the mean circumference" if self.mode.harmonic else "inner lobe",
             "from the losses of its materials"
             if self.body.quality_factor is None
             else "of the assembly, as described",
@@ -115,7 +125,7 @@ class RingAnalysis(SolvedBody):
         return {
             "half_wavelength_along": self.half_wavelength_along,
             "nodal_circles_m": to_json(self.circles),
-            "described_amplitude_m_per_V": self.described_amplitude_per_volt,
+            "computed_per_volt_m_per_V": self.computed_per_volt,
             "fit": self._fit(),
         }
 
@@ -183,16 +193,14 @@ def analyze_ring(
         body=body,
         modes=modes,
         rows=tuple(mode_row(body, one, capacitance) for one in modes),
-        mode=found,
+        mode=ring_working_mode(actuator, body, found),
+        annular=found,
         working=mode_row(body, found, capacitance),
         half_wavelength_along=along,
         circles=nodal_circles(found),
         response=response,
         circuit=circuit,
         sound=_sound(display, found, response),
-        described_amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage
-        if isinstance(actuator, AnnularStator)
-        else None,
         objections=(*require_plausible(display), *(() if whole else (ALONE,))),
     )
 
@@ -233,7 +241,8 @@ def mode_row(body: RingBody, mode: AnnularMode, capacitance: si.Farad) -> ModeRo
         frequency=mode.frequency,
         frequency_error=mode.frequency_error,
         quality_factor=mode.quality_factor,
-        amplitude_per_volt=lift * mode.amplitude_per_volt(body.drive),
+        alone_per_volt=lift * mode.amplitude_per_volt(body.drive),
+        largest_alone_per_volt=lift * mode.amplitude_per_volt(body.drive),
         coupling_coefficient=coupling,
         parallel_resonance_frequency=mode.frequency / math.sqrt(1 - coupling**2),
         modal_force=mode.modal_force(body.drive) / np.sqrt(mode.modal_mass),

@@ -46,7 +46,7 @@ class WorkingPoint:
     label: Label
     frequency: si.Hertz
     frequency_error: si.Hertz
-    amplitude_per_volt: si.MetrePerVolt | None
+    largest_per_volt: si.MetrePerVolt | None
     quality_factor: si.Dimensionless
     open_frequency: si.Hertz
 
@@ -71,7 +71,7 @@ class Sensitivity:
     change: str
     frequency: si.Hertz
     frequency_shift: si.Dimensionless
-    amplitude_per_volt: si.MetrePerVolt | None
+    largest_per_volt: si.MetrePerVolt | None
     amplitude_shift: si.Dimensionless | None
     likeness: si.Dimensionless
 
@@ -155,7 +155,7 @@ def plate_sensitivity(
                 f"(likeness {likeness:.2f}, at least {_ALIKE:g} is compared); take a smaller change"
             )
         there = working_point(other, wanted, amplitude=amplitude and not change.frequency_only)
-        before, after = reference.amplitude_per_volt, there.amplitude_per_volt
+        before, after = reference.largest_per_volt, there.largest_per_volt
         rows.append(
             Sensitivity(
                 change.name,

@@ -10,7 +10,8 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.display import Display
-from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
+from squeezefilm.plate.circuit import DrivenResponse
+from squeezefilm.plate.electronics import ElectricalLoad, electrical_load
 from squeezefilm.plate.sound import SoundField
 from squeezefilm.results import Result, stamp, to_json
 
@@ -21,15 +22,17 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class ModeRow:
     """One mode of the table: label by nodal lines across length and width, extrapolated frequency
-    with its estimated error, Q, amplitude per volt at the largest point of the face if it stood
-    alone, effective coupling √(1 − f²/f_p²) with the parallel resonance f_p (terminals open, no
-    losses), modal force (N/V for unit modal mass). Errors are None where nobody estimates them."""
+    with its estimated error, Q, amplitude per volt of this mode alone at its antinode and at the
+    largest point of the face, effective coupling √(1 − f²/f_p²) with the parallel resonance f_p
+    (terminals open, no losses), modal force (N/V for unit modal mass). Errors are None where nobody
+    estimates them."""
 
     label: str
     frequency: si.Hertz
     frequency_error: si.Hertz
     quality_factor: si.Dimensionless
-    amplitude_per_volt: si.MetrePerVolt
+    alone_per_volt: si.MetrePerVolt
+    largest_alone_per_volt: si.MetrePerVolt
     coupling_coefficient: si.Dimensionless
     modal_force: float
     half_wavelength: si.Metre | None
@@ -40,12 +43,11 @@ class ModeRow:
 
 @dataclass(frozen=True)
 class Remarks:
-    """What is said beside the numbers of a working mode: of its frequency, where it moves most and
-    along which line, what its quality factor is of, where it is loudest."""
+    """What is said beside the numbers of a working mode: of its frequency, where it moves most,
+    what its quality factor is of, where it is loudest."""
 
     frequency: str
     largest: str
-    centreline: str
     quality: str
     loudest: str
 
@@ -53,18 +55,24 @@ class Remarks:
 class SolvedBody(Result):
     """What a solved plate, disc or stator has: its modes, the working one, response and sound.
 
-    `objections` say what of its description is doubtful, and what a budget left out.
+    `mode` is the working mode as every verb has it, whose free amplitude per volt at the antinode
+    `amplitude_per_volt` is; `largest_per_volt` (m/V) is the largest of the touched face at the same
+    frequency, number `resonance` of the response. `circuit_said` is what is to be said of the
+    circuit, or why there is none. `objections` say what of its description is doubtful, and what a
+    budget left out.
     """
 
     display: Display
     rows: tuple[ModeRow, ...]
     working: ModeRow
-    circuit: EquivalentCircuit | None
     sound: SoundField
     response: DrivenResponse
     # A field of one and computed by another, which no narrower type allows.
-    amplitude_per_volt: Any
-    centreline_per_volt: Any
+    mode: Any
+    resonance: Any
+    largest_per_volt: Any
+    circuit: Any
+    circuit_said: Any
     model: Any
     status: Any
     remarks: Any
@@ -74,37 +82,55 @@ class SolvedBody(Result):
         "model"
     )
 
+    @property
+    def amplitude_per_volt(self) -> si.MetrePerVolt:
+        """Free amplitude per volt at the antinode, at resonance (m/V): the working mode's."""
+        return float(self.mode.amplitude_per_volt)
+
+    @functools.cached_property
+    def load(self) -> ElectricalLoad:
+        """What the body asks of its amplifier at its resonance, at the display's voltage."""
+        volts, circuit = self.display.drive.voltage, self.circuit
+        static = None if circuit is None else circuit.static_capacitance
+        at = self.mode.resonance_frequency
+        return electrical_load(self.response, volts, at, capacitance=static)
+
     @functools.cached_property
     def heat(self) -> Warming:
-        """What the power that the body takes at resonance does to it, at the display's voltage.
+        """What the power that the working mode loses does to it, at the display's voltage.
 
-        All of it is lost in its materials, foam included: the solved body radiates nothing.
+        Of a stator, whose modal mass nobody measured, the power that its fitted body takes.
         """
         # Compiled code comes with it, which a list of modes has no use for.
-        from squeezefilm.plate.heat.warming import heat_source, warming
+        from squeezefilm.plate.heat.warming import heat_source, warming, warming_of_mode
 
-        volts, at, mode = self.display.drive.voltage, self.response.resonance, self.working
+        volts, mode, thermal = self.display.drive.voltage, self.mode, self.display.thermal
+        known = warming_of_mode(self.display.actuator, thermal, mode, volts)
+        if known is not None:
+            return known
         source = heat_source(
             self.display.actuator,
             volts,
-            mode.frequency,
+            mode.resonance_frequency,
             mode.quality_factor,
             volts * self.amplitude_per_volt,
-            float(self.response.input_power(volts)[at]),
+            self.load.real_power,
         )
-        return warming(source, self.display.actuator, self.display.thermal)
+        return warming(source, self.display.actuator, thermal)
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
-        volts, at = self.display.drive.voltage, self.response.resonance
+        volts, load = self.display.drive.voltage, self.load
         levels = zip(self.sound.distances, self.sound.sound_pressure_level_dB, strict=True)
         return {
             "display": self.display.name,
             "mode": self.working.label,
             "frequency_Hz": self.working.frequency,
             "frequency_error_Hz": self.working.frequency_error,
-            "amplitude_m_per_V": self.amplitude_per_volt,
-            "centreline_amplitude_m_per_V": self.centreline_per_volt,
+            "amplitude_per_volt_m_per_V": self.amplitude_per_volt,
+            "largest_per_volt_m_per_V": self.largest_per_volt,
+            "alone_per_volt_m_per_V": self.working.alone_per_volt,
+            "neighbour": to_json(self.mode.neighbour),
             "half_wavelength_m": self.working.half_wavelength,
             "quality_factor": self.working.quality_factor,
             "coupling_coefficient": self.working.coupling_coefficient,
@@ -115,11 +141,12 @@ class SolvedBody(Result):
             ),
             "modes": to_json(self.rows),
             "voltage_V": volts,
-            "current_A": float(self.response.current(volts)[at]),
-            "apparent_power_VA": float(self.response.apparent_power(volts)[at]),
-            "input_power_W": float(self.response.input_power(volts)[at]),
+            "current_A": load.current,
+            "apparent_power_VA": load.apparent_power,
+            "input_power_W": load.real_power,
             "heat": to_json(self.heat),
             "equivalent_circuit": to_json(self.circuit),
+            "equivalent_circuit_said": self.circuit_said,
             **self._particulars(),
             "sound_pressure_level_dB": {f"{far:g} m": level for far, level in levels},
             "sound_guidance": to_json(self.sound.guidance),

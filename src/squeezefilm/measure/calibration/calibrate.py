@@ -168,7 +168,7 @@ def _joint(finger: _Finger, plate: PlateFit | None, count: int, seed: int) -> _M
     random = np.random.default_rng(seed)
     p, volts = finger.prediction, finger.prediction.voltage
     found = np.full((count, 2), np.nan)
-    free = np.full(count, p.touch.free_amplitude)
+    free = np.full(count, p.held_amplitude)
     modes: list[WorkingMode] = [p.mode] * count
     rows = np.zeros(count, dtype=int)
     if plate is not None:

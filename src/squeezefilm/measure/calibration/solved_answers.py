@@ -6,7 +6,6 @@ depends on, so that a calibration that was stopped goes on, and a second one cos
 
 from __future__ import annotations
 
-import contextlib
 import json
 import math
 from collections.abc import Mapping
@@ -157,11 +156,8 @@ def _of_plate(plate: RectangularPlate) -> tuple[_Named, Mapping[str, float]]:
     with in_passing():
         mode = solid_mode(plate)
         modes, at = mode.modes, mode.index
-        response = mode.response
-    error = mode.frequency_error / mode.frequency
-    static = math.nan
-    with contextlib.suppress(InputError):
-        static = response.equivalent_circuit().static_capacitance
+        error = mode.frequency_error / mode.frequency
+    static = math.nan if mode.circuit is None else mode.circuit.static_capacitance
     coupling = float(modes.couplings[at])
     named = {
         "resonance_frequency": (mode.frequency, error),

@@ -300,7 +300,7 @@ def _strokes(known: Known) -> TestStep:
             remark=f"of '{p.surface.name}', as described",
         ),
         Check(
-            "Amplitude under the finger",
+            "Amplitude at the antinode, finger on",
             "",
             "m",
             p.vibration_amplitude,

@@ -172,8 +172,8 @@ def _explained(
     root = float(np.exp(brentq(above, *logarithms, xtol=2e-4, rtol=1e-4)))
     solved = make(plate, root)
     point = working_point(solved)
-    assert point.amplitude_per_volt is not None
-    amplitude = DRIVE_VOLTAGE * point.amplitude_per_volt
+    assert point.largest_per_volt is not None
+    amplitude = DRIVE_VOLTAGE * point.largest_per_volt
     ratios = tuple(
         working_point(solved, label, amplitude=False).frequency / point.frequency
         for label in NEIGHBOURS

@@ -5,12 +5,17 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
+from squeezefilm.plate.circuit import (
+    DrivenResponse,
+    EquivalentCircuit,
+    motional_branch,
+    with_static_capacitance,
+)
 from squeezefilm.plate.ring.body import RingBody, surface_profile
 from squeezefilm.plate.ring.modes import (
     AnnularMode,
@@ -86,33 +91,16 @@ def ring_response(
 def modal_circuit(body: RingBody, mode: AnnularMode) -> EquivalentCircuit:
     """The motional branch of a mode from its modal mass and force, without a static capacitance.
 
-    L1 = M/F², C1 = F²/(ω² M), R1 = ω M/(Q F²). Raises `ZeroDivisionError` for a mode that the
-    channel does not drive.
+    Raises `InputError` for a mode that the channel does not drive.
     """
-    omega0, force = 2 * math.pi * mode.frequency, mode.modal_force(body.drive)
-    return EquivalentCircuit(
-        frequency=mode.frequency,
-        quality_factor=mode.quality_factor,
-        static_capacitance=0.0,
-        motional_resistance=omega0 * mode.modal_mass / (mode.quality_factor * force**2),
-        motional_inductance=mode.modal_mass / force**2,
-        motional_capacitance=force**2 / (omega0**2 * mode.modal_mass),
-    )
-
-
-def with_static_capacitance(bare: EquivalentCircuit, response: DrivenResponse) -> EquivalentCircuit:
-    """A motional branch with the static capacitance (F) that a response's admittance has beside it,
-    in the median."""
-    omega = 2 * np.pi * response.frequencies
-    rest = (response.admittance - bare.admittance(response.frequencies)) / (1j * omega)
-    return replace(bare, static_capacitance=float(np.median(rest.real)))
+    force = abs(mode.modal_force(body.drive))
+    return motional_branch(mode.frequency, mode.quality_factor, mode.modal_mass, force)
 
 
 def ring_circuit(body: RingBody, mode: AnnularMode, response: RingResponse) -> EquivalentCircuit:
     """Butterworth-Van Dyke around the mode: the motional branch of `modal_circuit`, the static
     capacitance from what the sweep's admittance has beside it. Raises as `modal_circuit`."""
-    bare = modal_circuit(body, mode)
-    return with_static_capacitance(bare, response)
+    return with_static_capacitance(modal_circuit(body, mode), response)
 
 
 def static_capacitance(body: RingBody, circuit: EquivalentCircuit | None) -> si.Farad:

@@ -27,8 +27,8 @@ class DrivenMode:
     `label` counts nodal lines across the length and across the width (None for motion in the
     plane) on the shape's dominant product, whose share of the shape's square is `straightness`.
     `parity` is the class of symmetry. Amplitudes are per volt on the drive at resonance, zero to
-    peak, of this mode alone: `antinode_per_volt` at the highest point of the upper face that has
-    lower ones all around it, `largest_per_volt` anywhere on it, edges and corners included.
+    peak, of this mode alone: `alone_per_volt` at its antinode (see `antinode`),
+    `largest_alone_per_volt` anywhere on the upper face, edges and corners included.
     `shape` is w on the upper face, (x, y) on the grid of `surface_shapes`, 1 at its largest.
     """
 
@@ -37,20 +37,25 @@ class DrivenMode:
     label: Label | None
     straightness: si.Dimensionless
     parity: Symmetry
-    antinode_per_volt: si.MetrePerVolt
-    largest_per_volt: si.MetrePerVolt
+    alone_per_volt: si.MetrePerVolt
+    largest_alone_per_volt: si.MetrePerVolt
     shape: si.DimensionlessArray
 
     @property
     def name(self) -> str:
         """The label as people write it, "(8,0)"."""
-        return "in plane" if self.label is None else f"({self.label[0]},{self.label[1]})"
+        return label_name(self.label)
 
     @property
     def moving(self) -> Moving:
-        """What its neighbours are compared by, at the highest antinode."""
+        """What its neighbours are compared by, at its antinode."""
         half = self.frequency / (2 * self.quality_factor)
-        return Moving(self.name, self.frequency, half, self.antinode_per_volt)
+        return Moving(self.name, self.frequency, half, self.alone_per_volt)
+
+
+def label_name(label: Label | None) -> str:
+    """Nodal lines across length and width as people write them, "(8,0)"."""
+    return "in plane" if label is None else f"({label[0]},{label[1]})"
 
 
 class Moving(NamedTuple):
@@ -74,11 +79,14 @@ class Neighbour:
 
 
 def strongest_neighbour(own: Moving, others: Iterable[Moving]) -> Neighbour | None:
-    """The mode that adds most at a mode's resonance; None where there is no other.
+    """The mode that adds most at a mode's resonance; None where there is no other, or nothing of
+    the mode itself to compare it with.
 
     A mode of amplitude A' and half-bandwidth b' adds A'/√(1 + n²) at a distance of n b'.
     """
     found: Neighbour | None = None
+    if own.amplitude_per_volt == 0:
+        return None
     for other in others:
         distance = abs(other.frequency - own.frequency) / other.half_bandwidth
         share = other.amplitude_per_volt / (1 + distance**2) ** 0.5 / own.amplitude_per_volt
@@ -114,25 +122,36 @@ def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[Dr
         w = top[:, :, 2]
         largest = float(np.max(np.abs(w)))
         per_volt = float(abs(force) / (max(loss, 1e-30) * square))
+        label = label_of(top, x, y)
         found.append(
             DrivenMode(
                 frequency=float(np.sqrt(square) / (2 * np.pi)),
                 quality_factor=float(1 / max(loss, 1e-30)),
-                label=label_of(top, x, y),
+                label=label,
                 straightness=profiles(w)[2],
                 parity=part.solved.parity,
-                antinode_per_volt=per_volt * antinode(w),
-                largest_per_volt=per_volt * largest,
+                alone_per_volt=per_volt * antinode(w, label),
+                largest_alone_per_volt=per_volt * largest,
                 shape=w / max(largest, 1e-300),
             )
         )
     return found
 
 
-def antinode(w: si.FloatArray) -> float:
-    """|w| at the highest point of a grid (x, y) that is inside it and not below its neighbours;
-    the highest of all where there is no such point."""
+def antinode(w: si.FloatArray, label: Label | None = None) -> float:
+    """|w| at a mode's antinode, of w on an even grid (x, y) of the face.
+
+    Of a mode with nodal lines across one side only: the largest lobe of the middle line that
+    crosses them, between the outermost. Of any other: the highest point that is inside the face
+    and not below its neighbours; the highest of all where there is no such point.
+    """
     size = np.abs(w)
+    if label is not None and min(label) == 0 and max(label) > 1:
+        line = w.T if label[0] else w
+        middle = (line[(len(line) - 1) // 2] + line[len(line) // 2]) / 2
+        turns = np.flatnonzero(np.signbit(middle[1:]) != np.signbit(middle[:-1]))
+        if turns.size > 1:
+            return float(np.max(np.abs(middle[turns[0] + 1 : turns[-1] + 1])))
     if min(size.shape) < 3:
         return float(np.max(size))
     around = sliding_window_view(size, (3, 3)).max(axis=(2, 3))

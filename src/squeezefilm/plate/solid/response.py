@@ -1,4 +1,4 @@
-"""Harmonic response of a plate: amplitude per volt, admittance, power, equivalent circuit."""
+"""Harmonic response of a plate: amplitude per volt, admittance, power."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from squeezefilm import quantities as si
 from squeezefilm.blas_threads import one_blas_thread
 from squeezefilm.errors import GeometryError, InputError
 from squeezefilm.hard_limits import FREQUENCY
-from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
+from squeezefilm.plate.circuit import DrivenResponse
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.layers import COARSE, NORMAL, Resolution
@@ -33,7 +33,7 @@ from squeezefilm.plate.solid.refined_modes import (
     RefinedModes,
     extrapolated_class,
 )
-from squeezefilm.plate.solid.resonances import Neighbour, driven_modes, strongest_neighbour
+from squeezefilm.plate.solid.resonances import Moving, driven_modes
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs, told_of
 
 _GRID = (121, 81)
@@ -139,25 +139,32 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         )
 
     @si.checked_numbers
-    def neighbour(self, frequency: si.Hertz) -> Neighbour | None:
-        """Of the driven modes that this response is made of, the one that adds most at the
-        resonance of that nearest to a frequency (Hz), within 10 % of it."""
-        si.require("frequency", frequency, si.Unit("Hz"), above=0, at_most=FREQUENCY.most)
-        around = 0.9 * frequency, 1.1 * frequency
-        found = [one.moving for part in self._parts for one in driven_modes(part, around)]
-        if not found:
-            return None
-        own = min(found, key=lambda one: abs(one.frequency - frequency))
-        return strongest_neighbour(own, [one for one in found if one is not own])
+    def beside(self, frequency: si.Hertz) -> list[Moving]:
+        """The driven modes that this response is made of from half a frequency (Hz) to twice it,
+        but for the one that is nearest to it."""
+        si.require("frequency", frequency, si.Unit("Hz"), above=0, at_most=FREQUENCY.most / 2)
+        around = 0.5 * frequency, 2 * frequency
+        modes = [mode.moving for part in self._parts for mode in driven_modes(part, around)]
+        nearest = min(modes, key=lambda mode: abs(mode.frequency - frequency), default=None)
+        return [mode for mode in modes if mode is not nearest]
+
+    def _face(self) -> si.FloatArray:
+        """w of each coordinate on a grid over the upper face, shape (coordinates, points)."""
+        x = np.linspace(0, self.plate.length, _GRID[0])
+        y = np.linspace(0, self.plate.width, _GRID[1])
+        values = surface_values(self._parts, x, y, self.plate.thickness)
+        return np.asarray(values.reshape(self._coordinates.shape[1], -1))
+
+    @si.checked_numbers
+    def largest(self, at: int) -> si.MetrePerVolt:
+        """The largest |w| per volt (m/V) anywhere on the upper face, at frequency number `at`."""
+        si.require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
+        return float(np.max(np.abs(self._coordinates[at] @ self._face())))
 
     @functools.cached_property
     def maximum(self) -> si.FloatArray:
         """The largest |w| per volt (m/V) anywhere on the upper face, for every frequency."""
-        x = np.linspace(0, self.plate.length, _GRID[0])
-        y = np.linspace(0, self.plate.width, _GRID[1])
-        values = surface_values(self._parts, x, y, self.plate.thickness).reshape(
-            self._coordinates.shape[1], -1
-        )
+        values = self._face()
         out = np.empty(self.frequencies.size)
         for k, row in enumerate(self._coordinates):
             out[k] = np.sqrt(np.max((row.real @ values) ** 2 + (row.imag @ values) ** 2))
@@ -193,45 +200,6 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
             q = self._coordinates[:, at]
             out += np.einsum("fi,ij,fj->f", q.conj(), getattr(one, matrix), q).real
         return out
-
-    def equivalent_circuit(self) -> EquivalentCircuit:
-        """Butterworth–Van Dyke parameters of the strongest resonance in the band.
-
-        From the circle of the motional admittance: C0 and a straight background by least squares
-        over the half-power band. Raises `InputError` for fewer than 8 points in it.
-        """
-        peak = int(np.argmax(self.admittance.real))
-        # The contiguous stretch around the peak only.
-        below = np.flatnonzero(~(self.admittance.real > 0.3 * self.admittance.real[peak]))
-        ends = np.concatenate([[-1], below, [self.frequencies.size]])
-        after = int(np.searchsorted(ends, peak))
-        near = np.arange(ends[after - 1] + 1, ends[after])
-        if near.size < 8:
-            raise InputError(
-                f"only {near.size} frequencies lie within the resonance; give at least 8 there "
-                "(a step below f/8Q)"
-            )
-        from scipy.optimize import least_squares
-
-        f, Y = self.frequencies[near], self.admittance[near]
-        omega, f0 = 2 * np.pi * f, self.frequencies[peak]
-        g = float(self.admittance.real[peak])
-        width = max(f[-1] - f[0], f0 * 1e-6)
-        c0 = float(np.median(Y.imag / omega))
-
-        def residual(p: si.FloatArray) -> si.FloatArray:
-            fr, q, conductance, c = f0 * (1 + p[0] * 1e-3), np.exp(p[1]), np.exp(p[2]), p[3] * c0
-            x = q * (f / fr - fr / f)
-            error = (conductance / (1 + 1j * x) + 1j * omega * c - Y) / g
-            return np.concatenate([error.real, error.imag])
-
-        fit = least_squares(residual, [0.0, np.log(1.5 * f0 / width), np.log(g), 1.0], x_scale=0.1)
-        fr, q = f0 * (1 + fit.x[0] * 1e-3), float(np.exp(fit.x[1]))
-        R1 = float(np.exp(-fit.x[2]))
-        L1 = q * R1 / (2 * np.pi * fr)
-        return EquivalentCircuit(
-            float(fr), q, float(fit.x[3] * c0), R1, L1, 1 / ((2 * np.pi * fr) ** 2 * L1)
-        )
 
 
 @si.checked_numbers

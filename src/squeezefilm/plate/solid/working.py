@@ -15,7 +15,14 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import OutOfRangeError
 from squeezefilm.kept.store import Kept
+from squeezefilm.plate.circuit import (
+    EquivalentCircuit,
+    conductance_share,
+    motional_branch,
+    resolved_circuit,
+)
 from squeezefilm.plate.elements.nodal_lines import within_nodes, zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.guess import estimated_frequency
@@ -24,7 +31,12 @@ from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import COARSE_AMPLITUDE_ERROR, MODEL, Label, PlateModes
 from squeezefilm.plate.solid.reduced import class_drive
 from squeezefilm.plate.solid.refined_modes import RefinedModes
-from squeezefilm.plate.solid.resonances import Neighbour
+from squeezefilm.plate.solid.resonances import (
+    Moving,
+    Neighbour,
+    label_name,
+    strongest_neighbour,
+)
 from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.size import solve_size
 from squeezefilm.plate.solid.solve import solve_for_response
@@ -36,6 +48,8 @@ _LINE_POINTS = 401
 # Enough for a display, and nearly always met by the first refinement; the estimate stands beside
 # the frequency.
 _TOLERANCE = 3e-3
+# A circuit that has less of the conductance is told of with its share.
+_MOST_OF_IT = 0.8
 # The part of the time that the modes take; the response takes the rest.
 _MODES = 0.8
 
@@ -61,10 +75,13 @@ class SolidMode:
 
     `modes` holds it at `index`; `response` surrounds the resonance. `position` and `deflection` are
     the mode along the centreline of the upper face that crosses its nodal lines (along the length,
-    or the width), 1 at its largest interior lobe, which is at `lobe` (x, y);
-    `amplitude_per_volt` is the largest answer of that lobe within the mode's bandwidth,
-    `modal_amplitude_per_volt` what this mode has in it, Q F φ / ω²: much less where the drive moves
-    its neighbours only.
+    or the width), 1 at its largest interior lobe, the antinode at `lobe` (x, y).
+
+    `resonance` is the number of the response's frequency, within the mode's bandwidth, at which the
+    antinode answers most; `amplitude_per_volt` is that answer, all modes in, `largest_per_volt` the
+    largest anywhere on the face at the same frequency, and `alone_per_volt` what this mode has of
+    the answer, Q F φ / ω²: much less where the drive moves its neighbours only;
+    `largest_alone_per_volt` is that at the largest point of the face.
     `amplitude_error` is the estimated error of `amplitude_per_volt`: of the discretisation, by
     what the mode's answer to the drive differs between the two meshes, and of the reduction.
     `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe does.
@@ -76,8 +93,11 @@ class SolidMode:
     position: si.MetreArray
     deflection: si.FloatArray
     lobe: tuple[si.Metre, si.Metre]
+    resonance: int
     amplitude_per_volt: si.MetrePerVolt
-    modal_amplitude_per_volt: si.MetrePerVolt
+    largest_per_volt: si.MetrePerVolt
+    alone_per_volt: si.MetrePerVolt
+    largest_alone_per_volt: si.MetrePerVolt
     modal_mass: si.Kilogram
     amplitude_error: si.MetrePerVolt
     model: str = MODEL
@@ -107,10 +127,42 @@ class SolidMode:
         """See `PlateModes.half_wavelength` (m)."""
         return self.modes.half_wavelength(self.index)
 
+    @property
+    def circuit(self) -> EquivalentCircuit | None:
+        """The mode's equivalent circuit; None where it has none, as `circuit_said` tells."""
+        return self._circuit[0]
+
+    @property
+    def circuit_said(self) -> str:
+        """What is to be said of the circuit: why there is none, or that neighbours draw most of
+        the power; empty for one that describes the plate near its resonance."""
+        return self._circuit[1]
+
+    @functools.cached_property
+    def _circuit(self) -> tuple[EquivalentCircuit | None, str]:
+        force = abs(float(self.modes.drive_forces[self.index]))
+        if force == 0:
+            return None, "none: the drive exerts no force on this mode"
+        branch = motional_branch(self.frequency, self.quality_factor, 1.0, force)
+        try:
+            circuit = resolved_circuit(branch, self.response)
+        except OutOfRangeError as error:
+            return None, f"none: {error}"
+        share = conductance_share(branch, self.response)
+        said = f"the mode has {si.percent(share)} of the conductance at its resonance"
+        return circuit, said if share < _MOST_OF_IT else ""
+
     @functools.cached_property
     def neighbour(self) -> Neighbour | None:
-        """The driven mode that adds most at this one's resonance; None where none is near."""
-        return self.response.neighbour(self.frequency)
+        """The driven mode that adds most at this one's resonance; None where there is no other."""
+        half = self.frequency / (2 * self.quality_factor)
+        own = Moving(self.name, self.frequency, half, self.alone_per_volt)
+        return strongest_neighbour(own, self.response.beside(self.frequency))
+
+    @property
+    def name(self) -> str:
+        """The nodal lines across length and width, "(8,0)"."""
+        return label_name(self.modes.labels[self.index])
 
     @si.checked_numbers
     def amplitude_per_volt_at(self, frequency: si.HertzLike) -> si.MetrePerVoltArray:
@@ -134,8 +186,7 @@ class SolidMode:
         is `amplitude_per_volt`. Raises `InputError` unless it is above 0.
         """
         if frequency is None or frequency == self.frequency:
-            at, _ = _strongest(self.response, self.frequency, self.quality_factor, self.lobe)
-            return self.response, at
+            return self.response, self.resonance
         si.require("frequency", frequency, si.Unit("Hz"), above=0)
         band = np.union1d([frequency], self.frequency)
         return self._response(band), int(np.searchsorted(band, frequency))
@@ -189,7 +240,7 @@ def solid_mode(
     mode or nothing drives the plate, `GeometryError` for a plate that the elements cannot carry,
     `OutOfTimeError` where not even the coarse mesh would end in time.
     """
-    return _solid_mode(plate, label, pace)
+    return _solid_mode(plate, None if label == plate.working_label else label, pace)
 
 
 # A plate keeps 10 to 100 MB in memory and 5 MB on disk.
@@ -253,7 +304,8 @@ def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: P
     at = int(np.flatnonzero(inside)[np.argmax(np.abs(line[inside]))])
     lobe = float(x[at]), across / 2
     lobe = lobe if lengthwise else lobe[::-1]
-    _, per_volt = _strongest(response, frequency, quality, lobe)
+    resonance, per_volt = _strongest(response, frequency, quality, lobe)
+    alone = quality * abs(float(modes.drive_forces[index])) / (2 * np.pi * frequency) ** 2
     doubt = (
         COARSE_AMPLITUDE_ERROR
         if modes.left_coarse
@@ -266,10 +318,11 @@ def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: P
         position=x,
         deflection=line / line[at],
         lobe=lobe,
+        resonance=resonance,
         amplitude_per_volt=per_volt,
-        modal_amplitude_per_volt=float(
-            quality * abs(modes.drive_forces[index] * line[at]) / (2 * np.pi * frequency) ** 2
-        ),
+        largest_per_volt=response.largest(resonance),
+        alone_per_volt=alone * float(np.abs(line[at])),
+        largest_alone_per_volt=alone * float(np.max(np.abs(modes.shapes[index]))),
         modal_mass=float(1 / line[at] ** 2),
         amplitude_error=(doubt + response.truncation_error) * per_volt,
     )

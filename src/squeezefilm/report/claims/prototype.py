@@ -37,9 +37,9 @@ Table = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]
 def comparison(study: PrototypeStudy) -> Table:
     """The paper's numbers beside the solved plate's, head and rows."""
     ours, printed = study.from_d31, study.printed_e31
-    assert ours.amplitude_per_volt is not None
-    assert printed.amplitude_per_volt is not None
-    d31, e31 = (DRIVE_VOLTAGE * p for p in (ours.amplitude_per_volt, printed.amplitude_per_volt))
+    assert ours.largest_per_volt is not None
+    assert printed.largest_per_volt is not None
+    d31, e31 = (DRIVE_VOLTAGE * p for p in (ours.largest_per_volt, printed.largest_per_volt))
     rows: list[tuple[str, ...]] = [
         (name, f"{value / 1e3:.4g} kHz", *(_kilohertz(p.frequency, value) for p in (ours, printed)))
         for name, value in (

@@ -142,7 +142,7 @@ def frequency_response(analysis: Analysis) -> Figure:
     top = int(np.argmax(per_volt))
     peak = float(per_volt[top])
     solid = p.mode.solid
-    own = p.mode.amplitude_per_volt if solid is None else solid.modal_amplitude_per_volt
+    own = p.mode.amplitude_per_volt if solid is None else solid.alone_per_volt
     driven = own > 0.1e-9 * peak
     band = half_power(f, per_volt) if driven else None
     at = shown(p.mode.resonance_frequency, HZ)
@@ -187,7 +187,7 @@ def _mark_drive(axes: Axes, p: Prediction, voltage: float, peak: float) -> None:
     height = 1e9 * free / voltage if voltage else peak
     name = f"drive: {shown(voltage, V)} at {shown(p.frequency, HZ)}, {shown(free, M, 3)} free"
     if p.vibration_amplitude != free:
-        name += f", {shown(p.vibration_amplitude, M, 3)} under the finger"
+        name += f", {shown(p.vibration_amplitude, M, 3)} with the finger on"
     look = {**style.ESTIMATE, "color": style.ORANGE, "ms": 8, "mew": 1.2}
     axes.plot(1e-3 * p.frequency, height, **look, zorder=4, label=name)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.chain.pad_place import place_words
 from squeezefilm.report.kit.decisions import felt_rows
 from squeezefilm.report.kit.numbers import (
     HZ,
@@ -83,11 +84,16 @@ def vibration_rows(p: Prediction) -> list[Row]:
     kept = f"the finger leaves {100 * p.touch.kept:.3g} %"
     if p.touch.mode is None:
         kept = "the finger is taken to change nothing: no modal mass is known"
+    under_finger: list[Row] = []
+    if place is not None:
+        where = f"where it is, at {place_words(p.place)}"
+        under_finger = [("Amplitude under the finger", shown(p.amplitude_at_place, M, 3), where)]
     return [
         ("Resonance frequency", shown(mode.resonance_frequency, HZ), _solved(mode)),
         drive,
         ("Amplitude, free", shown(free, M, 3), made),
-        ("Amplitude under the finger", shown(p.vibration_amplitude, M, 3), kept),
+        ("Amplitude, finger on", shown(p.vibration_amplitude, M, 3), f"{of}; {kept}"),
+        *under_finger,
     ]
 
 

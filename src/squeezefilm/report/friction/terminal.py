@@ -58,11 +58,11 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     p = result.prediction
     drive = "amplitude given" if p.voltage is None else f"at {shown(p.voltage, V)}"
     rows = [
-        ("Vibration amplitude", shown(p.vibration_amplitude, M), f"with the finger, {drive}"),
+        ("Vibration amplitude", shown(p.vibration_amplitude, M), f"antinode, finger on, {drive}"),
         *interval_rows(result.uncertainty),
         ("Drive frequency", shown(p.frequency, HZ), ""),
     ]
-    if p.voltage is not None and p.touch.mode is not None:
+    if p.touch.mode is not None:
         rows.append(
             (
                 "The finger leaves",

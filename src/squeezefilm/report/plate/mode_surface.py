@@ -21,7 +21,7 @@ _POINTS = (249, 99)
 def driven_shape(result: PlateAnalysis, x: FloatArray, y: FloatArray) -> FloatArray:
     """w per volt (m/V) over the upper face at resonance, at the instant when its largest point
     stands highest; shape (x, y)."""
-    w = result.response.displacement(x, y)[result.response.resonance]
+    w = result.response.motion(result.resonance, x, y)
     phase = w.flat[int(np.argmax(np.abs(w)))]
     return np.asarray((w * np.conj(phase) / np.abs(phase)).real)
 

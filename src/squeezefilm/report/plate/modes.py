@@ -9,6 +9,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.listed_modes import HEARING
+from squeezefilm.chain.pad_place import place_words
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.numbers import HZ, shown
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.plate.listed_modes import ListedMode
     from squeezefilm.analysis.plate.modes import ModeList
     from squeezefilm.analysis.plate.ring_pair import RingPair
+    from squeezefilm.plate.working_mode import WorkingMode
 
 _PER_VOLT, _SPEED = si.Unit("m/V"), si.Unit("m/s")
 _HEAD = ("mode", "frequency", "per volt", "neighbour", "away", "adds", "")
@@ -44,7 +46,7 @@ def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
             (
                 ("→ " if mode is working else "  ") + mode.label,
                 shown(mode.frequency, HZ, 4),
-                shown(mode.amplitude_per_volt, _PER_VOLT, 3),
+                shown(mode.alone_per_volt, _PER_VOLT, 3),
                 mode.neighbour or "",
                 "" if far is None else f"{far:.3g}",
                 "" if far is None else _percent(mode.neighbour_share),
@@ -103,7 +105,7 @@ def show_mode_list(result: ModeList) -> None:
     heading(console, f"{display.title} [{display.name}]")
     console.print(
         f"Driven modes: {len(result.modes)}, from {shown(low, HZ)} to {shown(high, HZ)}; amplitude "
-        "of each alone, zero to peak, at an antinode, at resonance, without a finger"
+        "of each alone, zero to peak, at its antinode, at resonance, without a finger"
     )
     rows = mode_list_rows(result)
     table(console, _HEAD, rows, fixed=range(len(_HEAD) - 1))
@@ -112,6 +114,8 @@ def show_mode_list(result: ModeList) -> None:
         "resonance: how many half-bandwidths (its f/2Q) it is away, and how much it adds to the "
         "amplitude there. From 20 % on a mode is crowded, from 100 % on hidden."
     )
+    if result.solved is not None:
+        console.print(_solved_said(result.solved))
     bullets(console, mode_list_sentences(result))
     if result.pair is not None:
         show_pair(console, result.pair)
@@ -119,10 +123,18 @@ def show_mode_list(result: ModeList) -> None:
         f"{result.model}; frequencies "
         + (
             f"up to {100 * result.frequency_error:.2g} % high, so that the list reaches as far "
-            "above the band; squeezefilm plate solves a mode to 0.1 %"
+            "above the band; the display's own mode is solved, mostly to 0.3 %"
             if result.screened
             else f"within {100 * result.frequency_error:.2g} % (estimated)"
         )
+    )
+
+
+def _solved_said(mode: WorkingMode) -> str:
+    """The display's own mode with all others in, as every other verb has it."""
+    return (
+        f"{mode.label} as it is driven, all modes in: {shown(mode.amplitude_per_volt, _PER_VOLT)} "
+        f"at its antinode at {place_words(mode.lobe)}, as squeezefilm plate and analyze have it."
     )
 
 
@@ -160,10 +172,10 @@ def spectrum(result: ModeList) -> Figure:
         said += f"; {own.label} at {own.frequency / 1e3:.2f} kHz is the display's"
     if best is not None and best is not own:
         said += f", {best.label} at {best.frequency / 1e3:.2f} kHz is suggested"
-    figure = style.new_figure(said, f"{result.model}; each mode alone, at an antinode", 4.4)
+    figure = style.new_figure(said, f"{result.model}; each mode alone, at its antinode", 4.4)
     axes = figure.subplots()
     f = np.array([mode.frequency for mode in result.modes]) / 1e3
-    per_volt = np.array([mode.amplitude_per_volt for mode in result.modes]) * 1e9
+    per_volt = np.array([mode.alone_per_volt for mode in result.modes]) * 1e9
     floor = 0.5 * float(per_volt.min())
     low, high = result.band[0] / 1e3, max(result.band[1] / 1e3, 1.02 * float(f.max()))
     if low < HEARING / 1e3:
@@ -177,15 +189,15 @@ def spectrum(result: ModeList) -> Figure:
     )
     for mode, color, name in marked:
         if mode is not None:
-            at = mode.frequency / 1e3, mode.amplitude_per_volt * 1e9
+            at = mode.frequency / 1e3, mode.alone_per_volt * 1e9
             axes.vlines(at[0], floor, at[1], color=color, lw=2.2)
             axes.plot(*at, "o", color=color, ms=8, label=name, mec=style.PAPER)
     room = (high - low) / _LABELS
     for mode in result.modes:
         beside = np.abs(f - mode.frequency / 1e3) < room
-        highest = mode.amplitude_per_volt * 1e9 >= per_volt[beside].max()
-        if highest and mode.amplitude_per_volt * 1e9 > 0.05 * per_volt.max():
-            at = mode.frequency / 1e3, mode.amplitude_per_volt * 1e9
+        highest = mode.alone_per_volt * 1e9 >= per_volt[beside].max()
+        if highest and mode.alone_per_volt * 1e9 > 0.05 * per_volt.max():
+            at = mode.frequency / 1e3, mode.alone_per_volt * 1e9
             axes.annotate(mode.label, at, (0, 6), textcoords="offset points", **style.SLANTED)
     axes.set(xlabel="frequency (kHz)", ylabel="amplitude (nm/V)", xlim=(low, high), yscale="log")
     axes.set_ylim(floor, 4 * float(per_volt.max()))
@@ -197,7 +209,7 @@ def spectrum(result: ModeList) -> Figure:
 @style.drawn
 def shapes(result: ModeList) -> Figure:
     """The modes of a plate that move most, from above, in the order of frequency."""
-    strongest = sorted(result.screened, key=lambda mode: -mode.antinode_per_volt)[:_SHAPES]
+    strongest = sorted(result.screened, key=lambda mode: -mode.alone_per_volt)[:_SHAPES]
     chosen = sorted(strongest, key=lambda mode: mode.frequency)
     columns = 4
     rows = -(-len(chosen) // columns)
@@ -218,7 +230,7 @@ def shapes(result: ModeList) -> Figure:
         axes.contourf(x, y, mode.shape.T, [-1.01, 0, 1.01], colors=[style.MINUS, style.PLUS])
         axes.contour(x, y, mode.shape.T, [-0.5, 0.5], colors=style.MUTED, linewidths=0.6)
         axes.contour(x, y, mode.shape.T, [0], colors=style.INK, linewidths=0.9)
-        per_volt = shown(mode.antinode_per_volt, _PER_VOLT, 3)
+        per_volt = shown(mode.alone_per_volt, _PER_VOLT, 3)
         axes.set_title(f"{mode.name}  {mode.frequency / 1e3:.2f} kHz\n{per_volt}", fontsize=9)
         axes.set(aspect="equal")
     return figure

@@ -33,7 +33,7 @@ def plate_page(result: SolvedBody, figures: Mapping[str, tuple[str, Figure]]) ->
     body = (
         section("Working mode", _numbers(result))
         + picture_sections(figures)
-        + section("Modes in the band", _modes(result))
+        + section("Modes in the band, each alone at its antinode", _modes(result))
     )
     volume = _VOLUME if isinstance(result, PlateAnalysis) else ""
     stamp = stamped(result.summary()["provenance"], "description SHA-256")
@@ -50,7 +50,7 @@ def _numbers(result: SolvedBody) -> str:
     volts = result.display.drive.voltage
     rows = working_rows(result)
     amplitude = shown(volts * result.amplitude_per_volt, M, 3)
-    rows.append((f"Amplitude at {shown(volts, V)}", amplitude, "zero-to-peak, largest"))
+    rows.append((f"Amplitude at {shown(volts, V)}", amplitude, "zero-to-peak, at the antinode"))
     table = text_table(result.model, ("Quantity", "Value", "Remark"), rows + drive_rows(result))
     fit = result.body.fit if isinstance(result, RingAnalysis) else None
     said = (*(() if fit is None else fit_sentences(fit)), *result.objections, *result.heat.doubts)

@@ -53,10 +53,9 @@ def line_scan(result: PlateAnalysis) -> Figure:
     x, lines = np.linspace(0, span, 333), np.array([0.0, other / 2])
     w = 1e9 * (driven_shape(result, x, lines) if lengthwise else driven_shape(result, lines, x).T)
     volts = result.display.drive.voltage
-    centre = 1e9 * result.centreline_per_volt
     title = (
-        f"Along the centre {centre:.3g} nm per volt between the outer nodes, "
-        f"{result.amplitude_per_volt * 1e9:.3g} nm per volt at the largest of the face"
+        f"At the antinode {1e9 * result.amplitude_per_volt:.3g} nm per volt, "
+        f"{1e9 * result.largest_per_volt:.3g} nm per volt at the largest of the face"
     )
     model = f"{result.modes.model}, all electrodes driven at resonance"
     figure = style.new_figure(title, model, 4.2)
@@ -77,15 +76,15 @@ def line_scan(result: PlateAnalysis) -> Figure:
 
 @style.drawn
 def frequency_response(result: PlateAnalysis) -> Figure:
-    """The largest amplitude per volt against frequency around the working mode."""
-    response = result.response
-    f, at = response.frequencies / 1e3, response.resonance
-    per_volt = 1e9 * response.maximum
-    band = half_power(f, per_volt)
+    """The antinode's amplitude per volt against frequency around the working mode."""
+    response, at = result.response, result.resonance
+    f, per_volt = response.frequencies / 1e3, 1e9 * response.amplitude_at(*result.mode.lobe)
+    # Where a neighbour moves more, the highest point is not this mode's.
+    band = half_power(f, per_volt) if at == int(np.argmax(per_volt)) else None
     wide = "" if band is None else f", {1e3 * (band[1] - band[0]):.3g} Hz wide at half power"
     figure = style.new_figure(
         f"Resonance at {f[at]:.2f} kHz: {per_volt[at]:.3g} nm per volt{wide}",
-        f"{response.model}, {response.method}; largest point of the upper face",
+        f"{response.model}, {response.method}; at the antinode",
         4.2,
     )
     axes = figure.subplots()
@@ -95,7 +94,7 @@ def frequency_response(result: PlateAnalysis) -> Figure:
     own = result.working.frequency / 1e3
     named = f"mode {result.working.label} extrapolated, {own:.2f} kHz"
     axes.axvline(own, **style.LANDMARK, label=named)
-    axes.set(xlabel="frequency (kHz)", ylabel="largest amplitude (nm/V)")
+    axes.set(xlabel="frequency (kHz)", ylabel="amplitude at the antinode (nm/V)")
     axes.set(ylim=(0, None), xlim=(f[0], f[-1]))
     style.legend_below(axes, columns=3, gap=0.2)
     return figure
@@ -160,8 +159,9 @@ def write_mode(result: PlateAnalysis, file: Path) -> Path:
     """Write the working mode and its response at the display's voltage as .vtu; the file."""
     return write_vtu(
         file,
-        result.alone,
-        result.alone.index(result.working_label),
+        result.solid.modes,
+        result.solid.index,
         response=result.response,
+        at=result.resonance,
         voltage=result.display.drive.voltage,
     )

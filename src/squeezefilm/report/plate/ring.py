@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 @style.drawn
 def shape(result: RingAnalysis) -> Figure:
     """The mode from above with its nodal lines and circles, beside the poling of the sectors."""
-    mode, at = result.mode, result.response.resonance
-    size = 1e9 * result.amplitude_per_volt
+    mode, at = result.annular, result.resonance
+    size = 1e9 * result.largest_per_volt
     where = f"nodal lines {shown(mode.half_wavelength or 0.0, M)} apart on the mean circumference"
     if not mode.harmonic:
         radii = ", ".join(shown(float(r), M, 3) for r in result.circles)
@@ -62,7 +62,7 @@ def _standing(motion: np.ndarray) -> np.ndarray:
 
 def _turn(result: RingAnalysis) -> float:
     """mθ0 of the mode that the channel moves."""
-    coefficient = result.body.drive.coefficient(result.mode.harmonic)
+    coefficient = result.body.drive.coefficient(result.annular.harmonic)
     return -math.atan2(coefficient.imag, coefficient.real)
 
 
@@ -99,13 +99,14 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
 def scan(result: RingAnalysis) -> Figure:
     """The driven shape around the mean circumference and along a radius; without nodal diameters
     along a diameter."""
-    m, model = result.mode.harmonic, f"{result.model}, channel driven at resonance"
-    radial = 1e9 * _standing(result.response.motion[result.response.resonance])
+    m, model = result.annular.harmonic, f"{result.model}, channel driven at resonance"
+    radial = 1e9 * _standing(result.response.motion[result.resonance])
     mean = result.scan_radius
     if m:
         title = (
             f"{m} waves stand around the mean circumference of {shown(2 * math.pi * mean, M)}: "
-            f"{1e9 * result.centreline_per_volt:.0f} nm per volt at their antinodes"
+            f"{abs(float(np.interp(mean, result.response.radius, radial))):.0f} nm per volt at "
+            "their antinodes"
         )
         figure = style.new_figure(title, model, 5.6)
         above, below = figure.subplots(2, 1)
@@ -136,7 +137,7 @@ def scan(result: RingAnalysis) -> Figure:
 
 def _around(axes: Axes, result: RingAnalysis, here: float) -> None:
     """The scan around the mean circumference, with the sectors of the channel at its foot."""
-    m, mean = result.mode.harmonic, result.scan_radius
+    m, mean = result.annular.harmonic, result.scan_radius
     angle = np.linspace(0, 2 * np.pi, max(361, 40 * m) | 1)
     length = 1e3 * mean * angle
     axes.plot(length, here * np.cos(m * angle - _turn(result)), color=style.BLUE)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from squeezefilm import quantities as si
 from squeezefilm.analysis.plate.command import PlateAnalysis
 from squeezefilm.analysis.plate.ring import RingAnalysis
+from squeezefilm.chain.pad_place import place_words
 from squeezefilm.report.kit.numbers import HZ, PER_VOLT, A, M, V, changed, printable, shown
 from squeezefilm.report.kit.point_rows import Row, heat_rows, sound_rows
 from squeezefilm.report.kit.terminal import heading, show_rows, table
@@ -37,8 +38,12 @@ def working_rows(result: SolvedBody) -> list[Row]:
             shown(mode.frequency, HZ, 5),
             f"± {shown(mode.frequency_error, HZ, 2)} {said.frequency}",
         ),
-        ("Amplitude per volt", shown(result.amplitude_per_volt, PER_VOLT), said.largest),
-        ("", shown(result.centreline_per_volt, PER_VOLT), said.centreline),
+        (
+            "Amplitude per volt",
+            shown(result.amplitude_per_volt, PER_VOLT),
+            f"antinode at {place_words(result.mode.lobe)}, without a finger",
+        ),
+        ("", shown(result.largest_per_volt, PER_VOLT), said.largest),
     ]
     if isinstance(result, RingAnalysis):
         rows += _ring_rows(result)
@@ -56,9 +61,9 @@ def working_rows(result: SolvedBody) -> list[Row]:
 def _ring_rows(result: RingAnalysis) -> list[Row]:
     """What was measured of a stator, and where a disc or stator stands still."""
     rows, half = [], result.working.half_wavelength
-    if result.described_amplitude_per_volt is not None:
-        measured = shown(result.described_amplitude_per_volt, PER_VOLT)
-        rows.append(("", measured, "described as measured"))
+    if result.computed_per_volt is not None:
+        computed = shown(result.computed_per_volt, PER_VOLT)
+        rows.append(("", computed, "computed at that antinode; the first is as measured"))
     if half is not None:
         rows.append(
             ("Half wavelength", shown(half, M), f"along the {result.half_wavelength_along}")
@@ -71,16 +76,17 @@ def _ring_rows(result: RingAnalysis) -> list[Row]:
 
 def drive_rows(result: SolvedBody) -> list[Row]:
     """Current and power at resonance at the display's voltage, the equivalent circuit, warmth."""
-    volts, at = result.display.drive.voltage, result.response.resonance
-    response, c = result.response, result.circuit
+    volts, load, c = result.display.drive.voltage, result.load, result.circuit
     rows = [
         (
             f"At {shown(volts, V)}",
-            shown(float(response.current(volts)[at]), A, 3),
-            f"{response.apparent_power(volts)[at]:.3g} VA, {response.input_power(volts)[at]:.3g} W",
+            shown(load.current, A, 3),
+            f"{load.apparent_power:.3g} VA, {load.real_power:.3g} W",
         )
     ]
-    if c is not None:
+    if c is None:
+        rows.append(("Equivalent circuit", "none", result.circuit_said.removeprefix("none: ")))
+    else:
         motional = (
             f"R1 {shown(c.motional_resistance, OHM, 3)}",
             f"L1 {shown(c.motional_inductance, HENRY, 3)}",
@@ -88,6 +94,8 @@ def drive_rows(result: SolvedBody) -> list[Row]:
         )
         static = f"C0 {shown(c.static_capacitance, FARAD, 3)}"
         rows.append(("Equivalent circuit", static, ", ".join(motional)))
+        if result.circuit_said:
+            rows.append(("", "", result.circuit_said))
     return rows + heat_rows(result.heat)
 
 
@@ -124,7 +132,8 @@ def show_guidance(console: Console, sound: SoundField) -> None:
 def mode_rows(
     rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt
 ) -> list[tuple[str, str, str, str, str, str]]:
-    """Label, frequency, its error, quality factor, amplitude per volt and coupling of every mode.
+    """Label, frequency, its error, quality factor, amplitude per volt alone and coupling of every
+    mode.
 
     `amplitude_per_volt` is the working mode's (m/V).
     """
@@ -135,8 +144,8 @@ def mode_rows(
             shown(row.frequency_error, HZ, 2),
             f"{row.quality_factor:.3g}",
             "not driven"
-            if row.amplitude_per_volt < _DRIVEN * amplitude_per_volt
-            else shown(row.amplitude_per_volt, PER_VOLT, 3),
+            if row.alone_per_volt < _DRIVEN * amplitude_per_volt
+            else shown(row.alone_per_volt, PER_VOLT, 3),
             f"{row.coupling_coefficient:.2g}",
         )
         for row in rows
@@ -147,7 +156,7 @@ def show_modes(
     console: Console, rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt
 ) -> None:
     """Print the table of modes; `amplitude_per_volt` is the working mode's (m/V)."""
-    heading(console, "Modes in the band")
+    heading(console, "Modes in the band, each alone at its antinode")
     head = ("mode", "frequency", "±", "Q", "per volt", "coupling")
     table(console, head, mode_rows(rows, amplitude_per_volt))
 

@@ -27,9 +27,12 @@ def write_vtu(
     mode: int,
     *,
     response: HarmonicResponse | None = None,
+    at: int | None = None,
     voltage: Volt = 0.0,
 ) -> Path:
-    """Write one mode, and the harmonic response at its resonance for a voltage amplitude, as .vtu.
+    """Write one mode, and the harmonic response for a voltage amplitude, as .vtu.
+
+    The response is that at its frequency number `at`, without one where it moves most.
 
     Point data: ``mode_displacement_m`` and ``mode_potential_V`` (real, the largest displacement
     scaled to 1 µm), with a `response` also ``displacement_real_m``, ``displacement_imaginary_m``,
@@ -54,7 +57,7 @@ def write_vtu(
         "mode_scale_m_sqrt_kg": scale,
     }
     if response is not None:
-        at = response.resonance
+        at = response.resonance if at is None else at
         u, potential = (voltage * part for part in harmonic_fields(volume, response, at))
         points |= {
             "displacement_real_m": u.real,

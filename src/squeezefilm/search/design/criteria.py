@@ -32,7 +32,7 @@ from squeezefilm.plate.laminate import Laminate, ceramics_of, plate_laminate
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.plate.parts import parts_of
 from squeezefilm.plate.press import bending_stress, pressed_deflection, pressed_disc_deflection
-from squeezefilm.plate.working_mode import TAKES_PART
+from squeezefilm.plate.working_mode import CROWDED
 from squeezefilm.search.design.requirements import Limits, Requirements
 
 # Periods tried over the 0.25 to 20 mm of the observer: steps of 1.8 %, and between them a line.
@@ -93,7 +93,7 @@ CRITERIA: Mapping[str, Criterion] = dict(
         _one("resonance_frequency", "Hz", "resonance", "least_frequency"),
         _one("highest_frequency", "Hz", "resonance", "most_frequency", "resonance_frequency"),
         _one("squeeze_number", "1", "squeeze number", "least_squeeze_number"),
-        _one("vibration_amplitude", "m", "amplitude under the finger"),
+        _one("vibration_amplitude", "m", "amplitude at the antinode, finger on"),
         _one("half_wavelength", "m", "half wavelength"),
         _one("current", "A", "current", "most_current"),
         _one("power", "W", "power", "most_power"),
@@ -215,7 +215,7 @@ def numbers_of_solved(
         found["current"] = load.current
     beside = p.mode.neighbour
     found["neighbour"] = (
-        math.inf if beside is None or beside.share < TAKES_PART else abs(beside.distance)
+        math.inf if beside is None or beside.share < CROWDED else abs(beside.distance)
     )
     if limits.least_area is not None or limits.most_relative_friction is not None:
         area = active_area(display, p)

@@ -91,9 +91,9 @@ def test_of_one_label_the_strongest_is_meant_or_the_one_nearest() -> None:
 @pytest.mark.parametrize("share", [1e-12, 0.9 * DRIVEN_SHARE])
 def test_a_mode_that_the_drive_cannot_move_is_never_suggested(share: float) -> None:
     strong = row("in plane", 36e3, 4.5e-10, choice=None)
-    vanishing = row("(6,0)", 30e3, share * strong.amplitude_per_volt)
+    vanishing = row("(6,0)", 30e3, share * strong.alone_per_volt)
     assert suggested(with_neighbours([strong, vanishing])).mode is None
-    driven = row("(6,0)", 30e3, 1.1 * DRIVEN_SHARE * strong.amplitude_per_volt)
+    driven = row("(6,0)", 30e3, 1.1 * DRIVEN_SHARE * strong.alone_per_volt)
     assert suggested([strong, driven]).mode is driven
     assert suggested([row("(6,0)", 30e3, 0.0)]).mode is None
 

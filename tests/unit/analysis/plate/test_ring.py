@@ -67,44 +67,43 @@ def swept(motion: np.ndarray, resonance: int = 1) -> RingResponse:
 MOTION = 1e-8 * np.exp(0.7j) * np.array([-4.0, 0.0, 2.0, 3.0, 6.0])
 
 
+# What every verb has of the mode: 60 nm per volt at its antinode.
+WORKING: Any = SimpleNamespace(
+    amplitude_per_volt=6e-8, resonance_frequency=40e3, quality_factor=100.0, modal_mass=None,
+    neighbour=None, lobe=(30e-3, 0.0),
+)  # fmt: skip
+
+
 def found(working: AnnularMode | None = None, motion: np.ndarray = MOTION, **changes: Any) -> Any:
     own = working or mode()
-    row = ModeRow("B(1,2)", 40e3, 4.0, 100.0, 2e-8, 0.2, 0.1, 31e-3)
+    row = ModeRow("B(1,2)", 40e3, 4.0, 100.0, 2e-8, 3e-8, 0.2, 0.1, 31e-3)
     parts: dict[str, Any] = {
         "display": load_display("winfield2007-tpad"), "body": body(own), "modes": (own,),
-        "rows": (row, dataclasses.replace(row, frequency=42e3, frequency_error=8.4)), "mode": own,
+        "rows": (row, dataclasses.replace(row, frequency=42e3, frequency_error=8.4)),
+        "annular": own, "mode": WORKING,
         "working": row, "half_wavelength_along": "circumference", "circles": np.array([15e-3]),
         "response": swept(motion), "circuit": CIRCUIT,
         "sound": SimpleNamespace(
             distances=(0.3, 1.0), sound_pressure_level_dB=(70.0, 60.0), guidance=None
         ),
-        "described_amplitude_per_volt": None,
     }  # fmt: skip
     return RingAnalysis(**{**parts, **changes})
 
 
-def test_amplitudes_are_at_the_highest_antinode_and_on_the_mean_radius() -> None:
-    one = found()
-    assert one.amplitude_per_volt == pytest.approx(6e-8)
-    assert one.scan_radius == pytest.approx(20e-3)
-    assert one.centreline_per_volt == pytest.approx(2e-8)
-    # At whatever frequency it moves most.
-    assert found(response=swept(MOTION, 2)).amplitude_per_volt == pytest.approx(6e-8)
+def test_the_largest_amplitude_is_at_whatever_frequency_the_face_moves_most() -> None:
+    for number in (1, 2):
+        one = found(response=swept(MOTION, number))
+        assert one.resonance == number
+        assert one.largest_per_volt == pytest.approx(6e-8)
+        assert one.amplitude_per_volt == WORKING.amplitude_per_volt
 
 
-def test_without_nodal_diameters_the_middle_lobe_counts() -> None:
-    """Within the first circle, and everywhere where there is none."""
-    umbrella = mode(harmonic=0)
-    assert found(umbrella).centreline_per_volt == pytest.approx(4e-8)
-    assert found(umbrella, circles=np.array([20e-3, 25e-3])).centreline_per_volt == pytest.approx(
-        4e-8
-    )
-    inner = 1e-8 * np.array([1.0, 2.0, 5.0, 0.0, 9.0])
-    # The circle itself is still within.
-    assert found(umbrella, inner, circles=np.array([20e-3])).centreline_per_volt == pytest.approx(
-        5e-8
-    )
-    assert found(umbrella, inner, circles=np.array([])).centreline_per_volt == pytest.approx(9e-8)
+def test_only_a_stator_has_a_computed_amplitude_beside_its_own() -> None:
+    """At an antinode of the mean circumference, where it was measured."""
+    assert found().computed_per_volt is None
+    stator = found(display=load_display("biet2008-stator"))
+    assert stator.scan_radius == pytest.approx(20e-3)
+    assert stator.computed_per_volt == pytest.approx(2e-8)
 
 
 def test_a_status_is_of_the_worst_mode() -> None:
@@ -134,24 +133,24 @@ def test_a_summary_has_every_number_under_its_name() -> None:
     # At the display's 20 V: |6 + 8i| mS are 10 mS.
     assert said == {
         "display": "winfield2007-tpad", "mode": "B(1,2)", "frequency_Hz": 40e3,
-        "frequency_error_Hz": 4.0, "amplitude_m_per_V": pytest.approx(6e-8),
-        "centreline_amplitude_m_per_V": pytest.approx(2e-8), "half_wavelength_m": 31e-3,
+        "frequency_error_Hz": 4.0, "amplitude_per_volt_m_per_V": pytest.approx(6e-8),
+        "largest_per_volt_m_per_V": pytest.approx(6e-8), "alone_per_volt_m_per_V": 2e-8,
+        "neighbour": None, "equivalent_circuit_said": "", "half_wavelength_m": 31e-3,
         "half_wavelength_along": "circumference", "nodal_circles_m": [15e-3],
         "quality_factor": 100.0, "coupling_coefficient": 0.2, "voltage_V": 20.0,
         "coupling_coefficient_error": None, "parallel_resonance_frequency_Hz": None,
         "parallel_resonance_frequency_error_Hz": None,
         "current_A": pytest.approx(0.2), "apparent_power_VA": pytest.approx(2.0),
-        "input_power_W": pytest.approx(1.2), "described_amplitude_m_per_V": None, "fit": None,
+        "input_power_W": pytest.approx(1.2), "computed_per_volt_m_per_V": None, "fit": None,
         "sound_pressure_level_dB": {"0.3 m": 70.0, "1 m": 60.0}, "sound_guidance": None,
         "model": "a-model", "status": one.status, "objections": [],
     }  # fmt: skip
 
 
 def test_a_fit_is_said_with_its_bounds() -> None:
-    one = found(body=body(fit=FIT), described_amplitude_per_volt=1.4e-8)
+    one = found(body=body(fit=FIT))
     said = one.summary()
     assert said["model"] == "a-model, fitted stator"
-    assert said["described_amplitude_m_per_V"] == 1.4e-8
     fit = said["fit"]
     assert fit.pop("assumed")["driven_sectors"] == StatorAssumptions.driven_sectors
     assert fit == {
@@ -169,7 +168,11 @@ def test_a_row_is_a_mode_under_its_drive() -> None:
     assert (row.label, row.frequency, row.frequency_error) == ("B(1,2)", 40e3, 4.0)
     assert row.quality_factor == 100.0
     # Half as far as the highest antinode of a mode that is scaled to 1.
-    assert row.amplitude_per_volt == pytest.approx(0.5 * 100 * 16e-3 / stiffness)
+    assert (
+        row.alone_per_volt
+        == row.largest_alone_per_volt
+        == pytest.approx(0.5 * 100 * 16e-3 / stiffness)
+    )
     assert row.modal_force == pytest.approx(16e-3 / math.sqrt(2e-3))
     assert row.coupling_coefficient == pytest.approx(16e-3 / math.sqrt(16e-3**2 + stiffness * 1e-9))
     assert row.parallel_resonance_frequency == pytest.approx(
@@ -284,7 +287,8 @@ def test_an_analysis_is_around_the_working_mode(parts: dict[str, Any]) -> None:
     display = disc()
     one = analyze_ring(display, points=20, progress=told.append)
     own = parts["body"].mode((1, 2))
-    assert one.mode is own
+    assert one.annular is own
+    assert one.mode.disc is own
     assert (one.display, one.body, one.sound) == (display, parts["body"], "a sound")
     assert parts["band"] == pytest.approx((0.92 * 40e3, 1.08 * 40e3))
     solved, around, sweep, harmonics = parts["ring_response"]
@@ -304,7 +308,7 @@ def test_an_analysis_is_around_the_working_mode(parts: dict[str, Any]) -> None:
     assert [row.label for row in one.rows] == ["B(1,0)", "B(1,2)", "B(1,5)"]
     assert one.working == mode_row(parts["body"], own, 1e-9)
     assert one.circles == pytest.approx([15e-3])
-    assert (one.half_wavelength_along, one.described_amplitude_per_volt) == ("circumference", None)
+    assert one.half_wavelength_along == "circumference"
     # What sounds is the velocity at the display's 20 V.
     radius, velocity, harmonic, frequency = parts["ring_surface"]
     assert radius == pytest.approx(one.response.radius[[0, 4]])
@@ -316,7 +320,7 @@ def test_an_analysis_is_around_the_working_mode(parts: dict[str, Any]) -> None:
 
 def test_another_mode_and_band_can_be_asked_for(parts: dict[str, Any]) -> None:
     one = analyze_ring(disc(), mode=(0, 3), band=(20e3, 60e3))
-    assert (one.mode.frequency, one.mode.harmonic) == (50e3, 3)
+    assert (one.annular.frequency, one.annular.harmonic) == (50e3, 3)
     assert parts["band"] == (20e3, 60e3)
     assert parts["ring_response"][2].size == 201
     # Four sectors in turn do not drive cos 3θ: there is no circuit.
@@ -340,7 +344,7 @@ def test_a_stator_is_beside_what_was_measured_of_it(parts: dict[str, Any]) -> No
     told: list[str] = []
     one = analyze_ring(load_display("biet2008-stator"), progress=told.append)
     # 2 µm at 140 V.
-    assert one.described_amplitude_per_volt == pytest.approx(2e-6 / 140)
+    assert one.amplitude_per_volt == pytest.approx(2e-6 / 140)
     assert told[0] == "fitting the stator's thickness"
 
 

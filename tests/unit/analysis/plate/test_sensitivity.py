@@ -115,7 +115,7 @@ def test_a_working_point_is_that_of_its_mode(bench: Bench, paper: RectangularPla
     found = working_point(paper)
     assert (found.label, found.frequency, found.frequency_error) == ((8, 0), 33e3, 7.0)
     assert (found.quality_factor, found.open_frequency) == (60.0, 34e3)
-    assert found.amplitude_per_volt == pytest.approx(1e-7)
+    assert found.largest_per_volt == pytest.approx(1e-7)
     assert bench.solved == [(paper, (8, 0))]
     # Around the mode, by four half-power widths to either side, densest in the middle.
     ((_, swept),) = bench.driven
@@ -127,7 +127,7 @@ def test_a_working_point_is_that_of_its_mode(bench: Bench, paper: RectangularPla
     # Within the half-power width there are enough to meet the peak.
     assert np.sum(np.abs(swept / 33e3 - 1) < 0.5 / 60) >= 15
     other = working_point(paper, (6, 0), amplitude=False)
-    assert (other.label, other.frequency, other.amplitude_per_volt) == ((6, 0), 20e3, None)
+    assert (other.label, other.frequency, other.largest_per_volt) == ((6, 0), 20e3, None)
     assert len(bench.driven) == 1
 
 
@@ -154,7 +154,7 @@ def test_a_plate_is_solved_once_and_its_fields_are_not_kept(
 
 
 def test_what_nothing_drives_has_no_amplitude(bench: Bench, paper: RectangularPlate) -> None:
-    assert working_point(with_open_ceramics(paper)).amplitude_per_volt is None
+    assert working_point(with_open_ceramics(paper)).largest_per_volt is None
     assert bench.driven == []
 
 
@@ -176,14 +176,14 @@ def test_the_table_has_relative_shifts_and_likeness(bench: Bench, paper: Rectang
     half, more, mass, terminals = table.rows
     assert (half.name, half.change, half.frequency) == ("E", "half", 16.5e3)
     assert half.frequency_shift == pytest.approx(-0.5)
-    assert half.amplitude_per_volt == pytest.approx(2e-7)
+    assert half.largest_per_volt == pytest.approx(2e-7)
     assert half.amplitude_shift == pytest.approx(1.0)
     assert half.likeness == pytest.approx(1.0)
     assert more.frequency_shift == pytest.approx(0.1)
-    assert (more.amplitude_per_volt, more.amplitude_shift) == (None, None)
+    assert (more.largest_per_volt, more.amplitude_shift) == (None, None)
     # Turned by 30°: the square of the cosine.
     assert mass.likeness == pytest.approx(0.75)
-    assert (terminals.amplitude_per_volt, terminals.amplitude_shift) == (None, None)
+    assert (terminals.largest_per_volt, terminals.amplitude_shift) == (None, None)
     assert told == [
         "the unchanged plate", "change 1 of 4: E half", "change 2 of 4: E more",
         "change 3 of 4: mass a third", "change 4 of 4: terminals open",
@@ -193,8 +193,8 @@ def test_the_table_has_relative_shifts_and_likeness(bench: Bench, paper: Rectang
 def test_without_amplitudes_nothing_is_driven(bench: Bench, paper: RectangularPlate) -> None:
     changes = [Change("E", "half", lambda plate: with_modulus(plate, 123e9 / 2))]
     table = plate_sensitivity(paper, changes, amplitude=False)
-    assert table.reference.amplitude_per_volt is None
-    assert (table.rows[0].amplitude_per_volt, table.rows[0].amplitude_shift) == (None, None)
+    assert table.reference.largest_per_volt is None
+    assert (table.rows[0].largest_per_volt, table.rows[0].amplitude_shift) == (None, None)
     assert bench.driven == []
 
 
@@ -202,8 +202,8 @@ def test_an_undriven_plate_that_gets_driven_has_no_shift(
     bench: Bench, paper: RectangularPlate
 ) -> None:
     table = plate_sensitivity(with_open_ceramics(paper), [Change("all", "on", lambda _: paper)])
-    assert table.reference.amplitude_per_volt is None
-    assert table.rows[0].amplitude_per_volt == pytest.approx(1e-7)
+    assert table.reference.largest_per_volt is None
+    assert table.rows[0].largest_per_volt == pytest.approx(1e-7)
     assert table.rows[0].amplitude_shift is None
 
 

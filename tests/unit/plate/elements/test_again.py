@@ -68,7 +68,7 @@ def test_a_solved_plate_travels_small_and_answers_as_before() -> None:
     for one, other in zip(there.modes.shapes, plate.modes.shapes, strict=True):
         np.testing.assert_array_equal(one, other)
     np.testing.assert_allclose(
-        np.abs(there.alone.field(0, x, y, height)),
-        np.abs(plate.alone.field(0, x, y, height)),
+        np.abs(there.solid.modes.field(0, x, y, height)),
+        np.abs(plate.solid.modes.field(0, x, y, height)),
         rtol=1e-6,
     )

@@ -61,42 +61,6 @@ def test_a_circuits_admittance_at_its_resonance_and_far_away() -> None:
     assert high.real == pytest.approx(4e-9 - one.motional_capacitance / 1e6, rel=1e-6)
 
 
-@pytest.mark.parametrize("quality", [40.0, 900.0])
-@pytest.mark.parametrize("beside", [(), (0.99,), (1.008,), (0.985, 1.015)])
-def test_the_circuit_behind_an_admittance_is_found_again(
-    quality: float, beside: tuple[float, ...]
-) -> None:
-    true = circuit(31.7e3, quality, 120.0, 3e-9)
-    half = 31.7e3 / quality
-    f = np.linspace(31.7e3 - 3 * half, 31.7e3 + 2.5 * half, 221)
-    admittance = true.admittance(f)
-    for other in beside:
-        # A sharp weaker peak aside, cut off from the resonance by weak frequencies.
-        place = 31.7e3 + (other - 1) * 31.7e3 * 200 / quality
-        admittance = admittance + np.where(np.abs(f - place) < half / 30, 0.4 / 120, 0.0)
-    found = answered(f, admittance).equivalent_circuit()
-    assert found.frequency == pytest.approx(31.7e3, rel=1e-6)
-    assert found.quality_factor == pytest.approx(quality, rel=1e-4)
-    assert found.static_capacitance == pytest.approx(3e-9, rel=1e-4)
-    assert found.motional_resistance == pytest.approx(120.0, rel=1e-4)
-    assert found.motional_inductance == pytest.approx(true.motional_inductance, rel=1e-4)
-    assert found.motional_capacitance == pytest.approx(true.motional_capacitance, rel=1e-4)
-
-
-@pytest.mark.parametrize(("steps", "enough"), [(12, True), (5, False)])
-def test_a_circuit_needs_eight_frequencies_in_the_resonance(steps: int, enough: bool) -> None:
-    true = circuit(30e3, 100.0, 50.0, 4e-9)
-    # Above three tenths of the peak: within f/2Q √(7/3) on each side, 458 Hz in all.
-    f = 30e3 + np.arange(-20, 21) * 458.0 / steps
-    if enough:
-        assert answered(f, true.admittance(f)).equivalent_circuit().quality_factor == (
-            pytest.approx(100.0, rel=1e-4)
-        )
-    else:
-        with pytest.raises(InputError, match=r"only 5 frequencies .* at least 8"):
-            answered(f, true.admittance(f)).equivalent_circuit()
-
-
 def test_currents_and_powers_at_a_voltage() -> None:
     one = answered(np.array([1e3, 2e3]), np.array([3e-3 + 4e-3j, 2e-3 - 1e-3j]))
     assert one.impedance == pytest.approx(1 / one.admittance)

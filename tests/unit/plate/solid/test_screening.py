@@ -101,7 +101,7 @@ def test_ceramics_that_only_stretch_a_plate_bend_nothing() -> None:
         beam_response(alike).require_driven()
     amplitudes = {
         plate: max(
-            (mode.antinode_per_volt for mode in screened_modes(plate, (20e3, 70e3)) if mode.label),
+            (mode.alone_per_volt for mode in screened_modes(plate, (20e3, 70e3)) if mode.label),
             default=0.0,
         )
         for plate in (alike, against)
@@ -122,7 +122,7 @@ def test_screened_modes_are_those_of_the_solved_plate(electrode: Electrode) -> N
         same = [mode for mode in screened if mode.label == solved.labels[i]]
         near = min(same, key=lambda mode: abs(mode.frequency - solved.frequencies[i]))
         assert near.frequency == pytest.approx(solved.frequencies[i], rel=SCREENING_ERROR)
-        assert near.largest_per_volt == pytest.approx(per_volt[i], rel=0.2)
+        assert near.largest_alone_per_volt == pytest.approx(per_volt[i], rel=0.2)
         assert near.quality_factor == pytest.approx(solved.quality_factors[i], rel=0.05)
         compared += 1
     assert compared >= 1
@@ -197,12 +197,12 @@ def test_a_space_grown_from_several_forces_holds_the_same_modes(
     band = 20e3, 45e3
     alone = screened_modes(plate, band)
     monkeypatch.setattr(screening, "_LONG", 10)
-    together = [mode for mode in screened_modes(plate, band) if mode.antinode_per_volt > 1e-12]
+    together = [mode for mode in screened_modes(plate, band) if mode.alone_per_volt > 1e-12]
     assert len(together) == len(alone)
     for one, other in zip(alone, together, strict=True):
         assert one.label == other.label
         assert one.frequency == pytest.approx(other.frequency, rel=1e-9)
-        assert one.antinode_per_volt == pytest.approx(other.antinode_per_volt, rel=1e-5)
+        assert one.alone_per_volt == pytest.approx(other.alone_per_volt, rel=1e-5)
 
 
 @pytest.mark.slow
@@ -217,8 +217,8 @@ def test_a_mode_in_the_plane_crosses_the_papers_and_takes_some_of_its_motion() -
         assert mode.neighbour.name == "in plane"
     assert at.neighbour.share > 3 * max(below.neighbour.share, above.neighbour.share)
     # What the mode itself has is less than between its neighbours on the curve.
-    between = (below.modal_amplitude_per_volt + above.modal_amplitude_per_volt) / 2
-    assert at.modal_amplitude_per_volt < 0.9 * between
+    between = (below.alone_per_volt + above.alone_per_volt) / 2
+    assert at.alone_per_volt < 0.9 * between
     # It is above the mode on the thinner plate and below it on the thicker one.
     assert below.neighbour.frequency > below.frequency
     assert above.neighbour.frequency < above.frequency

@@ -84,6 +84,29 @@ def test_the_amplitude_s_error_holds_the_finer_mesh(mode: SolidMode) -> None:
     assert abs(mode.amplitude_per_volt - finer) <= mode.amplitude_error
 
 
+def test_the_circuit_is_what_the_response_shows(mode: SolidMode) -> None:
+    circuit = mode.circuit
+    assert circuit is not None
+    assert mode.circuit_said == ""
+    near = np.abs(mode.response.frequencies / mode.frequency - 1) < 0.5 / mode.quality_factor
+    shown = mode.response.admittance[near]
+    made = circuit.admittance(mode.response.frequencies[near])
+    assert np.max(np.abs(made - shown)) < 0.05 * np.max(np.abs(shown))
+    assert (circuit.frequency, circuit.quality_factor) == (mode.frequency, mode.quality_factor)
+    moving, static = circuit.motional_capacitance, circuit.static_capacitance
+    coupling = float(mode.modes.couplings[mode.index])
+    assert np.sqrt(moving / (moving + static)) == pytest.approx(coupling, rel=0.05)
+
+
+def test_amplitudes_are_at_the_antinode_and_largest_on_the_face(mode: SolidMode) -> None:
+    response, at = mode.driven_at()
+    assert (response, at) == (mode.response, mode.resonance)
+    assert mode.response.amplitude_at(*mode.lobe)[at] == mode.amplitude_per_volt
+    assert mode.largest_per_volt == pytest.approx(mode.response.maximum[at], rel=1e-12)
+    assert mode.alone_per_volt <= mode.largest_alone_per_volt
+    assert mode.alone_per_volt == pytest.approx(mode.amplitude_per_volt, rel=0.05)
+
+
 def test_another_process_has_the_solved_plate_to_the_bit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mode: SolidMode
 ) -> None:
@@ -102,7 +125,7 @@ def test_another_process_has_the_solved_plate_to_the_bit(
     for found in (first, kept):
         assert np.array_equal(found.modes.frequencies, mode.modes.frequencies)
         assert np.array_equal(found.response.displacement(x, y), mode.response.displacement(x, y))
-        assert found.response.neighbour(mode.frequency) == mode.response.neighbour(mode.frequency)
+        assert found.neighbour == mode.neighbour
         power = found.response.dissipated_power(10.0)
         assert power == pytest.approx(mode.response.dissipated_power(10.0), rel=1e-12)
         field = found.modes.field(0, x, y, PLATE.thickness)

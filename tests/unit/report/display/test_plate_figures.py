@@ -493,7 +493,7 @@ def test_a_drive_outside_the_sweep_or_none_is_not_drawn() -> None:
 
 def test_ceramics_that_cancel_out_have_no_band() -> None:
     """What is left of the drive is a rounding error of the others' peak."""
-    for changes in ({"own": 1e-18}, {"solid": SimpleNamespace(modal_amplitude_per_volt=1e-18)}):
+    for changes in ({"own": 1e-18}, {"solid": SimpleNamespace(alone_per_volt=1e-18)}):
         figure = frequency_response(driven(**changes))
         assert words(figure.get_suptitle()) == (
             "The ceramics cancel out: they do not drive the mode at 30 kHz"

@@ -75,7 +75,8 @@ def test_the_free_amplitude_is_told_from_that_under_the_finger() -> None:
     assert rows["Drive"] == ("20 V", "peak, at 30 kHz, the resonance")
     # 100 nm/V × 20 V: the product is the number it stands beside.
     assert rows["Amplitude, free"] == ("2 µm", "100 nm/V × 20 V, at antinodes")
-    assert rows["Amplitude under the finger"] == ("1.5 µm", "the finger leaves 75 %")
+    assert rows["Amplitude, finger on"] == ("1.5 µm", "at antinodes; the finger leaves 75 %")
+    assert "Amplitude under the finger" not in rows
     beside = {a: (b, c) for a, b, c in vibration_rows(point(frequency=31e3))}
     assert beside["Drive"][1] == "peak, at 31 kHz, beside the resonance"
     assert "×" not in beside["Amplitude, free"][1]
@@ -83,7 +84,9 @@ def test_the_free_amplitude_is_told_from_that_under_the_finger() -> None:
     assert given["Drive"] == ("none", "amplitude given, at 30 kHz, the resonance")
     touch = SimpleNamespace(free_amplitude=2e-6, kept=1.0, mode=None)
     unknown = vibration_rows(point(touch=touch))[-1]
-    assert unknown[2].startswith("the finger is taken to change nothing")
+    assert unknown[2] == (
+        "at antinodes; the finger is taken to change nothing: no modal mass is known"
+    )
 
 
 def rows_of(made: Any) -> dict[str, tuple[str, str]]:

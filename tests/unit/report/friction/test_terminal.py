@@ -121,7 +121,7 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "µ′/µ = 0.43 as described (0.28–0.55, median 0.44): 90 % interval. 100 % of the draws lie "
         "below the value as described.",
         "limit: Whether it is met is open.",
-        "Vibration amplitude 1.5 µm with the finger, at 15 V",
+        "Vibration amplitude 1.5 µm antinode, finger on, at 15 V",
         "Drive frequency 33.58 kHz",
         "The finger leaves 75 % of 2 µm; it moves the resonance by +3.2 Hz and Q from 60 to 45.2",
         "Finger's impedance 1.23 − 0.679i N·s/m at an antinode, damping and spring",
@@ -195,8 +195,7 @@ def test_without_samples_a_friction_is_one_number() -> None:
 
 def test_an_amplitude_that_was_given_needs_no_voltage_and_no_plate() -> None:
     lines = said(prediction=prediction(voltage=None))
-    assert lines[3] == "Vibration amplitude 1.5 µm with the finger, amplitude given"
-    assert not [line for line in lines if line.startswith("The finger leaves")]
+    assert lines[3] == "Vibration amplitude 1.5 µm antinode, finger on, amplitude given"
     assert not [line for line in lines if line.startswith("Temperature")]
     lines = said(prediction=prediction(touch=touched(mode=None), heat=None))
     assert "Temperature rise not known nor is the power that the plate loses" in lines

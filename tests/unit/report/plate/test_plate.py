@@ -46,8 +46,7 @@ class Response:
     truncation_error: float = 2e-5
     frequencies: np.ndarray = dataclasses.field(default_factory=lambda: FREQUENCIES)
 
-    @property
-    def maximum(self) -> np.ndarray:
+    def amplitude_at(self, x: float, y: float) -> np.ndarray:
         """A resonance of Q = 100."""
         r = self.frequencies / 30e3
         return 1e-7 / 100 / np.abs(1 - r**2 + 0.01j * r)
@@ -58,15 +57,14 @@ class Response:
         r = self.frequencies / 30e3
         return 3e-3j + 4e-3 / (1 + 100j * (r - 1 / r))
 
-    def displacement(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    def motion(self, at: int, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        assert at == self.resonance
         along, middle = (y / WIDTH, x / LENGTH) if self.across_width else (x / LENGTH, y / WIDTH)
         across = 1 - 0.5 * np.abs(2 * middle - 1)
         lines = np.cos(4 * np.pi * along) * (0.8 + 0.2 * along)
         lag = 0.2j * np.sin(np.pi * along) ** 2  # nothing at the ends
         profile = 1e-7 * PHASE * (lines + lag)
-        own = across[:, None] * profile if self.across_width else profile[:, None] * across
-        away = np.zeros((self.resonance, x.size, y.size))
-        return np.concatenate([away, own[None]])
+        return across[:, None] * profile if self.across_width else profile[:, None] * across
 
 
 def true_shape(along: np.ndarray) -> np.ndarray:
@@ -79,8 +77,8 @@ def solved(label: tuple[int, int] = (4, 0), volts: float = 15.0, **changes: Any)
         "plate": SimpleNamespace(length=LENGTH, width=WIDTH),
         "response": Response(label[1] > label[0]), "working_label": label,
         "working": SimpleNamespace(label=f"({label[0]},{label[1]})", frequency=30.01e3),
-        "modes": SimpleNamespace(model="solid"), "centreline_per_volt": 91e-9,
-        "amplitude_per_volt": 100e-9,
+        "modes": SimpleNamespace(model="solid"), "resonance": 200, "largest_per_volt": 100e-9,
+        "mode": SimpleNamespace(amplitude_per_volt=91e-9, lobe=(0.5 * LENGTH, 0.5 * WIDTH)),
         "display": SimpleNamespace(drive=SimpleNamespace(voltage=volts)),
         "summary": lambda: {"mode": "µ"},
     }  # fmt: skip
@@ -136,8 +134,7 @@ def test_from_above_colours_and_nodal_lines_are_where_the_motion_is() -> None:
 def test_a_scan_runs_across_the_nodal_lines(label: tuple[int, int], side: float, name: str) -> None:
     figure = line_scan(solved(label))
     assert words(figure.get_suptitle()) == (
-        "Along the centre 91 nm per volt between the outer nodes, 100 nm per volt at the largest "
-        "of the face"
+        "At the antinode 91 nm per volt, 100 nm per volt at the largest of the face"
     )
     (axes,) = figure.axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == (name, "w per volt (nm/V)")
@@ -171,7 +168,7 @@ def test_the_resonance_is_drawn_with_its_half_power_band() -> None:
     assert words(figure.get_suptitle()) == (
         "Resonance at 30.00 kHz: 100 nm per volt, 300 Hz wide at half power"
     )
-    assert "a-model, a-method; largest point of the upper face" in words(figure.get_supxlabel())
+    assert "a-model, a-method; at the antinode" in words(figure.get_supxlabel())
     (axes,) = figure.axes
     seen = labelled(axes)
     assert list(seen) == [
@@ -179,7 +176,7 @@ def test_the_resonance_is_drawn_with_its_half_power_band() -> None:
     ]  # fmt: skip
     f, w = data(seen["solved plate, all modes"])
     assert f == pytest.approx(FREQUENCIES / 1e3)
-    assert w == pytest.approx(1e9 * Response().maximum)
+    assert w == pytest.approx(1e9 * Response().amplitude_at(0, 0))
     box = seen["half-power band"].get_extents()
     band = axes.transData.inverted().transform(box)[:, 0]
     assert band == pytest.approx([29.85, 30.15], abs=2e-3)
@@ -188,13 +185,13 @@ def test_the_resonance_is_drawn_with_its_half_power_band() -> None:
     assert axes.get_xlim() == pytest.approx((29, 31))
     assert axes.get_ylim()[0] == 0
     assert (axes.get_xlabel(), axes.get_ylabel()) == (
-        "frequency (kHz)", "largest amplitude (nm/V)",
+        "frequency (kHz)", "amplitude at the antinode (nm/V)",
     )  # fmt: skip
 
 
 def test_a_resonance_that_is_not_wholly_swept_has_no_width() -> None:
     response = Response(resonance=150, frequencies=np.linspace(29.9e3, 30.1e3, 301))
-    figure = frequency_response(solved(response=response))
+    figure = frequency_response(solved(response=response, resonance=150))
     assert words(figure.get_suptitle()) == "Resonance at 30.00 kHz: 100 nm per volt"
     assert "half-power band" not in labelled(figure.axes[0])
 
@@ -273,11 +270,10 @@ def test_the_volume_is_the_mode_by_itself_at_the_displays_voltage(
     monkeypatch.setattr(
         plate, "write_vtu", lambda *given, **named: asked.append((given, named)) or given[0]
     )
-    alone = SimpleNamespace(index=lambda label: {(4, 0): 3}[label])
-    result = solved(alone=alone)
+    result = solved(solid=SimpleNamespace(modes="modes", index=3))
     assert write_mode(result, tmp_path / "a.vtu") == tmp_path / "a.vtu"
-    named = {"response": result.response, "voltage": 15.0}
-    assert asked == [((tmp_path / "a.vtu", alone, 3), named)]
+    named = {"response": result.response, "at": 200, "voltage": 15.0}
+    assert asked == [((tmp_path / "a.vtu", "modes", 3), named)]
 
 
 @pytest.fixture

@@ -51,10 +51,10 @@ def made(**changes: Any) -> Any:
     """A ring in two waves, driven by two sectors that begin at 20°."""
     turn = math.pi / 9
     parts: dict[str, Any] = {
-        "mode": SimpleNamespace(harmonic=2, half_wavelength=31.4e-3),
+        "annular": SimpleNamespace(harmonic=2, half_wavelength=31.4e-3),
         "working": SimpleNamespace(label="B(0,2)", frequency=40e3),
-        "response": swept(RADIUS, RADIAL), "amplitude_per_volt": 20e-9,
-        "centreline_per_volt": 6.7e-9, "scan_radius": 20e-3, "model": "annular_3d",
+        "response": swept(RADIUS, RADIAL), "largest_per_volt": 20e-9, "resonance": 1,
+        "scan_radius": 20e-3, "model": "annular_3d",
         "circles": np.array([15e-3]), "circuit": CIRCUIT, "summary": lambda: {"mode": "µ"},
         "body": SimpleNamespace(
             section=SimpleNamespace(
@@ -71,7 +71,7 @@ def made(**changes: Any) -> Any:
 RING = made()
 WIDE = np.linspace(0, 30e-3, 61)
 DISC = made(
-    mode=SimpleNamespace(harmonic=0, half_wavelength=None),
+    annular=SimpleNamespace(harmonic=0, half_wavelength=None),
     working=SimpleNamespace(label="B(1,0)", frequency=40e3),
     response=swept(WIDE, 1e-8 * (WIDE / 15e-3 - 1.2)),
     body=SimpleNamespace(
@@ -93,7 +93,7 @@ def test_the_shape_says_its_mode_and_where_nothing_moves() -> None:
     )
     assert figure.get_supxlabel() == "Model: annular_3d, channel driven at resonance"
     assert words(shape(DISC).get_suptitle()).endswith("nodal circle at a radius of 15 mm")
-    still = made(mode=DISC.mode, circles=np.zeros(0))
+    still = made(annular=DISC.annular, circles=np.zeros(0))
     assert words(shape(still).get_suptitle()).endswith("per volt; no nodal line")
 
 
@@ -221,7 +221,7 @@ def test_without_nodal_diameters_the_scan_is_a_whole_diameter() -> None:
     assert words(figure.get_suptitle()) == (
         "Along a diameter B(1,0) moves 12 nm per volt in the middle and 8 at the rim"
     )
-    assert scan(made(mode=DISC.mode, circles=np.zeros(0))).axes[0].get_legend() is None
+    assert scan(made(annular=DISC.annular, circles=np.zeros(0))).axes[0].get_legend() is None
 
 
 def test_the_response_has_amplitude_admittance_and_circuit() -> None:
@@ -260,6 +260,7 @@ def test_a_page_says_what_the_terminal_says(monkeypatch: pytest.MonkeyPatch) -> 
         display=SimpleNamespace(title="A <ring>", name="r", drive=SimpleNamespace(voltage=12.0)),
         body=SimpleNamespace(fit="thickness", quality_factor=None), rows=(), status="no modes",
         summary=lambda: told, heat=WARM, objections=(),
+            mode=SimpleNamespace(amplitude_per_volt=20e-9),
     )  # fmt: skip
     text = page.plate_page(ring, {"line-scan": ("Scan", scan(RING))})
     for said in (

@@ -23,27 +23,12 @@ FILM = FilmAnswer(
     iterations=3, residual=0.0,
     status="converged", model="a-model", film=None,  # type: ignore[arg-type]
 )  # fmt: skip
-WORKING = ModeRow("(8,0)", 33581.26, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 10e-3)
-ASIDE = ModeRow("(7,1)", 30000.0, 12.0, 200.0, 1e-13, 0.0, 0.0, None)
+WORKING = ModeRow("(8,0)", 33581.26, 12.345, 212.34, 1.2e-7, 1.7e-7, 0.1234, 1.0, 10e-3)
+ASIDE = ModeRow("(7,1)", 30000.0, 12.0, 200.0, 1e-13, 1e-13, 0.0, 0.0, None)
 CIRCUIT = EquivalentCircuit(40e3, 200.0, 5.4321e-9, 123.45, 0.098765, 1.2345e-10)
 
 
-class Response:
-    """A sweep whose second frequency is the resonance: 10, 20 and 30 at 15 V, and the rest."""
-
-    resonance = 1
-
-    def current(self, voltage: float) -> Any:
-        """In A."""
-        return voltage / 15 * np.array([10e-3, 12.345e-3, 30e-3])
-
-    def apparent_power(self, voltage: float) -> Any:
-        """In VA."""
-        return voltage / 15 * np.array([1.0, 0.092588, 3.0])
-
-    def input_power(self, voltage: float) -> Any:
-        """In W."""
-        return voltage / 15 * np.array([1.0, 0.043211, 3.0])
+LOAD = SimpleNamespace(current=12.345e-3, apparent_power=0.092588, real_power=0.043211)
 
 
 def plate(**changes: Any) -> Any:
@@ -54,12 +39,13 @@ def plate(**changes: Any) -> Any:
         ),
         "working": WORKING,
         "rows": (WORKING, ASIDE),
-        "amplitude_per_volt": 1.2346e-7,
-        "centreline_per_volt": 1.1e-7,
+        "mode": SimpleNamespace(amplitude_per_volt=1.2346e-7, lobe=(41.5e-3, 24.5e-3)),
+        "largest_per_volt": 1.9e-7,
         "beam_frequency": 1.021 * 33581.26,
         "shear_frequency": 0.9 * 33581.26,
-        "response": Response(),
+        "load": LOAD,
         "circuit": CIRCUIT,
+        "circuit_said": "",
         "sound": SimpleNamespace(
             guidance=SimpleNamespace(level_dB=100.0, source="somebody 1984", evidence="doubtful"),
             distances=(0.3,),
@@ -91,8 +77,8 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
     assert said() == [
         "A plate [plate]",
         "Mode (8,0) 33.581 kHz ± 12 Hz (estimated)",
-        "Amplitude per volt 123.5 nm/V largest, upper face",
-        "110 nm/V centreline, between outer nodes",
+        "Amplitude per volt 123.5 nm/V antinode at x 41.5 mm, y 24.5 mm, without a finger",
+        "190 nm/V largest, upper face",
         "Quality factor 212.3 from the losses of its materials",
         "Effective coupling 0.123",
         "As a Timoshenko beam 34.286 kHz +2.1 %",
@@ -102,7 +88,7 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         *WARM_LINES,
         "Sound at 0.3 m 120 dB loudest direction; guidance 100 dB",
         "Guidance (doubtful): somebody 1984",
-        "Modes in the band",
+        "Modes in the band, each alone at its antinode",
         "mode frequency ± Q per volt coupling",
         "(8,0) 33.581 kHz 12 Hz 212 120 nm/V 0.12",
         "(7,1) 30 kHz 12 Hz 200 not driven 0",
@@ -113,9 +99,18 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
 
 
 def test_what_was_not_asked_for_is_not_there() -> None:
-    lines = said(shear_frequency=None, circuit=None)
+    lines = said(shear_frequency=None)
     assert lines[-3:] == ["piezoelectric_solid_3d; 12 modes", "! a doubt", "! it is hot"]
-    assert not [line for line in lines if "shear" in line or "circuit" in line]
+    assert not [line for line in lines if "shear" in line]
+
+
+def test_a_mode_without_a_circuit_says_why_and_a_weak_one_how_much_of_it_is_its_own() -> None:
+    lines = said(circuit=None, circuit_said="none: nothing drives it")
+    assert "Equivalent circuit none nothing drives it" in lines
+    assert not [line for line in lines if "R1" in line]
+    lines = said(circuit_said="the mode has 13 % of the conductance at its resonance")
+    at = lines.index("Equivalent circuit C0 5.43 nF R1 123 Ω, L1 98.8 mH, C1 123 pF")
+    assert lines[at + 1] == "the mode has 13 % of the conductance at its resonance"
 
 
 def test_labels_are_not_broken_on_a_narrow_terminal() -> None:

@@ -48,14 +48,16 @@ def test_the_guidance_is_told_with_where_it_is_from() -> None:
     assert printed(lambda: show_guidance(plain_console(), sound(None))) == []
 
 
-def mode(label: str, amplitude_per_volt: float) -> ModeRow:
-    return ModeRow(label, 33581.26, 12.345, 212.34, amplitude_per_volt, 0.1234, 1.0, None)
+def mode(label: str, alone_per_volt: float) -> ModeRow:
+    return ModeRow(
+        label, 33581.26, 12.345, 212.34, alone_per_volt, alone_per_volt, 0.1234, 1.0, None
+    )
 
 
 def test_a_mode_ten_thousand_times_fainter_than_the_working_one_is_not_driven() -> None:
     rows = [mode("(8,0)", 1.2345e-7), mode("(7,0)", 1e-11), mode("(9,0)", 0.99e-11)]
     assert printed(lambda: show_modes(plain_console(), rows, 1e-7)) == [
-        "Modes in the band",
+        "Modes in the band, each alone at its antinode",
         "mode frequency ± Q per volt coupling",
         "(8,0) 33.581 kHz 12 Hz 212 123 nm/V 0.12",
         "(7,0) 33.581 kHz 12 Hz 212 10 pm/V 0.12",

@@ -1,0 +1,150 @@
+"""Every verb says the same of a plate's working mode: one solved mode, one definition a number."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.verification.random_plates import random_glass, random_plate
+
+from squeezefilm.analysis.plate.command import solve_plate
+from squeezefilm.analysis.plate.modes import list_modes
+from squeezefilm.chain.prediction import predict
+from squeezefilm.chain.wanted_voltage import voltage_for_friction
+from squeezefilm.display import Display, load_display
+from squeezefilm.errors import InputError
+from squeezefilm.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.plate.electronics import load_of_mode
+from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
+from squeezefilm.plate.working_mode import working_mode
+
+GLASS = ElasticMaterial("soda-lime glass", 72e9, 0.23, 2500)
+CERAMIC = Piezoceramic("PZT", 61e9, 0.31, 21e9, 7750, -171e-12, 1700, 75)
+WEAK = RectangularPlate(
+    105e-3, 22e-3, 3.3e-3, 7, 80, GLASS, CERAMIC,
+    (
+        CeramicPatch(0, 0, 5e-3, 22e-3, 0.5e-3, 1),
+        CeramicPatch(100e-3, 0, 5e-3, 22e-3, 0.5e-3, -1),
+    ),
+    lines_across="length", glue=GlueLayer(20e-6, 3e9),
+)  # fmt: skip
+"""Two strips at the ends, which hardly move (7,0): its neighbour (1,2) takes part."""
+
+
+def on(plate: RectangularPlate) -> Display:
+    display = load_display("biet2008-plate")
+    return dataclasses.replace(display, actuator=plate)
+
+
+def same(*numbers: float) -> None:
+    """Assert that numbers are alike to rounding."""
+    assert list(numbers) == pytest.approx([numbers[0]] * len(numbers), rel=1e-9, abs=0.0)
+
+
+def check(plate: RectangularPlate) -> None:
+    """Assert that `working_mode`, `modes`, `plate` and `predict` agree on a plate, and that what
+    `predict` answers returns itself."""
+    display = on(plate)
+    try:
+        mode = working_mode(plate)
+    except InputError:
+        # What nobody can solve nobody answers.
+        with pytest.raises(InputError):
+            solve_plate(display)
+        return
+    solid, volts = mode.solid, display.drive.voltage
+    assert solid is not None
+    band = 0.8 * mode.resonance_frequency, 1.25 * mode.resonance_frequency
+    p, alone = predict(display), solve_plate(display, points=90)
+    same(mode.resonance_frequency, p.mode.resonance_frequency, alone.working.frequency)
+    same(mode.quality_factor, p.mode.quality_factor, alone.working.quality_factor)
+    same(
+        mode.amplitude_per_volt, p.mode.amplitude_per_volt, alone.amplitude_per_volt,
+        p.touch.free_amplitude / volts, p.summary()["amplitude_per_volt_m_per_V"],
+        alone.summary()["amplitude_per_volt_m_per_V"],
+        float(np.max(solid.response.amplitude_at(*mode.lobe)[[solid.resonance]])),
+    )  # fmt: skip
+    same(solid.alone_per_volt, alone.working.alone_per_volt)
+    assert solid.largest_per_volt >= solid.amplitude_per_volt * (1 - 1e-3)
+    same(solid.largest_per_volt, alone.largest_per_volt)
+    assert p.summary()["neighbour"] == alone.summary()["neighbour"]
+    if p.heat is not None:
+        same(p.heat.speed, alone.heat.speed)
+        same(
+            p.heat.speed,
+            2 * math.pi * mode.resonance_frequency * volts * mode.amplitude_per_volt / math.sqrt(2),
+        )
+        same(p.heat.tracked.temperature_rise, alone.heat.tracked.temperature_rise)
+    load = load_of_mode(plate, mode, volts, mode.resonance_frequency)
+    assert load is not None
+    same(load.current, solve_plate(display).load.current)
+    check_listed(display, mode, band)
+    check_circuit(mode)
+    given = predict(display, vibration_amplitude=p.vibration_amplitude)
+    same(p.relative_friction, given.relative_friction)
+    same(p.touch.free_amplitude, given.touch.free_amplitude)
+    if p.relative_friction < 0.999:
+        found, amplitude = voltage_for_friction(display, p.relative_friction)
+        same(volts, found)
+        same(p.vibration_amplitude, amplitude)
+
+
+def check_listed(display: Display, mode: Any, band: tuple[float, float]) -> None:
+    """Assert that the list of modes has the working one as it was solved, if it is driven."""
+    try:
+        listed = list_modes(display, band)
+    except InputError:
+        return
+    if listed.forbidden is not None:
+        return
+    row = listed.working_mode
+    assert row is not None
+    assert listed.solved is not None
+    same(mode.resonance_frequency, row.frequency, listed.solved.resonance_frequency)
+    same(mode.amplitude_per_volt, listed.solved.amplitude_per_volt)
+    same(mode.solid.alone_per_volt, row.alone_per_volt)
+    same(mode.solid.largest_alone_per_volt, row.largest_alone_per_volt)
+    beside = mode.neighbour
+    if beside is not None:
+        assert (row.neighbour, row.neighbour_share) == (beside.name, beside.share)
+        assert row.crowded == (mode.company is not None)
+
+
+def check_circuit(mode: Any) -> None:
+    """Assert that a circuit is physical, with frequency and Q of its mode, or said to be none."""
+    circuit, said = mode.solid.circuit, mode.solid.circuit_said
+    if circuit is None:
+        assert said.startswith("none: ")
+        return
+    omega = 2 * math.pi * mode.resonance_frequency
+    assert min(
+        circuit.motional_resistance, circuit.motional_inductance, circuit.motional_capacitance,
+        circuit.static_capacitance,
+    ) > 0  # fmt: skip
+    same(omega**-2, circuit.motional_inductance * circuit.motional_capacitance)
+    same(mode.quality_factor, omega * circuit.motional_inductance / circuit.motional_resistance)
+
+
+@pytest.mark.slow
+def test_the_verbs_agree_on_a_mode_that_is_hardly_driven() -> None:
+    check(WEAK)
+    mode = working_mode(WEAK)
+    assert mode.solid is not None
+    assert "of the conductance at its resonance" in mode.solid.circuit_said
+    assert mode.neighbour is not None
+    assert mode.neighbour.name == "(1,2)"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(3))
+def test_the_verbs_agree_on_three_random_plates(seed: int) -> None:
+    check(random_plate(seed))
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("seed", range(50))
+def test_the_verbs_agree_on_fifty_random_plates(seed: int) -> None:
+    check(random_plate(seed) if seed % 2 else random_glass(seed))
