@@ -10,6 +10,7 @@ from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class Told:
     """What the description beside a recording tells of it; an empty text is not told.
@@ -27,6 +28,7 @@ class Told:
     temperature: si.AbsoluteKelvin | None = None
 
 
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class ImpedanceSweep:
     """Admittance (S, complex, time factor e^{iωt}) at rising `frequency` (Hz), both (points,);
@@ -37,7 +39,11 @@ class ImpedanceSweep:
     told: Told = field(default_factory=Told)
     body: CeramicBar | CeramicDisc | None = None
 
+    def __post_init__(self) -> None:
+        si.require_alike(frequency=self.frequency, admittance=self.admittance)
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse:
     """Displacement per volt (m/V, complex) at one place against `frequency` (Hz), both (points,);
@@ -51,7 +57,15 @@ class FrequencyResponse:
     told: Told = field(default_factory=Told)
     place: tuple[si.Metre, si.Metre] | None = None
 
+    def __post_init__(self) -> None:
+        si.require_alike(
+            frequency=self.frequency,
+            displacement_per_volt=self.displacement_per_volt,
+            coherence=self.coherence,
+        )
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class LineScan:
     """Displacement (m, complex; real where the phase was not recorded) at `position` (m) along a
@@ -63,7 +77,11 @@ class LineScan:
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
 
+    def __post_init__(self) -> None:
+        si.require_alike(position=self.position, displacement=self.displacement)
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class GridScan:
     """Displacement (m, complex) at places `x`, `y` (m), all (points,), at one `frequency` (Hz) and
@@ -76,7 +94,11 @@ class GridScan:
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
 
+    def __post_init__(self) -> None:
+        si.require_alike(x=self.x, y=self.y, displacement=self.displacement)
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RingDown:
     """Displacement (m) against `time` (s) after the drive was switched off, both (points,)."""
@@ -85,7 +107,11 @@ class RingDown:
     displacement: si.MetreArray
     told: Told = field(default_factory=Told)
 
+    def __post_init__(self) -> None:
+        si.require_alike(time=self.time, displacement=self.displacement)
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class VoltageSweeps:
     """Frequency responses at several drive voltages, each swept in one direction ("up", "down")."""
@@ -95,6 +121,7 @@ class VoltageSweeps:
     told: Told = field(default_factory=Told)
 
 
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RawSignals:
     """Drive voltage (V) and displacement (m) against `time` (s), all (points,), evenly sampled."""
@@ -104,7 +131,11 @@ class RawSignals:
     displacement: si.MetreArray
     told: Told = field(default_factory=Told)
 
+    def __post_init__(self) -> None:
+        si.require_alike(time=self.time, voltage=self.voltage, displacement=self.displacement)
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionBench:
     """Strokes of a finger or probe: `time` (s), `normal_force` and `tangential_force` (N),
@@ -119,7 +150,17 @@ class FrictionBench:
     told: Told = field(default_factory=Told)
     frequency: si.Hertz | None = None
 
+    def __post_init__(self) -> None:
+        si.require_alike(
+            time=self.time,
+            normal_force=self.normal_force,
+            tangential_force=self.tangential_force,
+            position=self.position,
+            vibration_amplitude=self.vibration_amplitude,
+        )
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionCurve:
     """µ′/µ with its spread (one standard deviation) against `vibration_amplitude` (m), all
@@ -134,6 +175,13 @@ class FrictionCurve:
     speed: si.MetrePerSecond
     told: Told = field(default_factory=Told)
     display: str = ""
+
+    def __post_init__(self) -> None:
+        si.require_alike(
+            vibration_amplitude=self.vibration_amplitude,
+            relative_friction=self.relative_friction,
+            spread=self.spread,
+        )
 
 
 Recording = (
