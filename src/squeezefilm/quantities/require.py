@@ -111,7 +111,11 @@ def _as_percentage(value: float, unit: Unit, bounds: dict[str, float]) -> str:
 def require_alike(**series: Any) -> None:
     """Refuse series, by their names, that are no rows of values or not of one length (None: left
     out). Raises `InputError` that says how many values each has."""
-    shapes = {name: np.shape(values) for name, values in series.items() if values is not None}
+    given = {name: values for name, values in series.items() if values is not None}
+    try:
+        shapes = {name: np.shape(values) for name, values in given.items()}
+    except ValueError as error:
+        raise InputError(f"{', '.join(given)} must be rows of numbers: {error}") from error
     if all(len(shape) == 1 for shape in shapes.values()) and len(set(shapes.values())) < 2:
         return
     shown = ", ".join(f"{name} {shape}" for name, shape in shapes.items())

@@ -1,5 +1,9 @@
 """The kinds of recordings of a bench, in SI units and zero-to-peak amplitudes, whatever the file
-was in."""
+was in.
+
+What was measured may hold NaN where the instrument had no reading: fits leave such points out. The
+places, times and frequencies of the points may not.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +39,7 @@ class ImpedanceSweep:
     `body` is the bare ceramic that was swept, where it is told to be one."""
 
     frequency: si.HertzArray
-    admittance: si.ComplexArray
+    admittance: si.Array
     told: Told = field(default_factory=Told)
     body: CeramicBar | CeramicDisc | None = None
 
@@ -51,7 +55,7 @@ class FrequencyResponse:
     `place` where on the plate (x, y in m) where told."""
 
     frequency: si.HertzArray
-    displacement_per_volt: si.ComplexArray
+    displacement_per_volt: si.Array
     voltage: si.Volt | None = None
     coherence: si.DimensionlessArray | None = None
     told: Told = field(default_factory=Told)
@@ -72,7 +76,7 @@ class LineScan:
     line, both (points,), at one `frequency` (Hz) and drive `voltage` (V)."""
 
     position: si.MetreArray
-    displacement: si.ComplexArray
+    displacement: si.Array
     frequency: si.Hertz
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
@@ -89,7 +93,7 @@ class GridScan:
 
     x: si.MetreArray
     y: si.MetreArray
-    displacement: si.ComplexArray
+    displacement: si.Array
     frequency: si.Hertz
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
@@ -98,7 +102,6 @@ class GridScan:
         si.require_alike(x=self.x, y=self.y, displacement=self.displacement)
 
 
-@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RingDown:
     """Displacement (m) against `time` (s) after the drive was switched off, both (points,)."""
@@ -108,6 +111,7 @@ class RingDown:
     told: Told = field(default_factory=Told)
 
     def __post_init__(self) -> None:
+        si.require("time", self.time, si.Unit("s"))
         si.require_alike(time=self.time, displacement=self.displacement)
 
 
@@ -121,7 +125,6 @@ class VoltageSweeps:
     told: Told = field(default_factory=Told)
 
 
-@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RawSignals:
     """Drive voltage (V) and displacement (m) against `time` (s), all (points,), evenly sampled."""
@@ -132,6 +135,7 @@ class RawSignals:
     told: Told = field(default_factory=Told)
 
     def __post_init__(self) -> None:
+        si.require("time", self.time, si.Unit("s"))
         si.require_alike(time=self.time, voltage=self.voltage, displacement=self.displacement)
 
 
