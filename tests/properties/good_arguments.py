@@ -16,6 +16,7 @@ import numpy as np
 from squeezefilm.actuators.motor.assembled import Working
 from squeezefilm.actuators.motor.description import Motor
 from squeezefilm.control.force_law import ForceLaw
+from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.plate.parts import Sector
 from squeezefilm.plate.shear.section import ShearLayout, ShearSection
 from squeezefilm.plate.solid.modes import PlateModes
@@ -95,6 +96,16 @@ _RADIATOR = {
 }  # fmt: skip
 _BAND = {"band": (20e3, 40e3)}
 _WAVE = np.linspace(0.0, 8e-3, 8, endpoint=False)
+_EDGE = np.linspace(0.0, 0.01, 9)
+_DRIVEN: dict[str, Any] = {
+    "x": _EDGE,
+    "y": _EDGE,
+    "swing": np.outer(np.cos(600 * _EDGE), np.ones(9)),
+    "rest": np.zeros((9, 9)),
+    "lobe": (5e-3, 5e-3),
+    "lengthwise": True,
+    "half_wavelength": 5e-3,
+}
 _SERIES = {name: np.linspace(0.0, 0.01, 5) for name in ("x", "y", "v", "t")}
 
 FOR_ONE_CALL: dict[str, dict[str, Any]] = {
@@ -275,6 +286,42 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.sound.ring_surface": {"radius": np.linspace(0, 0.02, 9), "velocity": np.ones(9) + 0j},
     "plate.sound.RadiatingSurface": Later(lambda: fields_of(made(RadiatingSurface))),
     "plate.solid.response.HarmonicResponse.motion": {"at": 0},
+    "actuators.skin_stretch.slip.held_forces": {
+        "compliance": np.eye(3) * 1e-3,
+        "wanted": np.array([1e-4, 1e-3, 0.0]),
+        "held": np.array([0.5, 0.5, 0.0]),
+    },
+    "measure.fits.ceramic.ceramic_prior.compliances": {"p": np.linspace(-1.0, 1.0, 14)},
+    "measure.fits.circuit.branches.poles": {
+        "frequency": np.linspace(29e3, 31e3, 41),
+        "response": 1 / (30e3 - np.linspace(29e3, 31e3, 41) + 200j),
+        "count": 1,
+    },
+    "measure.fits.vibration.driven_shape.DrivenShape": _DRIVEN,
+    "measure.fits.vibration.driven_shape.DrivenShape.along": {
+        "self": Later(lambda: DrivenShape(**_DRIVEN)),
+        "position": WAYS,
+    },
+    "measure.fits.vibration.driven_shape.DrivenShape.at": {
+        "self": Later(lambda: DrivenShape(**_DRIVEN)),
+        "x": WAYS,
+        "y": WAYS,
+    },
+    "measure.fits.vibration.driven_shape.line_by_shape": {
+        "shape": Later(lambda: DrivenShape(**_DRIVEN)),
+        "x": np.linspace(1e-3, 9e-3, 20),
+        "w": 1e-6 * np.cos(600 * np.linspace(1e-3, 9e-3, 20)),
+        "reach": 1e-4,
+    },
+    "measure.recordings.kinds.ImpedanceSweep": {"admittance": np.ones(5) + 1j},
+    "measure.recordings.kinds.FrequencyResponse": {"displacement_per_volt": np.ones(5) + 1j},
+    "measure.recordings.kinds.LineScan": {"displacement": np.ones(5) + 1j},
+    "measure.recordings.kinds.GridScan": {
+        "x": WAYS,
+        "y": WAYS,
+        "displacement": np.ones(9) + 1j,
+    },
+    "search.sweep.SweepRequest": {"display": "biet2008-plate"},
     "chain.pad_place.pad_place": {"place": (5e-3, 5e-3)},
     "chain.pad_place.place_words": {"place": (5e-3, 5e-3)},
     "chain.pad_place.met_by_pads": {"points": (WAYS, WAYS)},

@@ -43,7 +43,13 @@ HOSTILE: dict[str, Any] = {
     "an array of texts": np.array(["1", "2"]),
     "an array of integers": np.array([1, 2, 3]),
     "an array with nan": np.array([0.5, np.nan, 0.5]),
+    "1e308": 1e308,
+    "1e-308": 1e-308,
     "another shape": np.full((2, 3, 4), 0.5),
+    "no axis": np.array(0.5),
+    "two axes": np.full((2, 3), 0.5),
+    "another length": np.linspace(0.1, 0.9, 7),
+    "one number in a row": np.array([0.5]),
     "rows of unequal length": [[1.0], [1.0, 2.0]],
 }
 

@@ -25,6 +25,8 @@ ROOMS = {
     "chain.pad_place", "actuators.skin_stretch", "actuators.motor", "control",
     "materials",
     "quantities", "distributions", "formats", "calibration_record",
+    "measure.recordings.kinds", "measure.fits.circuit.branches", "search.sweep",
+    "measure.fits.ceramic.ceramic_prior", "measure.fits.vibration.driven_shape",
 }  # fmt: skip
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 _NUMBERS = (int, float, _REAL_ARRAY)
@@ -73,9 +75,12 @@ NOT_CALLED = {
     render.program.renderer.Counters render.program.renderer.Rendered chain.touch.Touch
     """,
     "inside a solver: meshes, matrices and indices, made by calls that are checked": """
+    measure.fits.circuit.branches.Layout measure.fits.circuit.branches.Layout.branch
+    measure.fits.circuit.branches.circuit_curve measure.fits.circuit.branches.relative_motion
+    measure.fits.circuit.branches.start_at
     contact.asperities.cubics contact.sharing.balance.require_balanced
     plate.solid.size.SolveSize.require_within
-    actuators.motor.in_time.resting actuators.skin_stretch.slip.held_forces
+    actuators.motor.in_time.resting
     film.periodic.batch.check_film film.periodic.batch.solve_all film.line_grid.LineGrid
     film.line_grid.edge_graded film.line_grid.edge_layer film.line_grid.gap_table
     film.line_grid.line_grid film.line_grid.mean_over film.line_grid.refined_line

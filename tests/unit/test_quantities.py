@@ -17,6 +17,7 @@ from squeezefilm.quantities import (
     format_quantity,
     parse_quantity,
     require,
+    require_alike,
     require_valid,
     unit_of,
 )
@@ -108,6 +109,13 @@ def test_a_share_in_percent_is_refused_with_what_to_write() -> None:
         with pytest.raises(InputError) as caught:
             require("share", value, above=0, at_most=most)
         assert "%" not in str(caught.value)
+
+
+def test_series_are_of_one_length() -> None:
+    require_alike(x=np.zeros(3), y=[1, 2, 3], z=None)
+    for y in (np.zeros(2), 0.5, np.zeros((3, 1)), [[1.0], [1.0, 2.0]]):
+        with pytest.raises(InputError, match=r"x, y|x .* y"):
+            require_alike(x=np.zeros(3), y=y)
 
 
 def test_validity_refuses_or_warns() -> None:

@@ -23,6 +23,7 @@ from squeezefilm.plate.solid.working import response_frequencies
 PAPER_CRITERION: si.Dimensionless = 0.7
 
 
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse:
     """Amplitude per volt against frequency, at the largest interior lobe of the working mode."""
@@ -30,6 +31,9 @@ class FrequencyResponse:
     frequency: si.HertzArray
     amplitude_per_volt: si.MetrePerVoltArray
     model: str
+
+    def __post_init__(self) -> None:
+        si.require_alike(frequency=self.frequency, amplitude_per_volt=self.amplitude_per_volt)
 
 
 @dataclass(frozen=True, eq=False)

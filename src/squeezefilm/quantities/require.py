@@ -12,7 +12,14 @@ import numpy as np
 from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.quantities.units import FloatArray, Unit, did_you_mean, format_quantity
 
-__all__ = ["real_numbers", "require", "require_one_of", "require_valid", "returned"]
+__all__ = [
+    "real_numbers",
+    "require",
+    "require_alike",
+    "require_one_of",
+    "require_valid",
+    "returned",
+]
 
 _PURE = Unit("1")
 
@@ -99,6 +106,20 @@ def _as_percentage(value: float, unit: Unit, bounds: dict[str, float]) -> str:
     if unit != _PURE or most > 1 or value <= 1 or not held:
         return ""
     return f'; if {value:g} % is meant, write "{value:g} %" or {share:.6g}'
+
+
+def require_alike(**series: Any) -> None:
+    """Refuse series, by their names, that are no rows of values or not of one length (None: left
+    out). Raises `InputError` that says how many values each has."""
+    given = {name: values for name, values in series.items() if values is not None}
+    try:
+        shapes = {name: np.shape(values) for name, values in given.items()}
+    except ValueError as error:
+        raise InputError(f"{', '.join(given)} must be rows of numbers: {error}") from error
+    if all(len(shape) == 1 for shape in shapes.values()) and len(set(shapes.values())) < 2:
+        return
+    shown = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+    raise InputError(f"the shapes of {shown} differ; give one row of as many values of each")
 
 
 def require_one_of(name: str, value: Any, allowed: Iterable[Any]) -> None:

@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from squeezefilm.search.swept import NOT_YET, Column, Sweep, counted
 from squeezefilm.search.workers import workers
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class SweepRequest:
     """What `sweep` is asked for."""
@@ -36,9 +37,9 @@ class SweepRequest:
     vary: Mapping[str, Any] | Sequence[str] = ()
     ask: Sequence[str] | str = ()
     over: str | Path | None = None
-    sample: int | None = None
+    sample: Annotated[int, si.AtLeast(1)] | None = None
     seed: int = 0
-    jobs: int = 1
+    jobs: Annotated[int, si.AtLeast(1)] = 1
     scheduler: str | None = None
     out: str | Path | None = None
     fresh: bool = False
@@ -79,7 +80,6 @@ class Run:
     """A sweep under way: its plan, and the answers that it has."""
 
     def __init__(self, asked: SweepRequest) -> None:
-        si.require("jobs", asked.jobs, at_least=1)
         self.plan = plan_of(
             asked.display, asked.vary, asked.ask, asked.over, (asked.sample, asked.seed)
         )

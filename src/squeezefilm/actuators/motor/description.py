@@ -167,6 +167,10 @@ class MotorDescription(Result):
     )
     _shown: ClassVar[str] = "name title motor.voltage motor.cradle.preload"
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.motor, Motor):
+            raise InputError(f"motor = {self.motor!r:.60} is no Motor", quantity="motor")
+
 
 def preset_motor(name: str) -> MotorDescription:
     """The motor of a preset's name. Raises `ConfigError` for a name that is not known."""

@@ -8,25 +8,39 @@ may pull with more than its friction h. Among forces within ±h those of least e
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError
+from squeezefilm.errors import ConvergenceError, InputError
 
 # Friction below this share of the largest holds nothing.
 _HELD = 1e-9
 
 
+@si.checked_numbers
 def held_forces(
-    compliance: si.FloatArray, wanted: si.MetreArray, held: si.NewtonArray
+    compliance: Annotated[si.FloatArray, si.Unit("m/N")],
+    wanted: si.MetreArray,
+    held: Annotated[si.NewtonArray, si.AtLeast(0.0)],
 ) -> si.NewtonArray:
     """The forces (N) of contactors that friction holds with at most `held` (N).
 
     `compliance` (contactors × contactors, m/N, symmetric and positive definite) is A, `wanted` (m)
-    the way that sticking asks for. Raises `ConvergenceError` where none are found.
+    the way that sticking asks for. Raises `InputError` for shapes that do not fit,
+    `OutOfRangeError` for a compliance that is not positive definite, and `ConvergenceError` where
+    no forces are found.
     """
+    si.require_alike(wanted=wanted, held=held)
+    if compliance.shape != (wanted.size, wanted.size):
+        raise InputError(
+            f"compliance has the shape {compliance.shape}; {wanted.size} contactors have "
+            f"{(wanted.size, wanted.size)}",
+            quantity="compliance",
+        )
     forces = np.asarray(np.linalg.solve(compliance, wanted), dtype=float)
     if np.all(np.abs(forces) <= held):
         return forces

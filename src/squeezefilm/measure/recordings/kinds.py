@@ -1,5 +1,9 @@
 """The kinds of recordings of a bench, in SI units and zero-to-peak amplitudes, whatever the file
-was in."""
+was in.
+
+What was measured may hold NaN where the instrument had no reading: fits leave such points out. The
+places, times and frequencies of the points may not.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,7 @@ from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class Told:
     """What the description beside a recording tells of it; an empty text is not told.
@@ -27,17 +32,22 @@ class Told:
     temperature: si.AbsoluteKelvin | None = None
 
 
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class ImpedanceSweep:
     """Admittance (S, complex, time factor e^{iωt}) at rising `frequency` (Hz), both (points,);
     `body` is the bare ceramic that was swept, where it is told to be one."""
 
     frequency: si.HertzArray
-    admittance: si.ComplexArray
+    admittance: si.Array
     told: Told = field(default_factory=Told)
     body: CeramicBar | CeramicDisc | None = None
 
+    def __post_init__(self) -> None:
+        si.require_alike(frequency=self.frequency, admittance=self.admittance)
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrequencyResponse:
     """Displacement per volt (m/V, complex) at one place against `frequency` (Hz), both (points,);
@@ -45,25 +55,37 @@ class FrequencyResponse:
     `place` where on the plate (x, y in m) where told."""
 
     frequency: si.HertzArray
-    displacement_per_volt: si.ComplexArray
+    displacement_per_volt: si.Array
     voltage: si.Volt | None = None
     coherence: si.DimensionlessArray | None = None
     told: Told = field(default_factory=Told)
     place: tuple[si.Metre, si.Metre] | None = None
 
+    def __post_init__(self) -> None:
+        si.require_alike(
+            frequency=self.frequency,
+            displacement_per_volt=self.displacement_per_volt,
+            coherence=self.coherence,
+        )
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class LineScan:
     """Displacement (m, complex; real where the phase was not recorded) at `position` (m) along a
     line, both (points,), at one `frequency` (Hz) and drive `voltage` (V)."""
 
     position: si.MetreArray
-    displacement: si.ComplexArray
+    displacement: si.Array
     frequency: si.Hertz
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
 
+    def __post_init__(self) -> None:
+        si.require_alike(position=self.position, displacement=self.displacement)
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class GridScan:
     """Displacement (m, complex) at places `x`, `y` (m), all (points,), at one `frequency` (Hz) and
@@ -71,10 +93,13 @@ class GridScan:
 
     x: si.MetreArray
     y: si.MetreArray
-    displacement: si.ComplexArray
+    displacement: si.Array
     frequency: si.Hertz
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
+
+    def __post_init__(self) -> None:
+        si.require_alike(x=self.x, y=self.y, displacement=self.displacement)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +110,12 @@ class RingDown:
     displacement: si.MetreArray
     told: Told = field(default_factory=Told)
 
+    def __post_init__(self) -> None:
+        si.require("time", self.time, si.Unit("s"))
+        si.require_alike(time=self.time, displacement=self.displacement)
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class VoltageSweeps:
     """Frequency responses at several drive voltages, each swept in one direction ("up", "down")."""
@@ -104,7 +134,12 @@ class RawSignals:
     displacement: si.MetreArray
     told: Told = field(default_factory=Told)
 
+    def __post_init__(self) -> None:
+        si.require("time", self.time, si.Unit("s"))
+        si.require_alike(time=self.time, voltage=self.voltage, displacement=self.displacement)
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionBench:
     """Strokes of a finger or probe: `time` (s), `normal_force` and `tangential_force` (N),
@@ -119,7 +154,17 @@ class FrictionBench:
     told: Told = field(default_factory=Told)
     frequency: si.Hertz | None = None
 
+    def __post_init__(self) -> None:
+        si.require_alike(
+            time=self.time,
+            normal_force=self.normal_force,
+            tangential_force=self.tangential_force,
+            position=self.position,
+            vibration_amplitude=self.vibration_amplitude,
+        )
 
+
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionCurve:
     """µ′/µ with its spread (one standard deviation) against `vibration_amplitude` (m), all
@@ -134,6 +179,13 @@ class FrictionCurve:
     speed: si.MetrePerSecond
     told: Told = field(default_factory=Told)
     display: str = ""
+
+    def __post_init__(self) -> None:
+        si.require_alike(
+            vibration_amplitude=self.vibration_amplitude,
+            relative_friction=self.relative_friction,
+            spread=self.spread,
+        )
 
 
 Recording = (

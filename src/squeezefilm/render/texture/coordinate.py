@@ -142,18 +142,25 @@ def require_coordinate(value: object) -> None:
         )
 
 
+_MOST_ARGUMENT = 1e12
+
+
 def finger_arguments(
     x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike
 ) -> Finger:
     """Place, velocity and time of a finger as arrays of one shape.
 
-    Raises `InputError` for one that is not finite, or for shapes that do not broadcast.
+    Raises `InputError` for one that is not finite or beyond 1e12 in its SI unit, where a float no
+    longer tells the periods of a texture apart, or for shapes that do not broadcast.
     """
     # A NaN would compare false and silently become the low side of an edge.
-    si.require("position x", x, METRE)
-    si.require("position y", y, METRE)
-    si.require("velocity v", v, si.Unit("m/s"))
-    si.require("time t", t, si.Unit("s"))
+    for name, values, unit in (
+        ("position x", x, "m"),
+        ("position y", y, "m"),
+        ("velocity v", v, "m/s"),
+        ("time t", t, "s"),
+    ):
+        si.require(name, values, si.Unit(unit), at_least=-_MOST_ARGUMENT, at_most=_MOST_ARGUMENT)
     arrays = [np.asarray(one, dtype=float) for one in (x, y, v, t)]
     try:
         return Finger(*np.broadcast_arrays(*arrays))

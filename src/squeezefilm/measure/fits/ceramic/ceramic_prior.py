@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.complex_fit import Prior
 from squeezefilm.presets.materials import library
 
@@ -69,13 +70,18 @@ def _ratios(values: dict[str, object]) -> list[float]:
     return [*logs, s13 / s11, s33 / s11, s44 / s11, d33 / d31, d15 / d31, eps11 / eps33]
 
 
-def compliances(p: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray, si.ComplexArray]:
+@si.checked_numbers
+def compliances(
+    p: si.DimensionlessArray,
+) -> tuple[si.ComplexArray, si.ComplexArray, si.ComplexArray]:
     """Complex compliances s11, s12, s13, s33, s44 (m²/N), charge coefficients d31, d33, d15 (m/V)
     and free relative permittivities ε11, ε33 of parameters `p` in the order of `PARAMETERS`.
 
     All compliances but s12 have the loss of s11, all charge coefficients that of d31, both
     permittivities that of ε33 (assumed: a radial mode hardly asks for the others).
     """
+    if p.shape != (len(PARAMETERS),):
+        raise InputError(f"p has the shape {p.shape}; give the {len(PARAMETERS)} of PARAMETERS")
     s11 = math.exp(p[0]) * (1 - 1j * p[4])
     s12 = -p[1] * math.exp(p[0]) * (1 - 1j * p[4] * (1 + p[7]))
     d31 = -math.exp(p[2]) * (1 - 1j * p[5])

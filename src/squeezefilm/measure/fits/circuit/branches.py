@@ -12,11 +12,13 @@ the share g (1 − u²) and the loss 1/Q_k smaller by h (1 − u²).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
 
 _SANATHANAN_KOERNER = 12
 _LARGEST = np.array([30.0, 30.0, 0.0])
@@ -108,8 +110,9 @@ def relative_motion(
     return np.asarray(size / size.max())
 
 
+@si.checked_numbers
 def poles(
-    frequency: si.HertzArray, response: si.ComplexArray, count: int
+    frequency: si.HertzArray, response: si.ComplexArray, count: Annotated[int, si.AtLeast(1)]
 ) -> tuple[si.HertzArray, si.DimensionlessArray]:
     """Frequencies (Hz) and Q of `count` poles by linear least squares of a rational function,
     iterated (Sanathanan and Koerner 1963, 10.1109/TAC.1963.1105517), rising in frequency.
@@ -117,8 +120,14 @@ def poles(
     Numerator and denominator are Chebyshev series over the band; the numerator has one degree more,
     for a capacitance. Poles at negative frequency are far away and part of that. For sweeps
     whose band is not wider than some octaves. A Q that is not positive says that there is no
-    such pole.
+    such pole. Raises `InputError` for series that are not alike, no band of frequencies, or a
+    response of zero.
     """
+    si.require_alike(frequency=frequency, response=response)
+    if frequency[-1] == frequency[0]:
+        raise InputError("poles are found in a band of frequencies", quantity="frequency")
+    if not np.all(response):
+        raise InputError("a response of exactly zero has no phase", quantity="response")
     middle = (frequency[-1] + frequency[0]) / 2
     half = (frequency[-1] - frequency[0]) / 2
     x = (frequency - middle) / half

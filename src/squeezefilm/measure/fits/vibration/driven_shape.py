@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import fit_separable
@@ -19,6 +20,7 @@ REST = "what else the drive moves"
 """The label of the motion that is not the working mode's, beside the labels of modes."""
 
 
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class DrivenShape:
     """The motion of a face at places `x`, `y` (m), shapes (x, y), at a resonance: `swing` in phase
@@ -56,10 +58,16 @@ class DrivenShape:
         swing, rest = (RectBivariateSpline(self.x, self.y, one) for one in (self.swing, self.rest))
         return swing, rest
 
+    @si.checked_numbers
     def at(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
-        """Swing and rest (2, points) at places (m); beside the face those of its edge."""
+        """Swing and rest (2, points) at places (m); beside the face those of its edge.
+
+        Raises `InputError` for places that are no rows of one length.
+        """
+        si.require_alike(x=x, y=y)
         return np.array([spline.ev(x, y) for spline in self._splines])
 
+    @si.checked_numbers
     def along(self, position: si.MetreArray) -> si.DimensionlessArray:
         """Swing and rest (2, points) along the line through the best antinode that crosses the
         nodal lines, from the face's edge (m)."""
@@ -86,22 +94,29 @@ class LineByShape(NamedTuple):
     adequacy: Adequacy
 
 
+@si.checked_numbers
 def line_by_shape(
     shape: DrivenShape,
     x: si.MetreArray,
     w: si.Array,
     *,
-    reach: si.Metre,
+    reach: Annotated[si.Metre, si.Above(0.0)],
     drift: bool = False,
-    level: si.Dimensionless = 0.95,
+    level: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.95,
 ) -> LineByShape:
     """The shape of the line that fits displacements `w` (m, real or complex) at rising `x` (m).
 
     Swing and rest have each a weight of its own; the line may begin up to `reach` (m) from the
     face's edge; with `drift` the swing may change in proportion to the place along the scan. The
     line is taken to run through the best antinode. Raises `InputError` where there are fewer
-    points than numbers.
+    points than numbers, the places do not rise, or nothing moves.
     """
+    w = np.asarray(w)
+    if w.dtype.kind not in "fc" or not np.all(np.isfinite(w)) or not np.any(w):
+        raise InputError("w must be finite displacements, not all of them 0", quantity="w")
+    si.require_alike(x=x, w=w)
+    if not np.all(np.diff(x) > 0) or x.size < 2:
+        raise InputError("x must rise from point to point", quantity="x")
     recorded = np.iscomplexobj(w)
     span = float(x[-1] - x[0])
 
