@@ -72,8 +72,6 @@ def verdict(
     def found() -> Iterator[Finding]:
         amplitude = f"{p.vibration_amplitude * 1e6:.3g} µm"
         yield from friction_verdict(p, unsure, why_not, area)
-        if unsure is not None:
-            yield model_form(unsure, rival_frictions(p), p.mode.resonance_frequency)
         yield from _of_needed_amplitude(p, own)
         yield from _of_ceramics_touched(display)
         if p.vibration_amplitude > PLAUSIBLE_AMPLITUDE:
@@ -254,31 +252,23 @@ def model_form(
     low, high = unsure.interval
     values = sum(not hasattr(influence.parameter, "options") for influence in unsure.influences)
     laws = len(unsure.influences) - values
-    text = (
-        f"The interval {low:.2f}–{high:.2f} varies {values} inputs within their stated or assumed "
-        f"ranges and {laws} laws and states of one model by assumed weights. "
-    )
     unknown = [group for group in unsure.groups if group.knowledge == "unknown"]
-    if unknown:
-        text += (
-            f"Laws and states that nobody knows make {si.percent(unknown[0].total)} of its "
-            "variance. "
-        )
-    text += (
-        f"It does not vary the frequency ({si.format_quantity(frequency, si.Unit('Hz'))}) or the "
-        "mechanism"
+    part = f" ({si.percent(unknown[0].total)} of its variance)" if unknown else ""
+    text = (
+        f"The interval varies {values} inputs and {laws} laws of one model{part} by stated or "
+        f"assumed ranges and weights, not the frequency "
+        f"({si.format_quantity(frequency, si.Unit('Hz'))}) or the mechanism"
     )
     if not rivals:
         return Finding("doubt", f"{text}.")
     least, most = min(rivals, key=rivals.__getitem__), max(rivals, key=rivals.__getitem__)
     apart = max(unsure.nominal, rivals[most]) - min(unsure.nominal, rivals[least])
     than = "wider than" if apart > high - low else "within the width of"
-    text += (
-        f": as described, rival models give from {rivals[least]:.2f} ('{least}') to "
-        f"{rivals[most]:.2f} ('{most}'), with this one {apart:.2f} apart, {than} the interval's "
-        f"{high - low:.2f}."
+    return Finding(
+        "doubt",
+        f"{text}: rival models give {rivals[least]:.2f} ('{least}') to {rivals[most]:.2f} "
+        f"('{most}'), with this one {apart:.2f} apart, {than} the interval's {high - low:.2f}.",
     )
-    return Finding("doubt", text)
 
 
 def _of_gratings(table: FidelityTable, relative_friction: si.Dimensionless) -> Finding:

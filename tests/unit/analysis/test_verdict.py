@@ -326,10 +326,9 @@ def test_an_interval_says_what_it_has_varied_and_how_far_rival_models_lie_apart(
     wide = model_form(drawn, {"a": 0.1, "b": 0.9}, 30e3)  # type: ignore[arg-type]
     assert wide.kind == "doubt"
     assert "varies 3 inputs" in wide.text
-    assert "1 laws" in wide.text
-    assert "25 % of its variance" in wide.text
-    assert "does not vary the frequency (30 kHz)" in wide.text
-    assert "from 0.10 ('a') to 0.90 ('b')" in wide.text
+    assert "1 laws of one model (25 % of its variance)" in wide.text
+    assert "not the frequency (30 kHz) or the mechanism" in wide.text
+    assert "0.10 ('a') to 0.90 ('b')" in wide.text
     assert "0.80 apart, wider than the interval's 0.30" in wide.text
     narrow = model_form(drawn, {"a": 0.45}, 30e3)  # type: ignore[arg-type]
     assert "0.05 apart, within the width of" in narrow.text

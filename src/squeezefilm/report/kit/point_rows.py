@@ -61,13 +61,11 @@ def heat_rows(heat: Warming | None) -> list[Row]:
     if heat.rise_range is not None:
         low, high = EMISSIVITIES
         between = _between(heat.rise_range, KELVIN)
-        rises = f"{between} for an assumed emissivity of {low:g} to {high:g}; "
+        rises = f"assumed {between} (emissivity {low:g} to {high:g}); "
     if heat.drift_range is not None:
         low, high = COEFFICIENT_SHARES
-        drifts = (
-            f"{_between(heat.drift_range, HZ)} over assumed ranges (temperature coefficient "
-            f"{low:g} to {high:g} times as described); "
-        )
+        between = _between(heat.drift_range, HZ)
+        drifts = f"assumed {between} (temperature coefficient {low:g} to {high:g} times, too); "
     resistance = si.format_quantity(heat.thermal_resistance, si.Unit("K/W"), 3)
     return [
         (
@@ -102,7 +100,8 @@ def heat_rows(heat: Warming | None) -> list[Row]:
 def _between(ends: tuple[float, float], unit: si.Unit) -> str:
     """A range as people read it, signs shown."""
     low, high = (signed(end, unit) for end in ends)
-    return f"{low} to {high}"
+    same_unit = low.split()[-1] == high.split()[-1]
+    return f"{low.split()[0] if same_unit else low} to {high}"
 
 
 def sound_rows(sound: SoundField, direction: str) -> list[Row]:
