@@ -49,8 +49,8 @@ from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.plate.electronics import AMPLIFIERS, Amplifier
 from squeezefilm.plate.elements.box_model import Medium, isotropic_solid
+from squeezefilm.plate.heat.states import HeatSource
 from squeezefilm.plate.heat.thermal import Thermal
-from squeezefilm.plate.heat.warming import HeatSource
 from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
 from squeezefilm.plate.layout import Actuator, CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.plate.loaded_mode import LoadedMode

@@ -59,7 +59,7 @@ NOT_CALLED = {
     formats.hjif.HjifExport formats.hjif_read.HjifImport plate.ring.modes.AnnularMode
     plate.solid.resonances.DrivenMode
     plate.beam.modes.BeamMode plate.solid.modes.PlateModes plate.solid.response.HarmonicResponse
-    plate.heat.thermal.ThermalBody plate.heat.warming.Warming plate.heat.warming.WarmState
+    plate.heat.thermal.ThermalBody plate.heat.warming.Warming plate.heat.states.WarmState
     plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
     plate.ring.response.RingResponse
     plate.shear.modes.ShearMode plate.shear.working.ShearWorking

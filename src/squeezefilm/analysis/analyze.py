@@ -50,6 +50,8 @@ from squeezefilm.analysis.verdict import (
     ears_finding,
     film_findings,
     held_back,
+    model_form,
+    rival_frictions,
     verdict,
     why_not_good,
 )
@@ -138,6 +140,18 @@ class Analysis(Result):
         reach = BAND_REACH * self.prediction.vibration_amplitude
         at = reach * np.linspace(0.0, 1.0, BAND_POINTS) ** 1.5
         return friction_band(self.display, self.prediction, at, samples=BAND_SAMPLES)
+
+    @functools.cached_property
+    def rivals(self) -> dict[str, float]:
+        """µ′/µ as described by the compared models that the interval does not draw."""
+        return rival_frictions(self.prediction)
+
+    @functools.cached_property
+    def model_form(self) -> Finding | None:
+        """What the interval varied and what not; None where there is no interval."""
+        if self.uncertainty is None:
+            return None
+        return model_form(self.uncertainty, self.rivals, self.prediction.mode.resonance_frequency)
 
     @functools.cached_property
     def ears(self) -> EarExposure | None:
@@ -230,6 +244,8 @@ class Analysis(Result):
             **p.summary(),
             "active_area": None if self.active_area is None else self.active_area.summary(),
             "relative_friction_interval": None if unsure is None else list(unsure.interval),
+            "relative_friction_of_rival_models": self.rivals,
+            "model_form": to_json(self.model_form),
             "relative_friction_median": None if unsure is None else unsure.median,
             **_intervals(unsure),
             "wanted": None if self.wanted is None else self.wanted.summary(),

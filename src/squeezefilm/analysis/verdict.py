@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -10,7 +10,12 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.area_odds import JudgedArea
-from squeezefilm.analysis.curves import PAPER_CRITERION, FrictionCurve
+from squeezefilm.analysis.curves import (
+    COMPARED,
+    PAPER_CRITERION,
+    FrictionCurve,
+    as_far_as_it_goes,
+)
 from squeezefilm.analysis.ears import AUDIBLE, EarExposure
 from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.analysis.plate.mode_doubts import mode_doubts, why_undriven
@@ -78,7 +83,7 @@ def verdict(
         if p.heat is not None and (hot := too_hot(p.heat)) is not None:
             yield Finding("limit", hot)
         if table is not None:
-            yield _of_gratings(table)
+            yield _of_gratings(table, p.relative_friction)
         if MODEL_KINDS[p.model].film == "asymptote":
             yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
         if (doubt := source_doubt(display.provenance)) is not None:
@@ -152,7 +157,7 @@ def _odds(area: JudgedArea) -> str:
     draws = len(area.odds.samples)
     unknown = int(np.sum(np.any(np.isnan(area.odds.samples), axis=1)))
     text = (
-        f" With all that is uncertain drawn, it is below {CRITERIA[0]:.2f} with probability {best} "
+        f" When the uncertain inputs vary, it is below {CRITERIA[0]:.2f} with probability {best} "
         f"at the best place, {median} in the median and {worst} at the worst"
     )
     if unknown:
@@ -181,8 +186,8 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE
     text = (
-        f"µ′/µ is {unsure.nominal:.2f} as described {where}. With all that "
-        f"is uncertain drawn, its median is {unsure.median:.2f} ({si.percent(unsure.level)} "
+        f"µ′/µ is {unsure.nominal:.2f} as described {where}. When the uncertain inputs of this "
+        f"model vary, its median is {unsure.median:.2f} ({si.percent(unsure.level)} "
         f"interval {low:.2f}–{high:.2f}); it is below {asked}, with probability "
         f"{_probability(unsure.probability_below(PAPER_CRITERION))}, and below {noticed:.2f}, "
         "where people notice it, with probability "
@@ -227,8 +232,55 @@ def _of_ceramics_touched(display: Display) -> Iterator[Finding]:
     )
 
 
-def _of_gratings(table: FidelityTable) -> Finding:
-    """Which square gratings survive, and how fast the finger may be on the worst."""
+def rival_frictions(p: Prediction) -> dict[str, si.Dimensionless]:
+    """µ′/µ where a prediction was made by each compared model but its own, without those that
+    refuse its amplitude."""
+    found = {}
+    for model, _ in COMPARED:
+        if model != p.model:
+            (friction,) = as_far_as_it_goes(p.law.by(model), np.array([p.vibration_amplitude]))
+            if np.isfinite(friction):
+                found[str(model)] = float(friction)
+    return found
+
+
+def model_form(
+    unsure: UncertainFriction, rivals: Mapping[str, si.Dimensionless], frequency: si.Hertz
+) -> Finding:
+    """What an interval of the friction has varied and what it has not: how much of it is laws that
+    nobody knows, and how far rival models lie apart beside its width."""
+    low, high = unsure.interval
+    values = sum(not hasattr(influence.parameter, "options") for influence in unsure.influences)
+    laws = len(unsure.influences) - values
+    unknown = [group for group in unsure.groups if group.knowledge == "unknown"]
+    part = f" ({si.percent(unknown[0].total)} of its variance)" if unknown else ""
+    text = (
+        f"The interval varies {values} inputs and {laws} laws of one model{part} by stated or "
+        f"assumed ranges and weights, not the frequency "
+        f"({si.format_quantity(frequency, si.Unit('Hz'))}) or the mechanism"
+    )
+    if not rivals:
+        return Finding("doubt", f"{text}.")
+    least, most = min(rivals, key=rivals.__getitem__), max(rivals, key=rivals.__getitem__)
+    apart = max(unsure.nominal, rivals[most]) - min(unsure.nominal, rivals[least])
+    than = "wider than" if apart > high - low else "within the width of"
+    return Finding(
+        "doubt",
+        f"{text}: rival models give {rivals[least]:.2f} ('{least}') to {rivals[most]:.2f} "
+        f"('{most}'), with this one {apart:.2f} apart, {than} the interval's {high - low:.2f}.",
+    )
+
+
+def _of_gratings(table: FidelityTable, relative_friction: si.Dimensionless) -> Finding:
+    """Which square gratings survive, and how fast the finger may be on the worst; good only where
+    the friction swings by as much as people notice."""
+    noticed = 1 - relative_friction >= NOTICED_DIFFERENCE
+    unfelt = (
+        ""
+        if noticed
+        else f" None is good for that: the friction swings by {si.percent(1 - relative_friction)} "
+        f"only, and people notice about {si.percent(NOTICED_DIFFERENCE)}."
+    )
     fastest = table.fastest_speed
     worst = int(np.argmin(fastest))
     kept = [
@@ -239,11 +291,11 @@ def _of_gratings(table: FidelityTable) -> Finding:
         if survives
     ]
     return Finding(
-        "good" if kept else "limit",
+        "good" if kept and noticed else "limit",
         f"Square gratings of {', '.join(kept) or 'no listed'} mm keep 90 % of their swing, peak to "
         f"peak, up to {1e3 * table.speeds[-1]:g} mm/s; {1e3 * table.spatial_periods[worst]:g} mm "
         f"up to {1e3 * fastest[worst]:.0f} mm/s. Of the fundamental "
-        f"{100 * table.fundamental_at_limit:.0f} % are left there.",
+        f"{100 * table.fundamental_at_limit:.0f} % are left there.{unfelt}",
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections import Counter
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,14 @@ from squeezefilm.analysis.film.models import (
     ToothResult,
 )
 from squeezefilm.analysis.uncertainty import UncertainFriction
-from squeezefilm.analysis.verdict import Finding, film_findings, friction_verdict, verdict
+from squeezefilm.analysis.verdict import (
+    Finding,
+    film_findings,
+    friction_verdict,
+    model_form,
+    rival_frictions,
+    verdict,
+)
 from squeezefilm.chain.active_area import ActiveArea
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.config.provenance import UNSTATED, Provenance
@@ -66,7 +74,8 @@ def test_a_verdict_is_the_probability_of_the_criterion(point: Prediction) -> Non
     assert inside == Finding(
         "limit",
         "µ′/µ is 0.51 as described at the antinode, x 0 mm, y 5 mm, taken as an even wave of "
-        f"half wavelength {half}, at 2 µm. With all that is uncertain drawn, its median is 0.40 "
+        f"half wavelength {half}, at 2 µm. When the uncertain inputs of this model "
+        "vary, its median is 0.40 "
         "(90 % interval 0.20–0.81); it is below 0.70, as the paper asks, with probability 0.50, "
         "and below 0.80, where people notice it, with probability 0.75. The criterion lies inside "
         "the interval: whether it is met is open.",
@@ -292,3 +301,45 @@ def test_plateaus_and_teeth_add_their_own_sentences(point: Prediction) -> None:
     assert len(found) == before + 2
     assert Finding("limit", "It floats.") in found
     assert Finding("limit", "Teeth do not matter.") in found
+
+
+def test_gratings_that_nobody_feels_are_not_good(point: Prediction) -> None:
+    table = SimpleNamespace(
+        fastest_speed=np.array([0.2]), spatial_periods=np.array([4e-3]), speeds=np.array([0.2]),
+        amplitude_survives=np.array([[True]]), fundamental_at_limit=0.7,
+    )  # fmt: skip
+    for friction, kind in ((0.98, "limit"), (0.81, "limit"), (0.5, "good")):
+        p = dataclasses.replace(point, relative_friction=friction)
+        found = findings(STATOR, p, None, curve(1e-6, model=p.model), table)  # type: ignore[arg-type]
+        (gratings,) = (one for one in found if one.text.startswith("Square gratings"))
+        assert gratings.kind == kind
+        assert ("None is good for that" in gratings.text) == (kind == "limit")
+
+
+def test_an_interval_says_what_it_has_varied_and_how_far_rival_models_lie_apart() -> None:
+    inputs = [SimpleNamespace(parameter=SimpleNamespace()) for _ in range(3)]
+    law = SimpleNamespace(parameter=SimpleNamespace(options=()))
+    drawn = SimpleNamespace(
+        interval=(0.3, 0.6), nominal=0.4, influences=(*inputs, law),
+        groups=(SimpleNamespace(knowledge="unknown", total=0.25),),
+    )  # fmt: skip
+    wide = model_form(drawn, {"a": 0.1, "b": 0.9}, 30e3)  # type: ignore[arg-type]
+    assert wide.kind == "doubt"
+    assert "varies 3 inputs" in wide.text
+    assert "1 laws of one model (25 % of its variance)" in wide.text
+    assert "not the frequency (30 kHz) or the mechanism" in wide.text
+    assert "0.10 ('a') to 0.90 ('b')" in wide.text
+    assert "0.80 apart, wider than the interval's 0.30" in wide.text
+    narrow = model_form(drawn, {"a": 0.45}, 30e3)  # type: ignore[arg-type]
+    assert "0.05 apart, within the width of" in narrow.text
+    assert model_form(drawn, {}, 30e3).text.endswith("or the mechanism.")  # type: ignore[arg-type]
+
+
+def test_rival_models_are_all_but_the_predictions_own(point: Prediction) -> None:
+    rivals = rival_frictions(point)
+    assert point.model not in rivals
+    assert {"paper2008", "film-sealed"} <= set(rivals)
+    for model, friction in rivals.items():
+        assert friction == pytest.approx(
+            point.law.by(model).at(point.vibration_amplitude)  # type: ignore[arg-type]
+        )

@@ -5,7 +5,8 @@ from __future__ import annotations
 from types import FunctionType
 from typing import Any
 
-from squeezefilm.plate.heat.warming import Warming, WarmState
+from squeezefilm.plate.heat.states import WarmState
+from squeezefilm.plate.heat.warming import Warming
 
 
 def made_result(kind: type, **values: Any) -> Any:

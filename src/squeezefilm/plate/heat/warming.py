@@ -11,23 +11,19 @@ import math
 from dataclasses import dataclass, replace
 from typing import Annotated
 
-import numpy as np
-from scipy.optimize import brentq
-
 from squeezefilm import quantities as si
 from squeezefilm.plate.beam.response import patch_capacitance
-from squeezefilm.plate.heat.kernel import (
-    Drifts,
-    Driven,
-    conductance,
-    lost,
-    resonance,
-    surpluses,
-    time_until,
+from squeezefilm.plate.heat.kernel import conductance, lost
+from squeezefilm.plate.heat.states import (
+    HOTTEST,
+    HeatSource,
+    WarmCase,
+    WarmState,
+    cooling_of,
+    warmth_ranges,
 )
 from squeezefilm.plate.heat.thermal import (
     LOSS_TANGENT,
-    Cooling,
     Thermal,
     ThermalBody,
     driven_thickness,
@@ -49,47 +45,7 @@ FIELD_SHARE = 1 / 3
 KNOWN_RISE: si.Kelvin = 60.0
 """Up to it coefficients are taken to stay what they are (assumed)."""
 
-_END: si.Kelvin = 2000.0
 _REFERENCE_RISE: si.Kelvin = 20.0
-_GRID = 1500
-_STEPS_OF_A_TIME_CONSTANT = 2000
-_FALLEN = 0.9
-
-
-@si.checked_numbers
-@dataclass(frozen=True)
-class HeatSource:
-    """A mode as it is driven, cold and without a finger, and what it loses at resonance.
-
-    Args:
-        frequency: of the resonance (Hz).
-        quality_factor: of the mode (1).
-        amplitude: zero-to-peak at resonance (m).
-        mechanical_power: lost in materials there (W). What leaves as sound or goes into a finger
-            does not warm the plate and is not in it, as far as the quality factor is without it.
-        dielectric_power: lost in the ceramic's capacitance there (W).
-        quality_of_ceramic: its own quality factor (1); None where it is not known.
-        field: in the thinnest driven ceramic (V/m, peak); None where it is not known.
-    """
-
-    frequency: Annotated[si.Hertz, si.Above(0.0), si.AtMost(1e9)]
-    quality_factor: Annotated[si.Dimensionless, si.Above(0.5), si.AtMost(1e8)]
-    amplitude: Annotated[si.Metre, si.AtLeast(0.0)]
-    mechanical_power: Annotated[si.Watt, si.AtLeast(0.0)]
-    dielectric_power: Annotated[si.Watt, si.AtLeast(0.0)] = 0.0
-    quality_of_ceramic: Annotated[si.Dimensionless, si.Above(0.0)] | None = None
-    field: Annotated[si.VoltPerMetre, si.AtLeast(0.0)] | None = None
-
-
-@dataclass(frozen=True)
-class WarmState:
-    """A state in which the plate gives away what it loses: how much warmer than the room, how far
-    its resonance has moved, the amplitude and the power lost in the plate."""
-
-    temperature_rise: si.Kelvin
-    resonance_drift: si.Hertz
-    amplitude: si.Metre
-    power: si.Watt
 
 
 @dataclass(frozen=True)
@@ -100,9 +56,11 @@ class Warming:
     switched on. `tracked` is the state where the frequency follows the resonance, `fixed` the one
     reached from cold where it does not, `other_fixed` the further stable ones there.
     `thermal_resistance`, `thermal_time` and `biot_number` are at the tracked state.
-    `time_to_fall` is when the amplitude at the fixed frequency has fallen by a tenth, None where it
-    does not. `speed` (r.m.s.) and `field` are at the resonance, cold. `assumed` and `doubts` are
-    for people.
+    `rise_range` (K) and `drift_range` (Hz) are those of the tracked state over `EMISSIVITIES`
+    where the resistance is computed (else no `rise_range`) and over `COEFFICIENT_SHARES` of the
+    temperature coefficient, lower end first. `time_to_fall` is when the amplitude at the fixed
+    frequency has fallen by a tenth, None where it does not. `speed` (r.m.s.) and `field` are at the
+    resonance, cold. `assumed` and `doubts` are for people.
     """
 
     frequency: si.Hertz
@@ -121,14 +79,8 @@ class Warming:
     field: si.VoltPerMetre | None
     assumed: tuple[str, ...]
     doubts: tuple[str, ...]
-
-
-def cooling_of(thermal: Thermal, body: ThermalBody) -> Cooling:
-    """How a body gives its heat away, by measurement where there is one."""
-    measured = thermal.thermal_resistance
-    fixed = 0.0 if measured is None else (math.inf if measured == 0 else 1 / measured)
-    length = body.face_area / body.perimeter
-    return Cooling(fixed, body.face_area, length, thermal.emissivity, thermal.ambient_temperature)
+    rise_range: tuple[si.Kelvin, si.Kelvin] | None = None
+    drift_range: tuple[si.Hertz, si.Hertz] | None = None
 
 
 def heat_capacity(thermal: Thermal, body: ThermalBody) -> si.JoulePerKelvin:
@@ -141,17 +93,6 @@ def heat_capacity(thermal: Thermal, body: ThermalBody) -> si.JoulePerKelvin:
     given = conductance(_REFERENCE_RISE, cooling_of(thermal, body))
     # Held at the room's temperature any capacity is the same.
     return thermal.thermal_time * given if math.isfinite(given) else body.heat_capacity
-
-
-def drifts_of(thermal: Thermal) -> Drifts:
-    """The coefficients as compiled code takes them."""
-    return Drifts(
-        thermal.temperature_coefficient,
-        thermal.quality_temperature_coefficient,
-        thermal.charge_temperature_coefficient,
-        thermal.rayleigh_softening,
-        thermal.rayleigh_charge,
-    )
 
 
 @si.checked_numbers
@@ -199,7 +140,7 @@ def warming(
     """
     thermal = Thermal() if thermal is None else thermal
     body, fixed = thermal_body(actuator), source.frequency if frequency is None else frequency
-    case = _Case(source, thermal, cooling_of(thermal, body), heat_capacity(thermal, body))
+    case = WarmCase(source, thermal, cooling_of(thermal, body), heat_capacity(thermal, body))
     tracked = case.states(0.0)[0]
     states = case.states(fixed)
     given = conductance(tracked.temperature_rise, case.cooling)
@@ -224,7 +165,13 @@ def warming(
         assumed=_assumed(thermal, body),
         doubts=(),
     )
-    return replace(found, doubts=tuple(_doubts(found, source, thermal)))
+    rises, drifts = warmth_ranges(source, thermal, body, case.capacity)
+    return replace(
+        found,
+        doubts=tuple(_doubts(found, source, thermal)),
+        rise_range=rises,
+        drift_range=drifts,
+    )
 
 
 @si.checked_numbers
@@ -251,65 +198,6 @@ def warming_of_mode(
     return warming(source, actuator, thermal, frequency)
 
 
-class _Case:
-    """One plate at one voltage, as compiled code takes it."""
-
-    def __init__(
-        self, source: HeatSource, thermal: Thermal, cooling: Cooling, capacity: si.JoulePerKelvin
-    ) -> None:
-        self.driven = Driven(
-            float(source.frequency),
-            float(source.quality_factor),
-            float(source.amplitude),
-            float(source.mechanical_power),
-            float(source.dielectric_power),
-            float(source.field or 0.0),
-        )
-        self.drifts = drifts_of(thermal)
-        self.cooling, self.capacity = Cooling(*map(float, cooling)), float(capacity)
-
-    def states(self, frequency: float) -> tuple[WarmState, ...]:
-        """The stable states at a frequency (0: at resonance), the one reached from cold first."""
-        if math.isinf(self.cooling.fixed):
-            return (self._state(frequency, 0.0),)
-        top = 10.0
-        while top < _END and self._surplus(frequency, top) > 0:
-            top = min(1.5 * top, _END)
-        # Beyond where the plate cools at its resonance no other drive keeps it warm.
-        while top < _END and self._surplus(0.0, top) > 0:
-            top = min(1.5 * top, _END)
-        grid = top * np.linspace(0, 1, _GRID) ** 2
-        left = surpluses(grid, frequency, self.driven, self.drifts, self.cooling)
-        stable = np.flatnonzero((left[:-1] > 0) & (left[1:] <= 0))
-        if left[0] <= 0:
-            return (self._state(frequency, 0.0),)
-        roots = [
-            brentq(lambda rise: self._surplus(frequency, rise), grid[at], grid[at + 1], xtol=1e-9)
-            for at in stable
-        ]
-        if left[-1] > 0:
-            roots.append(top)
-        return tuple(self._state(frequency, float(root)) for root in roots)
-
-    def time_to_fall(self, frequency: float, cold: si.Metre, time: si.Second) -> si.Second | None:
-        """When a tenth of the cold amplitude is gone (s)."""
-        if not (cold > 0 and time > 0):
-            return None
-        warm = (float(frequency), self.driven, self.drifts, self.capacity, self.cooling)
-        steps = 20 * _STEPS_OF_A_TIME_CONSTANT
-        found = time_until(_FALLEN * cold, time / _STEPS_OF_A_TIME_CONSTANT, steps, warm)
-        return None if found < 0 else float(found)
-
-    def _surplus(self, frequency: float, rise: float) -> float:
-        one = np.array([rise])
-        return float(surpluses(one, frequency, self.driven, self.drifts, self.cooling)[0])
-
-    def _state(self, frequency: float, rise: si.Kelvin) -> WarmState:
-        moved, power = lost(frequency, rise, self.driven, self.drifts)
-        drift = resonance(rise, self.driven, self.drifts) - self.driven.frequency
-        return WarmState(rise, drift, moved, power)
-
-
 def _assumed(thermal: Thermal, body: ThermalBody) -> tuple[str, ...]:
     """What stands behind the numbers that nobody measured."""
     said = []
@@ -331,9 +219,9 @@ def _assumed(thermal: Thermal, body: ThermalBody) -> tuple[str, ...]:
 def too_hot(found: Warming) -> str | None:
     """That the plate gets warmer than the model knows, in a sentence; None where it does not."""
     rise = max(found.tracked.temperature_rise, found.fixed.temperature_rise)
-    if found.tracked.temperature_rise >= _END:
+    if found.tracked.temperature_rise >= HOTTEST:
         return (
-            f"The plate finds no temperature below {_END:g} K at which it gives away what it "
+            f"The plate finds no temperature below {HOTTEST:g} K at which it gives away what it "
             "loses: driven for long it would be destroyed. Ask for a lower voltage."
         )
     if rise > KNOWN_RISE:

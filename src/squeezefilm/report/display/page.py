@@ -275,6 +275,8 @@ def _how_sure(analysis: Analysis) -> str:
         return "<p>No interval: the verdict says why.</p>"
     said = f"{unsure.sentence}, {si.percent(unsure.level)} interval. {unsure.standing}."
     parts = [f"<p>{escape(said)}</p>"]
+    if analysis.model_form is not None:
+        parts.append(f"<p>{escape(analysis.model_form.text)}</p>")
     for group in unsure.groups:
         rows = influence_rows(unsure, group.knowledge, len(unsure.influences))
         parts.append(text_table(group_words(group), _INFLUENCES, rows))

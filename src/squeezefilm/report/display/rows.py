@@ -116,10 +116,21 @@ def friction_rows(analysis: Analysis) -> list[Row]:
     reached = _reached(analysis.own_curve.amplitude_for_criterion)
     return [
         ("Relative friction µ′/µ", f"{p.relative_friction:.2f}", said),
+        *_rival_rows(analysis),
         *place_rows(p, analysis.active_area),
         ("Surface roughness", shown(p.surface.roughness, M), f"{name}; finger {finger}"),
         ("Amplitude for µ′/µ = 0.7", reached, "as the paper asks, under the finger"),
     ]
+
+
+def _rival_rows(analysis: Analysis) -> list[Row]:
+    """Between what rival models lie, beside the width of the interval, which leaves them out."""
+    rivals, unsure = analysis.rivals.values(), analysis.uncertainty
+    if unsure is None or not rivals:
+        return []
+    low, high = unsure.interval
+    said = f"interval {high - low:.2f} wide, without them"
+    return [("Rival models give µ′/µ", span(min(rivals), max(rivals)), said)]
 
 
 def _reached(amplitude: float | None) -> str:

@@ -66,7 +66,7 @@ def show_analysis(analysis: Analysis, *, whole: bool = False, sensitivities: boo
         return
     if sensitivities:
         _show_sensitivities(console, analysis)
-    more = "intervals, what each value does, amplifiers, other models, textures and thermal details"
+    more = "intervals, sensitivities, models and heat"
     if cut != warned:
         more = f"the warnings in full, {more}"
     console.print(f"\n--all prints {more}")
@@ -106,6 +106,8 @@ def _show_certainty(console: Console, analysis: Analysis) -> None:
     if rows := interval_rows(analysis.uncertainty) + felt_rows(analysis.felt):
         heading(console, "How sure it is")
         table(console, ("", "", ""), rows, fixed=(0,))
+    if analysis.model_form is not None:
+        _findings(console, (analysis.model_form,))
 
 
 def _show_sensitivities(console: Console, analysis: Analysis) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from squeezefilm import quantities as si
 from squeezefilm.chain.active_area import CRITERIA, percent
 from squeezefilm.chain.pad_place import place_words
+from squeezefilm.plate.heat.states import COEFFICIENT_SHARES, EMISSIVITIES
 from squeezefilm.report.kit.numbers import HZ, SPEED, A, M, S, V, W, shown, signed
 
 if TYPE_CHECKING:
@@ -56,17 +57,26 @@ def heat_rows(heat: Warming | None) -> list[Row]:
         if heat.time_to_fall is None
         else f"a tenth is gone after {shown(heat.time_to_fall, S, 2)}"
     )
+    rises, drifts = "", ""
+    if heat.rise_range is not None:
+        low, high = EMISSIVITIES
+        between = _between(heat.rise_range, KELVIN)
+        rises = f"assumed {between} (emissivity {low:g} to {high:g}); "
+    if heat.drift_range is not None:
+        low, high = COEFFICIENT_SHARES
+        between = _between(heat.drift_range, HZ)
+        drifts = f"assumed {between} (temperature coefficient {low:g} to {high:g} times, too); "
     resistance = si.format_quantity(heat.thermal_resistance, si.Unit("K/W"), 3)
     return [
         (
             "Temperature rise",
             signed(follows.temperature_rise, KELVIN),
-            f"if the drive follows; {signed(stays.temperature_rise, KELVIN)} if fixed",
+            f"{rises}if the drive follows; {signed(stays.temperature_rise, KELVIN)} if fixed",
         ),
         (
             "Drift of the resonance",
             signed(follows.resonance_drift, HZ),
-            f"{signed(stays.resonance_drift, HZ)} if fixed; half-bandwidth "
+            f"{drifts}{signed(stays.resonance_drift, HZ)} if fixed; half-bandwidth "
             f"{shown(heat.half_bandwidth, HZ, 3)}",
         ),
         (
@@ -85,6 +95,13 @@ def heat_rows(heat: Warming | None) -> list[Row]:
             f"time constant {shown(heat.thermal_time, S, 2)}; assumed: " + "; ".join(heat.assumed),
         ),
     ]
+
+
+def _between(ends: tuple[float, float], unit: si.Unit) -> str:
+    """A range as people read it, signs shown."""
+    low, high = (signed(end, unit) for end in ends)
+    same_unit = low.split()[-1] == high.split()[-1]
+    return f"{low.split()[0] if same_unit else low} to {high}"
 
 
 def sound_rows(sound: SoundField, direction: str) -> list[Row]:

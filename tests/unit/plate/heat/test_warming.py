@@ -10,11 +10,9 @@ from scipy.optimize import brentq
 from squeezefilm.display import load_display
 from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.heat.kernel import conductance
+from squeezefilm.plate.heat.states import EMISSIVITIES, HeatSource, cooling_of, drifts_of
 from squeezefilm.plate.heat.thermal import LOSS_TANGENT, Thermal, thermal_body
 from squeezefilm.plate.heat.warming import (
-    HeatSource,
-    cooling_of,
-    drifts_of,
     heat_capacity,
     heat_source,
     warming,
@@ -191,3 +189,20 @@ def test_a_plate_that_would_drift_to_no_frequency_at_all_keeps_some() -> None:
         )
         assert found.tracked.resonance_drift >= -0.95 * SOURCE.frequency * (1 + 1e-12)
         assert found.tracked.temperature_rise > 0
+
+
+def test_the_ranges_are_those_of_the_assumed_emissivity_and_coefficient() -> None:
+    """Each end is the state of a plate with that emissivity; a measured resistance leaves none."""
+    found = warming(SOURCE, PLATE)
+    rises = [
+        warming(SOURCE, PLATE, Thermal(emissivity=emissivity)).tracked.temperature_rise
+        for emissivity in EMISSIVITIES
+    ]
+    assert found.rise_range is not None
+    assert found.rise_range == pytest.approx(tuple(sorted(rises)), rel=0.01)
+    assert found.rise_range[0] < found.tracked.temperature_rise < found.rise_range[1]
+    assert found.drift_range is not None
+    assert found.drift_range[0] < found.tracked.resonance_drift < found.drift_range[1] < 0
+    measured = warming(SOURCE, PLATE, Thermal(thermal_resistance=9.0))
+    assert measured.rise_range is None
+    assert measured.drift_range is not None

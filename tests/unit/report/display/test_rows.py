@@ -45,6 +45,7 @@ def analysis(**changes: Any) -> Any:
         "active_area": None, "drive_electronics": None,
         "own_curve": SimpleNamespace(amplitude_for_criterion=0.7e-6),
         "uncertainty": SimpleNamespace(level=0.9, interval=(0.04, 0.786), median=0.37),
+        "rivals": {"paper2008": 0.7, "film-smooth": 0.0},
         "verdict": (SimpleNamespace(text="said already"),),
     }  # fmt: skip
     return SimpleNamespace(**{**parts, **changes})
@@ -57,6 +58,10 @@ def test_key_numbers_go_by_subject_in_the_order_of_the_chain() -> None:
     ]  # fmt: skip
     said = {label: (text, remark) for one in groups for label, text, remark in one.rows}
     assert said["Relative friction µ′/µ"] == ("0.31", "0.04–0.79 (90 % interval, median 0.37)")
+    assert said["Rival models give µ′/µ"] == (
+        "0.00–0.70",
+        "interval 0.75 wide, without them",
+    )
     assert said["Surface roughness"] == ("0.6 µm", "polished; finger 0.5 N at 80 mm/s")
     assert said["Amplitude for µ′/µ = 0.7"][0] == "0.7 µm"
     assert said["Finest grating at 100 mm/s"] == (
