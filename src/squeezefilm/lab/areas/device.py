@@ -146,6 +146,6 @@ async def _texture(lab: Lab, asked: PlayDevice) -> Path:
     folder = lab.folder / "textures"
     folder.mkdir(exist_ok=True)
     file = folder / ".played.toml"
-    await lab.workers.quick.do(None, title_of, str(asked.texture), file)
+    await lab.workers.quick.do(None, title_of, str(asked.texture), folder)
     write_whole(file, str(asked.texture))
     return file

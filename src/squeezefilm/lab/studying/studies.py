@@ -13,7 +13,7 @@ from typing import Any
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.lab.files import existing, fresh
+from squeezefilm.lab.files import existing, fresh, zipped
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.results import to_json
 from squeezefilm.study.conduct.again import COUNTED, why_begun_again
@@ -333,10 +333,10 @@ class Studies:
         return {"deleted": to_json(found), **self.status(name)}
 
     def export(self, study: str, format: str) -> dict[str, Any]:
-        """Export a study beside its file."""
+        """Export a study beside its file; `zip` holds the same in base64, for a link on the page."""
         si.require_one_of("format", format, ("csv", "psych-ds", "bids"))
         path = export_study(self.store(study), format)  # type: ignore[arg-type] # checked above
-        return {"folder": str(path.relative_to(self.folder.parent))}
+        return {"folder": str(path.relative_to(self.folder.parent)), "zip": zipped(path)}
 
     def path(self, name: str) -> Path:
         """A study's file."""

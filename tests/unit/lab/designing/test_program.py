@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.pictures import picture_bytes
+from tests.pictures import coloured_bytes, picture_bytes
 
 from squeezefilm import load_display
 from squeezefilm.chain.prediction import predict
@@ -191,6 +191,9 @@ def test_samples_lie_all_over_the_display_and_some_are_broken() -> None:
 
 
 def test_a_picture_has_rows_and_columns() -> None:
-    assert pixels_of(picture_bytes(np.zeros((3, 5))), "flat.png") == (3, 5)
+    assert pixels_of(picture_bytes(np.zeros((3, 5))), "flat.png") == (3, 5, "")
+    rows, columns, said = pixels_of(coloured_bytes(np.zeros((3, 5, 3))), "red.png")
+    assert (rows, columns) == (3, 5)
+    assert said.startswith("red.png is in colour: of each pixel the brightness is used")
     with pytest.raises(InputError, match=r"flat\.png is no PNG"):
         pixels_of(b"GIF89a", "flat.png")

@@ -1,5 +1,6 @@
 // Study, the experimenter's side: plan, participants, sittings, progress, answers as they come.
 
+import { Age } from "../age.js";
 import { element, plain } from "../numbers.js";
 
 const FIELDS = [
@@ -26,6 +27,7 @@ class StudyView {
     this.error = element("p", { class: "error", role: "alert", hidden: true });
     this.list = element("section", { class: "card side" });
     this.main = element("div", { class: "results" });
+    this.age = new Age(this.lab, "read");
     this.place.append(element("div", { class: "columns study" }, this.list, this.main));
     this.lab.socket.on("study changed", ({ study }) => study === this.name && this.reload(true));
     this.lab.socket.on("connection", ({ open }) => open && this.begin());
@@ -128,6 +130,7 @@ class StudyView {
       row.querySelector(".byhand").replaceChildren(...byHand(study, one.pseudonym));
     }
     this.study = study;
+    this.age.now();
     for (const card of this.main.querySelectorAll(".confusion")) card.remove();
     this.main.append(...study.confusion.map((table) => confusionCard(table)));
     return true;
@@ -138,9 +141,10 @@ class StudyView {
     this.name = study.name;
     sessionStorage.setItem("squeezefilm study", study.name);
     const rows = study.participants.map((one) => this.participant(one));
+    this.age.now();
     this.redraw(
       element("section", { class: "card" }, element("h2", { text: study.name }),
-        element("p", { class: "muted", text: `${study.title}. Seed ${study.seed}.` }),
+        element("p", { class: "muted", text: `${study.title}. Seed ${study.seed}.` }), this.age.box,
         element("div", { class: "scroll" }, element("table", { class: "participants" },
           element("tr", {}, ...["participant", "answered", "now on", "sitting", ""].map((text) => element("th", { text }))), ...rows)),
         this.rehearsal(), element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.act("enrol", { study: study.name }))) })),
@@ -210,7 +214,8 @@ class StudyView {
   async end(sitting) {
     const found = await this.lab.act("end sitting", { sitting: sitting.id });
     this.take(found);
-    this.lab.notify(found.problems.length ? `The device is off after the session: ${found.problems.join("; ")}` : "The sitting has ended.");
+    const { problems } = found, failed = problems.length > 0;
+    this.lab.notify(failed ? `The device is off after the session: ${problems.join("; ")}` : "The sitting has ended.", { failed });
   }
 
   async prepare(one) {
