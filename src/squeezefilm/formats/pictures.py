@@ -15,11 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm import quantities as si
-<<<<<<< HEAD
-from squeezefilm.errors import ConfigError, InputError
-=======
-from squeezefilm.errors import InputError, SqueezefilmWarning
->>>>>>> dc7a7bab (Lab: silence is noticed, numbers have an age, an idle page rests, pictures in colour)
+from squeezefilm.errors import ConfigError, InputError, SqueezefilmWarning
 from squeezefilm.hard_limits import PICTURE_BYTES
 from squeezefilm.isolated_reading import Read, read_isolated
 from squeezefilm.regular_file import read_regular

@@ -123,8 +123,8 @@ def test_a_texture_comes_from_a_preset_or_from_a_text_with_pictures_beside_it(
     (tmp_path / "islands.png").write_bytes(picture_bytes(np.array([[0.0, 1.0, 0.0]])))
     found = feel(TextureOnDisplay(STATOR, PICTURE, None, "screening", tmp_path))
     assert found["title"] == "a texture of relative_friction"
-    assert title_of('title = "Islands"\n' + PICTURE, tmp_path / "any.toml") == "Islands"
-    assert title_of(PICTURE, tmp_path / "any.toml") == ""
+    assert title_of('title = "Islands"\n' + PICTURE, tmp_path) == "Islands"
+    assert title_of(PICTURE, tmp_path) == ""
     for elsewhere in (NOWHERE, tmp_path / "islands.png"):
         with pytest.raises(SqueezefilmError, match=r"islands\.png"):
             feel(TextureOnDisplay(STATOR, PICTURE, None, "screening", elsewhere))

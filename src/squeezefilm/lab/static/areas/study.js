@@ -83,8 +83,8 @@ class StudyView {
   }
 
   async create() {
-    const seed = Number(this.seed.value);
-    if (!Number.isInteger(seed) || seed < 0) throw new Error(`the seed '${this.seed.value}' is no whole number from 0 on`);
+    const typed = this.seed.value.trim(), seed = Number(typed);
+    if (!/^\d+$/.test(typed) || !Number.isSafeInteger(seed)) throw new Error(`the seed '${typed}' is no whole number from 0 on, of at most 15 digits; type one`);
     const turn = ++this.turn;
     const made = await this.lab.act("create study", { design: this.design.value, study: this.title.value, seed });
     this.listing = await this.lab.socket.ask("studies");
