@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from datetime import UTC, datetime
-from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
@@ -95,9 +94,10 @@ class DeviceArea:
         if not asked.armed:
             raise InputError("the device is not armed; arm it on the page first")
         how = asked.model_dump(include={"mode", "stroke", "sensor", "compensation", "seed"})
-        typed = (asked.display, asked.duration, asked.voltage, asked.stroke)
-        work = partial(require_playable, twin=asked.drive == "twin")
-        how["duration"], how["voltage"] = await self._lab.workers.quick.do(None, work, *typed)
+        typed = (asked.display, _drive(asked.drive), asked.duration, asked.voltage, asked.stroke)
+        how["duration"], how["voltage"] = await self._lab.workers.quick.do(
+            None, require_playable, *typed
+        )
         name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
         display = str(await _display(self._lab, asked.display))
         texture = str(await _texture(self._lab, asked))

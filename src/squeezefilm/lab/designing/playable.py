@@ -13,11 +13,11 @@ LONGEST: si.Second = 86_400.0
 
 
 def require_playable(
-    text: str, duration: str, voltage: str | None, stroke: str, *, twin: bool
+    text: str, drive: str, duration: str, voltage: str | None, stroke: str
 ) -> tuple[si.Second, si.Volt | None]:
     """The duration (s) and the most voltage (V; None: the display's own) that were typed.
 
-    `text` is a display's, `stroke` the motion of a twin's finger in words.
+    `text` is a display's, `drive` "twin" or a port, `stroke` what a twin's finger does, in words.
     Raises `InputError` for what is no such quantity, a voltage above the display's limits, or a
     finger that leaves the display; `ConfigError` for a text that is no display.
     """
@@ -29,7 +29,7 @@ def require_playable(
     display = display_of(text)
     p = predicted(display, "screening", WorkingPoint(text, voltage=voltage))
     if p.voltage is not None:
-        display.limits(p.frequency, p.voltage, twin=twin)
-    if twin:
+        display.limits(p.frequency, p.voltage, twin=drive == "twin")
+    if drive == "twin":
         require_on_display(display.actuator, FingerMotion.of(motion_from(stroke), 1e3))
     return lasts, most

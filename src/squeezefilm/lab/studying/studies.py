@@ -6,7 +6,6 @@ on one thread of its own, and the server's loop goes on meanwhile.
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +13,13 @@ from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.lab.files import existing, fresh, zipped
+from squeezefilm.lab.studying.conditions import conditions_of
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.results import to_json
 from squeezefilm.study.conduct.again import COUNTED, why_begun_again
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import (
     Exposure,
-    SessionConditions,
     begin_session,
     display_wanted,
     end_session,
@@ -172,7 +171,7 @@ class Studies:
                 "or lower the display's voltage"
             )
         # Checked now, so that a mistake is the experimenter's and not the participant's to see.
-        _conditions(conditions, consent, consented=False)
+        conditions_of(conditions, consent, consented=False)
         sitting = self.sittings.new(
             study=study,
             participant=participant,
@@ -227,7 +226,7 @@ class Studies:
                 self.store(sitting.study),
                 sitting.participant,
                 device,
-                _conditions(sitting.conditions, sitting.consent_text, consented=True),
+                conditions_of(sitting.conditions, sitting.consent_text, consented=True),
                 exposure,
                 acknowledged=sitting.acknowledged,
             )
@@ -364,17 +363,6 @@ def devices() -> list[str]:
     from serial.tools import list_ports
 
     return ["twin", *sorted(f"serial:{one.device}" for one in list_ports.comports())]
-
-
-def _conditions(given: dict[str, Any], consent_text: str, *, consented: bool) -> SessionConditions:
-    import hashlib
-
-    known = {one.name for one in dataclasses.fields(SessionConditions)}
-    odd = set(given) - (known - {"consent", "consent_form"})
-    if odd:
-        raise InputError(f"conditions have no field '{sorted(odd)[0][:60]}'")
-    form = "text sha256 " + hashlib.sha256(consent_text.encode()).hexdigest()[:16]
-    return SessionConditions(consent=consented, consent_form=form, **given)
 
 
 def _described(design: StudyDesign) -> dict[str, Any]:

@@ -283,14 +283,15 @@ function byHand(study, pseudonym) {
 
 function conditionsOf(inputs) {
   const found = {};
-  const scale = { temperature: (c) => c + 273.15, relative_humidity: (p) => p / 100, finger_orientation: (d) => (d * Math.PI) / 180 };
+  const units = { temperature: " degC", relative_humidity: " %", finger_orientation: " deg" };
   for (const [key, , type] of FIELDS) {
     const text = inputs[key].value.trim();
     if (!text) continue;
     if (type === "number") {
       const value = Number(text.replace(",", "."));
       if (!Number.isFinite(value)) throw new Error(`${key.replaceAll("_", " ")}: '${text}' is no number`);
-      found[key] = (scale[key] ?? ((same) => same))(value);
+      // The lab reads the unit, and refuses in it.
+      found[key] = key in units ? `${value}${units[key]}` : value;
     } else found[key] = text;
   }
   for (const key of ["hand", "finger"]) if (inputs[key].value) found[key] = inputs[key].value;
