@@ -45,7 +45,7 @@ export class Visit {
 
   /** Draw with the frames of the screen for as long as `draw` says that more is to come. What this
    * returns draws again; so does another size of one of the canvases, and another colour scheme. */
-  frames(draw, canvases) {
+  frames(draw, canvases = []) {
     let next = 0;
     const step = (now) => {
       next = 0;
