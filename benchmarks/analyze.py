@@ -1,6 +1,7 @@
 """The whole verb `analyze` with its report: what an engineer waits for, and what takes the time.
 
-Wall-clock times, imports included, what was compiled loaded from the cache, the least of some runs.
+Wall-clock times and, in brackets, processor times (user and system, all processes of the verb),
+imports included, what was compiled loaded from the cache, the least of some runs.
 "first" solves the plate and the films under the finger, "again" finds what the run before it kept
 on disk, "changed" is again with a force that no run had, whose draws are drawn anew. Peers: the
 same run again on one processor, where there is no second process, and `predict` alone in the same
@@ -44,7 +45,7 @@ def tell(text):
 from pathlib import Path
 from squeezefilm.cli.describe import _prepare, _prepare_figures
 from squeezefilm.second_process import second_process
-with second_process(_prepare, _prepare_figures):
+with second_process(_prepare, _prepare_figures, at_once=False):
     from squeezefilm.analysis.analyze import analyze
     from squeezefilm.display import load_display
     from squeezefilm.report.display.page import write_analysis
@@ -59,9 +60,11 @@ print(json.dumps(took))
 
 
 class Run(NamedTuple):
-    """What one run took: on the clock (s), and its steps by name, processor time (s)."""
+    """What one run took: on the clock (s), of processors (s), and its steps by name, processor
+    time (s) of the first process."""
 
     wall: float
+    processor: float
     steps: dict[str, float]
 
 
@@ -70,14 +73,17 @@ def run(display: str, folder: Path, kept: str, processors: str, force: float = 1
     kept, or "off"."""
     command = [sys.executable, "-c", STEPS, display, str(folder / "report"), processors, str(force)]
     environment = os.environ | {"SQUEEZEFILM_CACHE": kept}
-    began = time.perf_counter()
+    began, before = time.perf_counter(), os.times()
     done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
-    return Run(time.perf_counter() - began, json.loads(done.stdout))
+    wall, after = time.perf_counter() - began, os.times()
+    processor = sum(after[2:4]) - sum(before[2:4])
+    return Run(wall, processor, json.loads(done.stdout))
 
 
 def main() -> None:
     """Print for each display how long its analysis takes, over its peers, and what limits it."""
-    head = f"{'first':>8}{'again':>9}{'changed':>9}{'one processor':>15}{'over predict':>14}"
+    head = "".join(f"{name:>18}" for name in ("first", "again", "changed", "one processor"))
+    head += f"{'over predict':>14}"
     print(f"{'display':<16}{head}   what takes it")
     for display in sys.argv[1:] or DISPLAYS:
         with tempfile.TemporaryDirectory() as name:
@@ -100,8 +106,9 @@ def main() -> None:
         predicted = sum(alone.steps[step] for step in PREDICT if step in alone.steps)
         ranked = sorted(alone.steps.items(), key=lambda item: -item[1])[:5]
         most = ", ".join(f"{name} {100 * took / whole:.0f} %" for name, took in ranked)
-        times = (
-            f"{first.wall:>6.1f} s{both.wall:>7.1f} s{changed.wall:>7.1f} s{alone.wall:>13.1f} s"
+        times = "".join(
+            f"{each.wall:>8.1f} s ({each.processor:.1f} s)"
+            for each in (first, both, changed, alone)
         )
         print(f"{display:<16}{times}{whole / predicted:>14.1f}   {most}", flush=True)
 

@@ -512,6 +512,7 @@ if TYPE_CHECKING:
         columns: Mapping[str, str] | None = ...,
         mixed: bool = ...,
         resamples: int = ...,
+        reruns: int = ...,
         seed: int = ...,
         progress: Tell | None = ...,
     ) -> dict[str, StudyAnalysis]:

@@ -7,7 +7,9 @@ and meets the error if there is one. So nothing depends on it, and what comes of
 same with it and without.
 
 A verb has one for its time, `second_process`; what it calls asks for work by `later` and for what
-comes of it by `values`. Without one all of it is done here, when its value is asked for.
+comes of it by `values`. Without one all of it is done here, when its value is asked for. Its start
+takes seconds of a processor, so that a verb that may find all it needs on disk leaves it to whoever
+finds something lacking, `start_second_process`.
 """
 
 from __future__ import annotations
@@ -61,10 +63,11 @@ class Piece:
 
 
 class SecondProcess:
-    """A process that takes pieces of work. The first of `prepare` loads what they need, before any
-    is sent; the others follow whenever there is nothing to do."""
+    """A process that takes pieces of work, once it is started. The first of `prepare` loads what
+    they need, before any is sent; the others follow whenever there is nothing to do."""
 
     def __init__(self, *prepare: Callable[[], object]) -> None:
+        self._prepare, self._is_started = prepare, False
         self._line: Connection | None = None
         self._kept: list[Any] = []
         self._waiting: deque[Piece] = deque()
@@ -72,11 +75,17 @@ class SecondProcess:
         self._warned: list[warnings.WarningMessage] = []
         self._change = threading.Condition()
         self._is_lost, self._is_ready = True, False
+
+    def start(self) -> None:
+        """Start it, if it was not started before; what is asked for until then may wait for it."""
+        if self._is_started:
+            return
+        self._is_started = True
         spawn = multiprocessing.get_context("spawn")
         # Where the system has no room for a process, this one does everything.
         with contextlib.suppress(OSError):
             ours, theirs = spawn.Pipe()
-            self._process = spawn.Process(target=_work, args=(theirs, prepare), daemon=True)
+            self._process = spawn.Process(target=_work, args=(theirs, self._prepare), daemon=True)
             with theirs, _deaf_to_interrupts():
                 self._process.start()
             self._line, self._is_lost = ours, False
@@ -193,13 +202,18 @@ _PRESENT: ContextVar[SecondProcess | None] = ContextVar("second process", defaul
 
 
 @contextmanager
-def second_process(*prepare: Callable[[], object]) -> Iterator[SecondProcess | None]:
+def second_process(
+    *prepare: Callable[[], object], at_once: bool = True
+) -> Iterator[SecondProcess | None]:
     """A `SecondProcess` for the block; None unless there is a second processor for it, and in a
-    process that must not have children, as the lab's workers are."""
+    process that must not have children, as the lab's workers are. It is started `at_once`, or when
+    somebody calls `start_second_process`."""
     if _processors() < 2 or multiprocessing.current_process().daemon:
         yield None
         return
     process = SecondProcess(*prepare)
+    if at_once:
+        process.start()
     before = _PRESENT.set(process)
     try:
         # Threads of either would wait for the other's.
@@ -210,8 +224,15 @@ def second_process(*prepare: Callable[[], object]) -> Iterator[SecondProcess | N
         process.end()
 
 
+def start_second_process() -> None:
+    """Start the block's process, where it has one that waits for that: there is work for it."""
+    process = _PRESENT.get()
+    if process is not None:
+        process.start()
+
+
 def is_present() -> bool:
-    """Whether there is one now."""
+    """Whether there is one now, started or not."""
     return _PRESENT.get() is not None
 
 

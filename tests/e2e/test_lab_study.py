@@ -31,6 +31,7 @@ pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
 HOSTILE = '<img src=x onerror="document.title=1">'
 DONE = 15_000
+IN_PLACE = "The surface is in place"
 
 
 AT_ONCE = """() => {
@@ -159,6 +160,9 @@ def step(page: Page, way: str = "keys", answer: int = 0) -> str:
         arg=text,
         timeout=DONE,
     )
+    if page.get_by_role("button", name=IN_PLACE).count():
+        # The experimenter's hand is no step of the participant's.
+        step(page, way)
     return kind
 
 
@@ -264,7 +268,7 @@ def test_a_whole_sitting_by_keys_with_practice_and_rest(
     for one in seen:
         assert set(one) == {
             "id", "type", "state", "token", "phase", "question", "alternatives", "numeric",
-            "surfaces", "plays", "named", "pause_s", "remaining", "interrupted",
+            "surfaces", "plays", "by_hand", "named", "pause_s", "remaining", "interrupted",
         }  # fmt: skip
         assert one["named"] == ""
         # The alternatives stand in the same order whatever is right.
@@ -276,6 +280,53 @@ def test_a_whole_sitting_by_keys_with_practice_and_rest(
     assert sum(one["correct"] is not None for one in told) == 2
     page.locator(".count", has_text="17 of 17").wait_for()
     page.get_by_text("10 answers.").wait_for()
+    assert complaints == []
+
+
+def test_by_hand_the_clock_starts_when_the_experimenter_says_so(
+    chromium: Browser, start_lab: Start, tmp_path: Path
+) -> None:
+    """Two surfaces a trial; each swap takes half a second, which no response time holds."""
+    swap = 500
+    path = tmp_path / "studies" / "jnd.sqlite"
+    path.parent.mkdir(parents=True)
+    StudyStore.create(path, dataclasses.replace(load_design("friction-jnd"), practice=0), 3).close()
+    page, complaints = opened(chromium, start_lab(tmp_path), "study")
+    chosen(page, "jnd")
+    person = station(page, prepared(page), chromium)
+    consented(person)
+    person.keyboard.press("Enter")
+    ready = page.get_by_role("button", name="Surface is in place")
+    presented = "SELECT count(*) FROM presentation"
+    for trial in range(2):
+        for number, which in enumerate(("first", "second")):
+            person.get_by_text(f"The experimenter puts the {which} surface in place").wait_for()
+            assert person.locator(".choice").count() == 0
+            ready.wait_for()
+            assert rows(path, presented)[0][0] == trial + number
+            if trial == number == 0:
+                keep(person, "lab-participant-by-hand")
+                keep(page, "lab-study-by-hand")
+                ready.focus()
+            # The focus comes back to the button at each surface: Enter is all that it takes.
+            page.wait_for_function("document.activeElement.textContent === 'Surface is in place'")
+            page.wait_for_timeout(swap)
+            page.keyboard.press("Enter")
+            person.locator("h2", has_text=f"Feel the {which} surface").wait_for()
+            assert rows(path, presented)[0][0] == trial + 1
+            person.wait_for_timeout(260)
+            person.keyboard.press("Enter")
+        person.locator(".choice").first.wait_for()
+        person.wait_for_timeout(300)
+        person.keyboard.press("1")
+        page.locator(".count", has_text=f"{trial + 1} of").wait_for()
+    took = "SELECT r.response_time_s, r.started_utc, p.presented_utc FROM response r "
+    found = rows(path, took + "JOIN presentation p ON p.trial = r.trial")
+    assert len(found) == 2
+    # The trial began when its first surface was in place, and two swaps are in neither time.
+    assert all(began == shown for _, began, shown in found)
+    lasted = "SELECT ended_monotonic_s - started_monotonic_s, response_time_s FROM response"
+    assert all(whole == pytest.approx(time) for whole, time in rows(path, lasted))
     assert complaints == []
 
 

@@ -38,8 +38,9 @@ def test_a_texture_is_played_on_a_twin_and_judged(tmp_path: Path) -> None:
         # A machine that holds a process up for 50 ms is stopped by the device, as it must be.
         if "watchdog" not in summary["message"]:
             break
-    # How well it was played depends on what else this machine does; that it was, does not.
-    assert done.returncode == 0, done.stderr
+    # How well it was played depends on what else this machine does; that it is told, does not.
+    assert done.returncode == (0 if summary["usable"] else 1), done.stderr
+    assert summary["usability"]["usable"] is summary["usable"]
     assert summary["ended_because"] == "the time was over", summary["message"]
     assert summary["end"]["device_at_zero"]
     assert summary["loop"]["lateness"]["made"] > 1000

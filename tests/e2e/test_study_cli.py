@@ -65,8 +65,9 @@ def test_a_plan_says_what_it_takes(tmp_path: Path) -> None:
 def test_a_study_is_run_interrupted_resumed_exported_merged_and_forgotten(tmp_path: Path) -> None:
     (tmp_path / "tiny.toml").write_text(DESIGN, encoding="utf-8")
     start = ("run", "tiny.toml", "--store", "a.sqlite", "--consent", "--drive", "none")
-    # Two gratings to feel, one practice trial, one answer (after a slip), then the input ends.
-    first = run(*start, cwd=tmp_path, keys="\n\n1\n9\n2\n")
+    # Two gratings to feel, one practice trial, one answer (after a slip), each once its surface is
+    # in place; then a surface is in place, and the input ends.
+    first = run(*start, cwd=tmp_path, keys="\n\n\n1\n\n9\n2\n\n")
     assert first.returncode == 130
     assert "Traceback" not in first.stderr
     who = first.stdout.split("participant ")[1].split(":")[0]
@@ -75,7 +76,7 @@ def test_a_study_is_run_interrupted_resumed_exported_merged_and_forgotten(tmp_pa
     assert "Right." in first.stdout or "It was '" in first.stdout
     status = json.loads(run("status", "a.sqlite", "--json", cwd=tmp_path).stdout)
     assert [(one["answered"], one["planned"]) for one in status["participants"]] == [(4, 7)]
-    again = run(*start, "--participant", who, cwd=tmp_path, keys="2 mm\n1\n2\n")
+    again = run(*start, "--participant", who, cwd=tmp_path, keys="\n2 mm\n\n1\n\n2\n")
     assert again.returncode == 0, again.stderr
     assert "3 trials on biet2008-plate recorded" in again.stdout
     assert "every trial" in run(*start, "--participant", who, cwd=tmp_path).stdout
@@ -92,7 +93,7 @@ def test_a_study_is_run_interrupted_resumed_exported_merged_and_forgotten(tmp_pa
         assert run("export", "a.sqlite", "--format", format, cwd=tmp_path).returncode == 0
 
     other = ("run", "tiny.toml", "--store", "b.sqlite", "--consent")
-    assert run(*other, "--station", "1", "--stations", "2", cwd=tmp_path, keys="\n\n1\n").stdout
+    assert run(*other, "--station", "1", "--stations", "2", cwd=tmp_path, keys="\n\n\n1\n").stdout
     merged = run("merge", "a.sqlite", "b.sqlite", cwd=tmp_path)
     assert "1 participants and 3 answers added" in merged.stdout
     assert run("backup", "a.sqlite", cwd=tmp_path).returncode == 0

@@ -160,6 +160,28 @@ def test_a_host_that_is_held_up_ends_with_the_devices_watchdog(
 
 
 @pytest.mark.slow
+def test_a_session_that_stood_still_is_not_usable_and_its_record_says_so(
+    display: Display, point: WorkingPoint, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    setup = prepared(display)
+    outcome, session = played(setup, point, tmp_path / "fine", duration=0.8)
+    assert outcome.usable
+    assert session.summary()["usability"]["usable"] is True
+    take = bench.SimulatedLoop.take_rows
+
+    def with_a_hole(self: bench.SimulatedLoop) -> np.ndarray:
+        made = take(self)
+        return made[(made[:, 1] < 0.3) | (made[:, 1] > 0.5)]
+
+    monkeypatch.setattr(bench.SimulatedLoop, "take_rows", with_a_hole)
+    outcome, session = played(setup, point, tmp_path / "held-up", duration=0.8)
+    assert outcome.ending is Ending.DURATION
+    assert not outcome.failed
+    assert not outcome.usable
+    assert "nothing was played for 200 ms" in outcome.said
+    assert session.summary()["usability"]["sentence"] in outcome.said
+
+
 def test_a_session_without_a_pickup_is_judged_by_the_envelopes_model(
     display: Display, point: WorkingPoint, tmp_path: Path
 ) -> None:

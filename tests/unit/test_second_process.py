@@ -25,6 +25,7 @@ from squeezefilm.second_process import (
     is_present,
     later,
     second_process,
+    start_second_process,
     values,
 )
 
@@ -37,7 +38,8 @@ def nothing() -> None:
 
 
 def ready(process: SecondProcess) -> SecondProcess:
-    """The process, once it has loaded what it needs."""
+    """The process, started, once it has loaded what it needs."""
+    process.start()
     with process._change:
         assert process._is_lost or process._change.wait_for(lambda: process._is_ready, 30)
     return process
@@ -123,6 +125,7 @@ def test_its_warnings_are_heard_here(process: SecondProcess) -> None:
 def test_an_interrupt_is_for_the_process_that_waits() -> None:
     before = signal.getsignal(signal.SIGINT)
     process = SecondProcess(time.time)
+    process.start()
     assert process._process.pid is not None
     os.kill(process._process.pid, signal.SIGINT)
     assert done(process, Piece(ROOT, (4.0,))) == [2.0]
@@ -191,6 +194,20 @@ def test_it_is_there_for_the_block_only() -> None:
     assert not process._process.is_alive()
 
 
+def test_one_that_is_not_needed_is_never_started() -> None:
+    with second_process(time.time, at_once=False) as process:
+        if process is None:
+            pytest.skip("there is one processor")
+        early = later(ADD, 1, 2)
+        assert values(early) == [3]
+        assert not hasattr(process, "_process")
+        waiting = later(ADD, 3, 4)
+        start_second_process()
+        start_second_process()
+        assert values(waiting, *(later(ADD, k, k) for k in range(6))) == [7, 0, 2, 4, 6, 8, 10]
+    assert not process._process.is_alive()
+
+
 def test_without_one_work_is_done_when_it_is_asked_for() -> None:
     told: list[int] = []
     piece = later(told.append, 1)
@@ -208,6 +225,7 @@ def test_it_does_not_outlive_the_one_that_asks() -> None:
     from squeezefilm.second_process import SecondProcess
     if __name__ == "__main__":
         process = SecondProcess(time.time)
+        process.start()
         print(process._process.pid, flush=True)
         os.kill(os.getpid(), signal.SIGKILL)
     """

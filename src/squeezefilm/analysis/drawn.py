@@ -6,6 +6,7 @@ Whoever analyses a display again, with another texture or report, asks for the s
 from __future__ import annotations
 
 import functools
+import io
 import pickle
 from collections.abc import Callable
 from hashlib import blake2b
@@ -18,7 +19,7 @@ from squeezefilm.analysis.draws import Mixture, Outcome, Refusals, Tally, as_dra
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.kept.store import Kept
 from squeezefilm.progress import SayProgress
-from squeezefilm.second_process import is_present, later, values
+from squeezefilm.second_process import is_present, later, start_second_process, values
 
 _Found = TypeVar("_Found")
 
@@ -48,6 +49,7 @@ class KeptDraws(Generic[_Found]):
         asked = _asked(mixture, points, more)
         kept = self._kept.get(asked)
         if kept is None:
+            start_second_process()
             kept = make()
             self._kept.put(asked, kept)
         return kept
@@ -96,7 +98,12 @@ def _asked(mixture: Mixture, points: si.DimensionlessArray, more: object = None)
     place = None if law.place is None else (law.place.x, law.place.y, law.place.at_centre)
     words = (mixture.model, p.surface.name, law.slip)
     told = (mixture.display, mixture.inputs, numbers, place, words, *law.ridge_swings, points, more)
-    return blake2b(pickle.dumps(told, protocol=5)).hexdigest()
+    stream = io.BytesIO()
+    pickler = pickle.Pickler(stream, protocol=5)
+    # By values alone: which of them are one object differs in a process that they were sent to.
+    pickler.fast = True
+    pickler.dump(told)
+    return blake2b(stream.getvalue()).hexdigest()
 
 
 def _drawn_now(

@@ -3,6 +3,7 @@ matters."""
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.drawn import evaluate
+from squeezefilm.analysis.drawn import KeptDraws, evaluate
 from squeezefilm.analysis.draws import (
     Mixture,
     Outcome,
@@ -321,6 +322,9 @@ def _sobol(dimensions: int, count: int, seed: int) -> si.DimensionlessArray:
     return points
 
 
+_BANDS: KeptDraws[FrictionBand] = KeptDraws("draws-band", FrictionBand)
+
+
 @as_drawn()
 def friction_band(
     display: Display,
@@ -339,6 +343,17 @@ def friction_band(
     """
     mixture = Mixture(display, prediction, driven=False)
     points = sobol_points(mixture, samples, seed)
+    make = functools.partial(_band, mixture, points, amplitude, progress)
+    return _BANDS.found(mixture, points, amplitude, make)
+
+
+def _band(
+    mixture: Mixture,
+    points: si.DimensionlessArray,
+    amplitude: si.MetreArray,
+    progress: Callable[[str, float], None] | None,
+) -> FrictionBand:
+    samples = len(points)
     rows = np.full((samples, amplitude.size), np.nan)
     for number, draw in enumerate(mixture.draws(points)):
         if progress is not None:

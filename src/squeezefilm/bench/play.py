@@ -59,7 +59,8 @@ class PlayResult(Result):
     session: PlayedSession
     folder: Path | None
     _shown: ClassVar[str] = (
-        "session.setup.display.name session.setup.name outcome.ending.value outcome.message folder"
+        "session.setup.display.name session.setup.name outcome.ending.value outcome.usable "
+        "outcome.said folder"
     )
 
     def summary(self) -> dict[str, Any]:
@@ -67,7 +68,8 @@ class PlayResult(Result):
         outcome = self.outcome
         return {
             "ended_because": outcome.ending.value,
-            "message": outcome.message,
+            "message": outcome.said,
+            "usable": outcome.usable,
             **self.session.summary(),
         }
 

@@ -124,6 +124,7 @@ class PlayedSession(Result):
             "end": to_json(dict(self.last("end"))),
             "loop": to_json(dict(self.last("loop"))),
             "link": to_json(dict(self.last("link"))),
+            "usability": to_json(dict(self.last("usability"))),
             "lag": to_json(self.lag),
             "position_error_m": self.position_error,
             "flags": dict(self.flags),

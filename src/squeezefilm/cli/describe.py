@@ -167,8 +167,7 @@ def analyze(asked: AnalyzeOptions) -> None:
             quiet=asked.as_json,
         )
     prepare = (_prepare, _prepare_figures) if asked.out is not None else (_prepare,)
-    with second_process(*prepare), working(asked.as_json) as step:
-        # Both processes load the rest at the same time.
+    with second_process(*prepare, at_once=False), working(asked.as_json) as step:
         with loading():
             from squeezefilm.analysis.analyze import analyze as run
             from squeezefilm.report.display.terminal import SHOWN, SHOWN_WITH_ALL, show_analysis
@@ -185,9 +184,6 @@ def analyze(asked: AnalyzeOptions) -> None:
         if asked.out is not None:
             with loading():
                 from squeezefilm.report.display.page import write_analysis
-
-                _prepare()
-                _prepare_figures()
             written = write_analysis(result, asked.out, progress=step)
     show = partial(show_analysis, whole=asked.whole, sensitivities=with_shifts)
     answer(asked.as_json, result, show, report=written)

@@ -107,7 +107,14 @@ def analyze(
             help="Mixed models of statsmodels too, of match-to-sample (needs the extra 'models').",
         ),
     ] = False,
-    seed: Annotated[int, typer.Option(help="Of the bootstraps.")] = 0,
+    reruns: Annotated[
+        int,
+        typer.Option(
+            help="Thresholds of adaptive series in two intervals also by so many simulated runs of "
+            "them, like 199: seconds a person; 0 for none."
+        ),
+    ] = 0,
+    seed: Annotated[int, typer.Option(help="Of bootstraps and simulated runs.")] = 0,
     as_json: AsJson = False,
 ) -> None:
     """Analyse what was recorded: thresholds, sensitivity, exponents or confusions, with
@@ -129,6 +136,7 @@ def analyze(
             design=None if design is None else load_design(design),
             columns=columns_of(columns),
             mixed=mixed,
+            reruns=reruns,
             seed=seed,
             progress=step,
         )

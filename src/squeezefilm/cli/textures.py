@@ -171,7 +171,8 @@ class PlayOptions:
 def play(asked: PlayOptions) -> None:
     """Play a texture under a moving finger: in real time, on a device or its twin.
 
-    Ctrl-C stops safely. Exit code 1 where the device faulted, the link broke or the loop died.
+    Ctrl-C stops safely. Exit code 1 where the device faulted, the link broke, the loop died, or
+    what was played cannot be used: too few ticks, too long a gap, too many late commands.
     """
     from squeezefilm.bench.play import play_texture
     from squeezefilm.report.played.terminal import live_view, show_play
@@ -200,9 +201,9 @@ def play(asked: PlayOptions) -> None:
     answer(asked.as_json, result, show_play, page=page)
     if page is None and not asked.as_json:
         typer.echo("add --out DIR to keep the record")
-    if result.outcome.failed:
+    if not result.outcome.usable:
         if asked.as_json:
-            typer.echo(f"{result.outcome.ending.value}: {result.outcome.message}", err=True)
+            typer.echo(f"{result.outcome.ending.value}: {result.outcome.said}", err=True)
         raise typer.Exit(1)
 
 

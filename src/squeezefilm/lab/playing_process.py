@@ -105,9 +105,9 @@ def play(connection: Connection, display: str, texture: str, out: str, **how: An
         tell(
             {
                 "type": "device ended",
-                "failed": outcome.failed,
+                "failed": not outcome.usable,
                 "ending": outcome.ending.name,
-                "message": outcome.message or outcome.ending.value,
+                "message": outcome.said or outcome.ending.value,
                 "summary": result.summary(),
                 "folder": out,
             }

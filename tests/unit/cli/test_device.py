@@ -26,7 +26,7 @@ def played(failed: bool) -> SimpleNamespace:
     """What a session leaves, as far as the verb looks at it."""
     ending = SimpleNamespace(value="faulted")
     return SimpleNamespace(
-        outcome=SimpleNamespace(failed=failed, ending=ending, message="the finger left"),
+        outcome=SimpleNamespace(usable=not failed, ending=ending, said="the finger left"),
         summary=lambda: {"ending": "faulted"},
     )
 

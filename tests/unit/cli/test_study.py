@@ -276,15 +276,19 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     written = stands_in("report.study.page:write_overview", tmp_path / "index.html")
     done = run("analyze", store)
     assert asked.given == (store,)
-    assert asked.named == {"design": None, "columns": {}, "mixed": False, "seed": 0}
+    assert asked.named == {
+        "design": None, "columns": {}, "mixed": False, "reruns": 0, "seed": 0,
+    }  # fmt: skip
     assert shown.given == (found,)
     assert "  a step …" in done.stderr
     assert done.stdout == ""
     assert written.calls == []
 
     out = tmp_path / "pages"
-    done = run("analyze", store, "--out", out, "--mixed", "--seed", "6")
-    assert asked.calls[-1][1] == {"design": None, "columns": {}, "mixed": True, "seed": 6}
+    done = run("analyze", store, "--out", out, "--mixed", "--reruns", "99", "--seed", "6")
+    assert asked.calls[-1][1] == {
+        "design": None, "columns": {}, "mixed": True, "reruns": 99, "seed": 6,
+    }  # fmt: skip
     assert [given[:2] for given, _ in written.calls] == [(found, out)]
     assert done.stdout == f"page: {tmp_path / 'index.html'}\n"
     done = run("analyze", store, "--json")

@@ -70,7 +70,7 @@ def test_a_session_is_played_as_it_was_asked_for_and_written(
     asked: list[Any] = []
     order: list[Any] = []
     outcome = SimpleNamespace(
-        failed=False, message="", ending=SimpleNamespace(name="DURATION", value="time was over")
+        usable=True, said="", ending=SimpleNamespace(name="DURATION", value="time was over")
     )
     result = SimpleNamespace(outcome=outcome, summary=lambda: {"rows": 3})
 
@@ -97,7 +97,7 @@ def test_a_session_is_played_as_it_was_asked_for_and_written(
         "summary": {"rows": 3}, "folder": "folder",
     }  # fmt: skip
     assert pipe.said == [ended]
-    outcome.message, outcome.failed = "it broke", True
+    outcome.said, outcome.usable = "it broke", False
     assert played(how).said == [{**ended, "failed": True, "message": "it broke"}]
 
 

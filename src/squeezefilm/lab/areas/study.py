@@ -179,6 +179,7 @@ class StudyArea:
         add("prepare sitting", PrepareSitting, self._prepare)
         add("station link", OfSitting, self._station)
         add("pairing code", OfSitting, self._code)
+        add("surface in place", OfSitting, self._in_place)
         add("end sitting", OfSitting, self._end)
         add("delete participant", DeleteParticipant, self._delete)
         add("rehearse study", RehearseStudy, self._rehearse)
@@ -189,6 +190,7 @@ class StudyArea:
         add("consent", OfSitting, self._consent)
         add("next", OfSitting, self._present)
         add("feel", FeelSurface, self._feel)
+        add("surface in place", OfSitting, self._in_place)
         add("felt", SurfacesFelt, self._felt)
         add("stop surface", OfSitting, self._stop)
         add("respond", Respond, self._respond)
@@ -341,8 +343,10 @@ class StudyArea:
 
     async def _feel(self, asked: FeelSurface) -> Answer:
         sitting = await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
-        if sitting.device == "none":
-            raise InputError("this sitting has no device")
+        how = await self.thread.do(Studies.asked_to_feel, sitting.id, asked.token, asked.place)
+        if how != "on a device":
+            self._changed(sitting.study)
+            return {"type": "waiting" if how == "by hand" else "shown", "place": asked.place}
         surface = await self.thread.do(Studies.surface, sitting.id, asked.token, asked.place)
         display = await self.thread.do(Studies.display_of_sitting, sitting.id)
         traces = await self.thread.do(Studies.traces, sitting.study)
@@ -351,6 +355,14 @@ class StudyArea:
             sitting.id, sitting.device, display, traces, surface, asked.token, asked.place
         )
         return {"type": "playing", "place": asked.place}
+
+    async def _in_place(self, asked: OfSitting) -> Answer:
+        study, place = await self.thread.do(Studies.in_place, asked.sitting)
+        self._changed(study)
+        # The participant's page begins its clock.
+        said = {"type": "surface in place", "sitting": asked.sitting, "place": place}
+        self._lab.tell(said, participants=True)
+        return {"type": "in place", "place": place}
 
     async def _felt(self, asked: SurfacesFelt) -> Answer:
         await self._devices.felt(asked.sitting, asked.token)

@@ -16,6 +16,8 @@ let keys = null;
 let resting = null;
 // Whether a device plays a surface, and which presentation what comes back belongs to.
 let playing = false, turn = 0;
+// What goes on when the surface that is put there by hand is in place.
+let inPlace = null;
 
 socket.on("connection", ({ open, refused }) => {
   const away = refused ? "This page's session is over. Nothing you answered is lost; please tell the experimenter." : "The connection is lost. Nothing you answered is lost; please wait.";
@@ -29,6 +31,7 @@ socket.on("silence", ({ seconds }) => {
   connection.classList.toggle("lost", seconds > 0);
 });
 socket.on("sitting ended", (message) => message.sitting === sitting && goOn());
+socket.on("surface in place", (message) => message.sitting === sitting && inPlace?.());
 // A key held down repeats, and must not answer the trials that follow.
 document.addEventListener("keydown", (event) => {
   if ((event.key === " " || event.key === "Escape") && playing) {
@@ -166,33 +169,63 @@ function trial(found) {
       pauseThen(found));
     return;
   }
-  if (found.plays) feel(found, 0);
-  else questions(found);
+  feel(found, 0);
 }
 
-/** A device plays a surface; the answer's time runs from when it plays, or from the last one's end. */
+/** A surface is played by a device, put there by hand, or lies there; the answer's time runs from then,
+ * or from the end of the last one. */
 async function feel(found, number) {
   const mine = (turn += 1);
   const which = found.surfaces === 1 ? "surface" : ["first surface", "second surface"][number];
-  playing = true;
-  page(element("h2", { text: "One moment" }), element("p", { role: "status", text: `The ${which} is being prepared.` }), stopper());
+  const there = new Promise((resolve) => { inPlace = resolve; });
+  playing = found.plays;
+  if (found.plays) page(element("h2", { text: "One moment" }), element("p", { role: "status", text: `The ${which} is being prepared.` }), stopper());
+  else freeze();
   try {
-    await socket.ask("feel", { sitting, token: found.token, place: number });
+    const answer = await socket.ask("feel", { sitting, token: found.token, place: number });
     if (mine !== turn) return;
+    if (answer.type === "waiting") {
+      putInPlace(which);
+      await there;
+      inPlace = null;
+      if (mine !== turn) return;
+    }
     if (found.surfaces === 1) {
       questions(found);
-      place.querySelector("section").append(stopper());
+      if (found.plays) place.querySelector("section").append(stopper());
       return;
     }
-    page(element("h2", { text: `Feel the ${which}` }), waiting("Done", 0, () => feltOne(found, number)), stopper());
+    page(element("h2", { text: `Feel the ${which}` }), waiting("Done", 0, () => feltOne(found, number)), found.plays ? stopper() : "");
   } catch (error) {
     if (mine === turn) refused(error);
   }
 }
 
+/** Fingers off until somebody says, here or on the experimenter's page, that the surface is in place. */
+function putInPlace(which) {
+  const mine = turn;
+  const said = async () => {
+    freeze();
+    try {
+      await socket.ask("surface in place", { sitting });
+    } catch (error) {
+      // Said on the other page at the same moment: then we have gone on already.
+      if (inPlace && mine === turn) refused(error);
+    }
+  };
+  page(element("h2", { text: "Fingers off, please" }),
+    element("p", { role: "status", text: `The experimenter puts the ${which} in place, and says so here or on their own page.` }),
+    waiting("The surface is in place", 0, said));
+}
+
 async function feltOne(found, number) {
   if (number + 1 < found.surfaces) {
     feel(found, number + 1);
+    return;
+  }
+  if (!found.plays) {
+    turn += 1;
+    questions(found);
     return;
   }
   const mine = turn;
@@ -236,7 +269,6 @@ function questions(found) {
   }
   const parts = [title];
   if (head) parts.push(element("p", { text: found.question }));
-  if (found.surfaces === 2 && !found.plays) parts.push(element("p", { text: "Feel the first surface, then the second." }));
   if (found.interrupted) parts.push(element("p", { class: "muted", text: "This one was interrupted; it is presented again." }));
   if (found.numeric) parts.push(estimate(answer));
   else parts.push(choices(found, answer));

@@ -7,16 +7,18 @@ on one thread of its own, and the server's loop goes on meanwhile.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.lab.files import existing, fresh, zipped
+from squeezefilm.lab.studying.by_hand import ByHand
 from squeezefilm.lab.studying.conditions import conditions_of
+from squeezefilm.lab.studying.told import confusion_counts, described, shown_sitting
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.results import to_json
-from squeezefilm.study.conduct.again import COUNTED, why_begun_again
+from squeezefilm.study.conduct.again import why_begun_again
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import (
     Exposure,
@@ -25,7 +27,7 @@ from squeezefilm.study.conduct.sessions import (
     end_session,
 )
 from squeezefilm.study.conduct.study_device import StudyDevice
-from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.design.trials import expected_duration, trial_count
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import export_study
@@ -35,6 +37,8 @@ from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import origin_of
 
 SUFFIX = ".sqlite"
+Felt = Literal["on a device", "by hand", "lies there"]
+"""How a surface comes under the finger."""
 CONSENT = (
     "You will stroke surfaces with a finger and answer a question about each. It takes about "
     "{minutes} minutes, with breaks. You may stop at any time, without giving a reason, and ask "
@@ -50,7 +54,7 @@ class Studies:
         self.sittings = Sittings(self.folder / FILE)
         self._open: dict[str, StudyStore] = {}
         self._runs: dict[str, StudyRun] = {}
-        self._now: dict[str, tuple[str, ...]] = {}
+        self.by_hand = ByHand()
 
     def close(self) -> None:
         """Close every file."""
@@ -71,7 +75,7 @@ class Studies:
         """What a design is and how long it takes."""
         found = load_design(design)
         return {
-            **_described(found),
+            **described(found),
             "trials": trial_count(found),
             "duration_s": expected_duration(found),
             "consent": CONSENT.format(minutes=round(expected_duration(found) / 60)),
@@ -96,7 +100,7 @@ class Studies:
         return {
             "name": study,
             "seed": store.study["seed"],
-            **_described(design),
+            **described(design),
             "consent": CONSENT.format(minutes=round(expected_duration(design) / 60)),
             "participants": [
                 {
@@ -109,43 +113,16 @@ class Studies:
             ],
             "sittings": [
                 {
-                    **_shown(one),
+                    **shown_sitting(one),
                     "begun_again": why_begun_again(store, one.session) if one.session else "",
-                    "by_hand": self._by_hand(one),
+                    **self.by_hand.status(one.id),
                 }
                 for one in self.sittings.of_study(study)
             ],
-            "confusion": self.confusion(study),
+            "confusion": confusion_counts(store),
             "origin": origin_of(store),
             "devices": devices(),
         }
-
-    def _by_hand(self, sitting: Sitting) -> list[str]:
-        """What the experimenter has to put before the participant now, in order."""
-        return list(self._now.get(sitting.id, ())) if sitting.device == "none" else []
-
-    def confusion(self, name: str) -> list[dict[str, Any]]:
-        """Counts per display, rows answers and columns stimuli; main trials only."""
-        store = self.store(name)
-        design = store.design
-        if design.task != "match-to-sample":
-            return []
-        rows, columns = list(design.answers), [one.name for one in design.stimuli]
-        found = store.rows(
-            "SELECT t.display, t.stimuli, r.choice, count(*) AS n FROM response r "
-            "JOIN trial t ON t.uuid = r.trial WHERE t.phase = 'main' "
-            f"AND {COUNTED} "
-            "GROUP BY t.display, t.stimuli, r.choice"
-        )
-        tables = []
-        for display in design.displays:
-            counts = [[0] * len(columns) for _ in rows]
-            for one in found:
-                stimulus = one["stimuli"][2:-2]
-                if one["display"] == display and one["choice"] in rows and stimulus in columns:
-                    counts[rows.index(one["choice"])][columns.index(stimulus)] += one["n"]
-            tables.append({"display": display, "rows": rows, "columns": columns, "counts": counts})
-        return tables
 
     def enrol(self, name: str) -> dict[str, Any]:
         """One more participant."""
@@ -234,17 +211,20 @@ class Studies:
         return self.where(id)
 
     def present(self, id: str) -> dict[str, Any]:
-        """The next trial (`plays`: on a device) without what would give its answer away."""
+        """The next trial without what would give its answer away (`plays`: on a device; `by_hand`:
+        somebody puts its surfaces there). It counts as presented once it is `shown`."""
         sitting = self.sittings.get(id)
         if sitting.session is None or sitting.ended:
             return self.where(id)
         run = self.run(sitting)
-        found = run.next_trial()
+        found = run.next_trial(shown=False)
         if found is None:
             return self.where(id)
         trial = found.trial
+        virtual = isinstance(found.surfaces[0], Stimulus)
         felt_only = trial.phase == "familiarisation"
-        self._now[id] = tuple(one.name for one in found.surfaces)
+        if sitting.device == "none":
+            self.by_hand.comes_next(id, tuple(surface.name for surface in found.surfaces))
         return {
             "study": sitting.study,
             "state": "trial",
@@ -256,13 +236,46 @@ class Studies:
             "alternatives": list(trial.alternatives),
             "numeric": trial.asks and not trial.alternatives,
             "surfaces": len(found.surfaces),
-            "plays": sitting.device != "none" and isinstance(found.surfaces[0], Stimulus),
+            "plays": sitting.device != "none" and virtual,
+            "by_hand": sitting.device == "none" and virtual,
             # A real grating that lies there to be known has its name on it.
             "named": found.surfaces[0].name if felt_only else "",
             "pause_s": found.rest,
             "remaining": found.remaining,
             "interrupted": found.times_presented > 1,
         }
+
+    def asked_to_feel(self, id: str, token: str, place: int) -> Felt:
+        """Surface number `place` (from 0) of the trial that comes next is to be felt. It counts as
+        presented from now on, unless somebody has to put it there: then that is waited for.
+
+        Raises `InputError` for another trial.
+        """
+        sitting = self.sittings.get(id)
+        if sitting.ended:
+            raise InputError("this sitting has ended")
+        found = self.run(sitting).next_trial(shown=False)
+        if found is None or found.token != token:
+            raise InputError("this trial is not the one to be presented now; go on with the next")
+        virtual = isinstance(found.surfaces[0], Stimulus)
+        if virtual and sitting.device == "none":
+            self.by_hand.wait(id, token, place)
+            return "by hand"
+        if place == 0:
+            self.run(sitting).next_trial()
+        return "on a device" if virtual else "lies there"
+
+    def in_place(self, id: str) -> tuple[str, int]:
+        """The surface that was waited for is in place: from the first one on the trial counts as
+        presented. Returns the study and the surface's place. Raises `InputError` for none."""
+        sitting = self.sittings.get(id)
+        token, place = self.by_hand.in_place(id)
+        found = self.run(sitting).next_trial(shown=False)
+        if found is None or found.token != token:
+            raise InputError("the trial whose surface was waited for is over")
+        if place == 0:
+            self.run(sitting).next_trial()
+        return sitting.study, place
 
     def surface(self, id: str, token: str, place: int) -> tuple[Stimulus, int]:
         """Surface number `place` (from 0) of the trial that is presented, and the trial's seed."""
@@ -295,9 +308,14 @@ class Studies:
         sitting = self.sittings.get(id)
         if sitting.session is None:
             raise InputError("this sitting was not consented to yet")
-        told = self.run(sitting).respond(token, response)
-        self._now.pop(id, None)
         store = self.store(sitting.study)
+        query = "SELECT max(presented_utc) AS begun FROM presentation WHERE trial = ?"
+        [known] = store.rows(query, [token])
+        if known["begun"] is not None:
+            # When it began to play or was put in place; the page's own clock may be anything.
+            response = dataclasses.replace(response, started_utc=known["begun"])
+        told = self.run(sitting).respond(token, response)
+        self.by_hand.over(id)
         [row] = store.rows("SELECT phase FROM trial WHERE uuid = ?", [token])
         feedback = row["phase"] == "practice"
         return {
@@ -320,7 +338,7 @@ class Studies:
             problems = found.problems
         self.sittings.change(id, ended=True)
         self._runs.pop(id, None)
-        self._now.pop(id, None)
+        self.by_hand.over(id)
         return {"problems": list(problems), **self.status(sitting.study)}
 
     def delete(self, name: str, participant: str) -> dict[str, Any]:
@@ -363,25 +381,3 @@ def devices() -> list[str]:
     from serial.tools import list_ports
 
     return ["twin", *sorted(f"serial:{one.device}" for one in list_ports.comports())]
-
-
-def _described(design: StudyDesign) -> dict[str, Any]:
-    return {
-        "title": design.title,
-        "task": design.task,
-        "displays": list(design.displays),
-        "stimuli": [one.name for one in design.stimuli],
-        "answers": list(design.answers),
-        "question": design.spoken_question,
-        "note": design.note,
-        "design": design.name,
-    }
-
-
-def _shown(one: Sitting) -> dict[str, Any]:
-    return {
-        "id": one.id,
-        "participant": one.participant,
-        "device": one.device,
-        "begun": one.session is not None,
-    }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 from collections.abc import Callable, Iterator, Mapping
 from html import escape
 from pathlib import Path
@@ -11,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.kept.store import Kept
 from squeezefilm.report.display.figures import (
     DECISION,
     FIGURES,
     MODELS,
     TEXTURES,
-    drawing,
     drawing_of,
 )
 from squeezefilm.report.display.rows import (
@@ -53,7 +54,7 @@ from squeezefilm.report.kit.page_style import (
 )
 from squeezefilm.report.kit.point_rows import electronics_rows
 from squeezefilm.results import to_json
-from squeezefilm.second_process import later, values
+from squeezefilm.second_process import later, start_second_process, values
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -78,6 +79,7 @@ _BESIDE = (
 )
 # Of what could be measured: as many rows as one decides from.
 _NEXT = 5
+_DRAWN: Kept[dict[str, str]] = Kept("figures", dict[str, str], large=True)
 
 
 def write_analysis(
@@ -87,25 +89,36 @@ def write_analysis(
 ) -> Path:
     """Write result.json and report.html into `folder`; the path of the page.
 
-    A second process takes its share of the figures and of what they show. Raises `InputError`
-    where the folder cannot be written to.
+    A second process takes its share of the figures and of what they show; figures are kept on
+    disk. Raises `InputError` where the folder cannot be written to.
     """
     folder, tell = require_folder(folder), progress or (lambda _: None)
-    begun = analysis.begin(_BESIDE)
-    figures = {item: later(drawing, analysis, item.key) for item in FIGURES if not item.needs}
-    analysis.compute(begun, tell)
-    for item in FIGURES:
-        if item.needs:
-            shows = {name: getattr(analysis, name) for name in item.needs}
-            figures[item] = later(drawing_of, analysis, item.key, shows)
-    tell("figures")
+    analysis.compute(analysis.begin(_BESIDE), tell)
     summary = analysis.summary()
-    data = json_text(result_data(analysis, summary))
-    drawn = {item.key: svg for item, svg in zip(figures, values(*figures.values()), strict=True)}
+    data = result_data(analysis, summary)
+    tell("figures")
+    drawn = _figures(analysis, data)
     tell("writing the report")
-    whole = report_page(analysis, summary, drawn)
-    write_folder(folder, {"result.json": data, "report.html": whole})
+    files = {"result.json": json_text(data), "report.html": report_page(analysis, summary, drawn)}
+    write_folder(folder, files)
     return folder / "report.html"
+
+
+def _figures(analysis: Analysis, data: Mapping[str, Any]) -> dict[str, str]:
+    """The drawings by key, of which all numbers are in the `data` of result.json, or follow from
+    what is in there: drawn once for the same data, whenever it was computed."""
+    numbers = {name: value for name, value in data.items() if name != "provenance"}
+    asked = json.dumps(to_json([numbers, sorted(analysis.display.provenance.items())]))
+    drawn = _DRAWN.get(asked)
+    if drawn is None:
+        start_second_process()
+        pieces = {}
+        for item in FIGURES:
+            shows = {name: getattr(analysis, name) for name in item.needs}
+            pieces[item.key] = later(drawing_of, analysis, item.key, shows)
+        drawn = dict(zip(pieces, values(*pieces.values()), strict=True))
+        _DRAWN.put(asked, drawn)
+    return drawn
 
 
 def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
@@ -144,16 +157,17 @@ def report_page(
     summary: dict[str, Any] | None = None,
     drawn: Mapping[str, str] | None = None,
 ) -> str:
-    """The report as the text of one self-contained HTML page; `drawn` are those of its drawings
-    that are there already, by key."""
-    summary, ready = summary or analysis.summary(), drawn or {}
+    """The report as the text of one self-contained HTML page; `drawn` are its drawings by key,
+    where they are there already."""
+    summary = summary or analysis.summary()
+    ready = drawn or _figures(analysis, result_data(analysis, summary))
     display = analysis.display
     title, name = as_html(display.title), as_html(display.name)
 
     def shown(figures: tuple[FigureOf, ...]) -> Iterator[str]:
         for item in figures:
-            svg = ready.get(item.key) or drawing(analysis, item.key)
-            yield figure_section(item, f"{FIGURES.index(item) + 1}. {item.heading}", svg)
+            heading = f"{FIGURES.index(item) + 1}. {item.heading}"
+            yield figure_section(item, heading, ready[item.key])
 
     parts = [
         part("decide", "To decide from", _INTRODUCTION),

@@ -160,6 +160,7 @@ def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
     volts = float(plan.loop.drive.voltage[-1])
     rows = [
         ("Ended", ended, outcome.message),
+        ("Usable", "yes" if outcome.usable else "NO", _usable_because(result)),
         (
             "Played",
             shown(_duration(session), S, 3),
@@ -181,6 +182,17 @@ def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
         rows.append(("Way predicted", f"{1e3 * session.lag.median:.2f} mm", f"{far} at 99 %"))
     rows += _loop_rows(session.last("loop")) + _link_rows(session)
     return rows
+
+
+def _usable_because(result: PlayResult) -> str:
+    """The numbers that say whether a session can be used, or why it cannot."""
+    found = result.outcome.usability
+    if found is None or result.outcome.failed:
+        return ""
+    return found.sentence or (
+        f"{100 * found.share_made:.1f} % of {found.ticks} ticks made, longest gap "
+        f"{shown(found.longest_gap, S, 3)}, {100 * found.share_late:.1f} % too late"
+    )
 
 
 def _duration(session: PlayedSession) -> float:

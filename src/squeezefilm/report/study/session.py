@@ -50,7 +50,8 @@ def run_study(asked: SessionRequest) -> str:
     `store` is the study's file, made for the preset or file `design` if it is not there; somebody
     new is enrolled without a `participant`. `examiner` asks the questions: without one, this
     terminal does. `by_hand` says where the experimenter is told which surface to put under the
-    finger if no device plays: at this "terminal", in a file (its path), or "nowhere". `lsl` sends
+    finger if no device plays: at this "terminal", in a file (its path), or "nowhere"; the terminal
+    then waits until the surface is said to be in place, from when response times run. `lsl` sends
     markers to the lab streaming layer (its stream may be named), which needs pylsl. The rest, and
     what is raised, as `open_study` and `run_session`.
     """
@@ -58,9 +59,10 @@ def run_study(asked: SessionRequest) -> str:
     path = Path(asked.store)
     with open_study(path, asked.design, asked.seed, asked.station, asked.stations) as found:
         planned = found.design
-        examiner = asked.examiner
+        examiner, placed = asked.examiner, None
         if examiner is None:
             examiner = TerminalExaminer(planned.spoken_question, modulus=planned.modulus)
+            placed = examiner.placed
         return run_session(
             found,
             asked.participant,
@@ -70,7 +72,8 @@ def run_study(asked: SessionRequest) -> str:
                 asked.tell,
                 asked.progress,
                 _told_by_hand(asked) if asked.drive == "none" else None,
-                *(() if markers is None else (markers.push,)),
+                mark=(lambda *_: None) if markers is None else markers.push,
+                placed=placed,
             ),
             drive=asked.drive,
             amplitude_per_pickup=asked.amplitude_per_pickup,

@@ -174,6 +174,10 @@ class TerminalExaminer:
         self._sleep(duration)
         self._read("Press Enter to go on. ")
 
+    def placed(self) -> None:
+        """Return at Enter, when a surface that is put there by hand is in place."""
+        self._read("\nFingers off. Press Enter when the surface is in place. ")
+
     def feel(self, presentation: Presentation, place: int) -> None:
         """Say what to feel; return at Enter."""
         surface = presentation.surfaces[place]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.proportions import Interval
     from squeezefilm.study.identification.response_times import ExGaussian
     from squeezefilm.study.tasks.analyze import StudyAnalysis
-    from squeezefilm.study.tasks.findings import Estimate, TaskAnalysis
+    from squeezefilm.study.tasks.findings import Estimate, PersonEstimate, TaskAnalysis
 
 Rows = list[tuple[str, str, str]]
 _SURE = 0.05
@@ -311,10 +311,18 @@ def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
             f"{scale * one.estimate.value:.3g}{unit}",
             f"{scale * one.estimate.low:.3g} to {scale * one.estimate.high:.3g}{unit}",
             f"{one.trials}",
-            "not bounded by the answers alone" if one.unbounded else "",
+            _person_remark(one, scale, unit),
         )
         for one in analysis.persons
     ]
+
+
+def _person_remark(person: PersonEstimate, scale: float, unit: str) -> str:
+    said = ["not bounded by the answers alone"] if person.unbounded else []
+    if (again := person.asked_again) is not None:
+        low, high = scale * again.low, scale * again.high
+        said.append(f"asked again: {scale * again.value:.3g} ({low:.3g} to {high:.3g}){unit}")
+    return "; ".join(said)
 
 
 def exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:

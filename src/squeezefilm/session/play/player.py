@@ -25,6 +25,7 @@ from squeezefilm.errors import DeviceError, LoopError
 from squeezefilm.session.loop import rows as column
 from squeezefilm.session.loop.rows import flag_meanings
 from squeezefilm.session.play.plan import Ending, PlayPlan, PlayView
+from squeezefilm.session.play.usability import TickCount, Usability
 from squeezefilm.session.record.trace_writer import TraceWriter
 
 if TYPE_CHECKING:
@@ -75,6 +76,7 @@ class Player:
         self._last: Reading | None = None
         self._fed = self._heard = self._commanded = self._stepped = -math.inf
         self._faded = math.nan
+        self._ticks = TickCount(plan.loop.period)
         self._gap, self._gap_at = 0.0, -math.inf
         self._sending = False
         self._row: si.FloatArray = np.full(len(column.COLUMNS), math.nan)
@@ -178,6 +180,12 @@ class Player:
     def drain(self) -> None:
         """Write the rows that the loop has made since, also after it ended."""
         self._write()
+
+    def judge(self) -> Usability:
+        """Whether what was played can be used; the verdict goes into the record."""
+        found = self._ticks.judged(self.late_commands)
+        self._note("usability", found.to_json())
+        return found
 
     def view(self) -> PlayView:
         """What there is to see now."""
@@ -298,6 +306,8 @@ class Player:
         made = self.loop.take_rows()
         if len(made):
             self.writer.append(made)
+            if self.state is State.PLAYING and math.isnan(self._faded):
+                self._ticks.take(made)
             if self.tap is not None:
                 self.tap(made)
             self._row = made[-1]

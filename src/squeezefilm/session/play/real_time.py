@@ -41,6 +41,7 @@ from squeezefilm.session.loop.rows import COLUMNS, SAMPLE_COLUMNS
 from squeezefilm.session.loop.simulated import SimulatedLoop
 from squeezefilm.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.session.play.player import FADE, Player
+from squeezefilm.session.play.usability import Usability
 from squeezefilm.session.record.trace_writer import TraceWriter
 
 PAUSE: si.Second = 1e-3
@@ -54,8 +55,8 @@ LONGEST_SILENCE: si.Second = 35e-3
 class PlayOutcome:
     """How a session ended: why, what there is to say of it, and where its record is.
 
-    `silent` is when the device said that its output is at zero, or was given up (s,
-    `time.monotonic`).
+    `usability` is what its ticks say of it; None where they were not counted. `silent` is when the
+    device said that its output is at zero, or was given up (s, `time.monotonic`).
     """
 
     ending: Ending
@@ -63,11 +64,24 @@ class PlayOutcome:
     trace: Path
     rows: int
     silent: si.Second = math.nan
+    usability: Usability | None = None
 
     @property
     def failed(self) -> bool:
         """Whether it ended for another reason than its time or its user."""
         return self.ending not in (Ending.DURATION, Ending.INTERRUPTED)
+
+    @property
+    def usable(self) -> bool:
+        """Whether it did not fail and played as planned, see `Usability`."""
+        return not self.failed and (self.usability is None or self.usability.usable)
+
+    @property
+    def said(self) -> str:
+        """What there is to say of it, also of one that ended as it should and cannot be used."""
+        if self.message or self.usability is None or self.usability.usable:
+            return self.message
+        return f"not usable: {self.usability.sentence}"
 
 
 def run_play(
@@ -135,7 +149,8 @@ def run_play(
         player.drain()
         writer.event("loop", {**to_json(report), "lateness": report.lateness.to_json()})
         writer.event("link", to_json(link.statistics))
-        return PlayOutcome(ending, message, trace, writer.acknowledged, silent)
+        verdict = player.judge()
+        return PlayOutcome(ending, message, trace, writer.acknowledged, silent, verdict)
 
 
 def _compile(plan: PlayPlan) -> None:

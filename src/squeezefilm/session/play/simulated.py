@@ -111,4 +111,5 @@ def virtual_play(
         player.end(ending, stream.wait, message)
         writer.event("loop", {"lateness": loop.lateness.to_json()})
         writer.event("link", to_json(link.statistics))
-        return PlayOutcome(ending, message, trace, writer.acknowledged)
+        verdict = player.judge()
+        return PlayOutcome(ending, message, trace, writer.acknowledged, usability=verdict)

@@ -40,6 +40,7 @@ def rerun_intervals(
     level: si.Dimensionless = 0.95,
     replicates: int = 499,
     seed: int = 0,
+    parameters: tuple[str, ...] | None = None,
 ) -> dict[str, Interval]:
     """Confidence interval by parameter, in its unit, of a function fitted after adaptive runs.
 
@@ -50,24 +51,28 @@ def rerun_intervals(
         level: of the intervals, between 0 and 1.
         replicates: simulated experiments, at least 39.
         seed: of the simulated answers.
+        parameters: those wanted, such as ("threshold",); all that were fitted without.
 
     A replicate of 200 Bayesian choices takes some 10 ms, one of staircases next to nothing; each
     end of an interval takes one set of replicates or two.
 
     Raises:
-        InputError: no procedure, a number out of range, a staircase that reaches nought where the
-            function has a logarithmic axis, or more answers than the procedures ask for, or fewer
-            than those that ask a fixed number do.
+        InputError: no procedure, a parameter that was not fitted, a number out of range, a
+            staircase that reaches nought where the function has a logarithmic axis, or more answers
+            than the procedures ask for, or fewer than those that ask a fixed number do.
     """
     si.require("level", level, above=0.0, below=1.0)
     si.require("replicates", replicates, at_least=39)
     _require_trials(fit, procedures)
+    wanted = fit.fitted if parameters is None else parameters
+    for name in wanted:
+        si.require_one_of("parameters", name, fit.fitted)
     likelihood, best = likelihood_of(fit)
     axis = fit.function.axis
     random = np.random.default_rng(seed)
     among = [random.random((replicates, one.most_trials)) for one in procedures]
     again = _Again(likelihood.code, axis, tuple(procedures), among)
-    found = confidence_intervals(likelihood, best, again, fit.fitted, level, axis)
+    found = confidence_intervals(likelihood, best, again, wanted, level, axis)
     return {name: opened(fit.function, name, ends) for name, ends in found.items()}
 
 

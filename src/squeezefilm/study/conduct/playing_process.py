@@ -177,7 +177,12 @@ class Bench:
             study=True,
         )
         trace = read_trace(outcome.trace)
-        felt = dataclasses.replace(explored(trace, name), began=began, ended=outcome.silent)
+        felt = dataclasses.replace(
+            explored(trace, name),
+            began=began,
+            ended=outcome.silent,
+            unusable="" if outcome.usability is None else outcome.usability.sentence,
+        )
         return _failure(outcome, trace), felt
 
     @cached_property

@@ -47,7 +47,7 @@ class Presentation:
         intensity: of an adaptive series' comparison (1), else None.
         times_presented: this one included; above 1 after an interruption.
         remaining: trials of the participant that are not answered yet, this one included.
-        rest: what is left of the break before it (s), which began with its first presentation.
+        rest: what is left of the break before it (s), which began with the answer before.
     """
 
     trial: Trial
@@ -110,7 +110,9 @@ class StudyRun:
         self._session = found[0]
         self._presented: str | None = None
         self._clock = clock
-        self._first_shown: tuple[str, si.Second] = ("", 0.0)
+        # The trial with a break before it, what was left of that, and when that was seen.
+        self._break: tuple[str, si.Second, si.Second] = ("", 0.0, 0.0)
+        self._answered_here = False
 
     @property
     def session(self) -> Row:
@@ -142,25 +144,30 @@ class StudyRun:
         )
         return int(found[0]["n"])
 
-    def next_trial(self) -> Presentation | None:
+    def next_trial(self, *, shown: bool = True) -> Presentation | None:
         """The trial to present now; None if none is left on this display.
 
         That it is presented is on the disk when this returns. Called again before the answer, it
-        gives the same trial with the same token and counts another presentation.
-        Raises `RecordError` if nothing could be written: then nothing may be presented.
+        gives the same trial with the same token and counts another presentation. Not `shown` it
+        only says what comes next: ask so while the participant rests or the surface is being put
+        in place, and again when it is shown. Raises `RecordError` if nothing could be written: then
+        nothing may be presented.
         """
         row = next_planned(self._store, self.participant)
         if row is None or row["display"] != self._session["display"]:
             return None
         trial, surfaces, intensity = self._surfaces(row)
-        shown = {
-            "uuid": str(uuid.uuid4()),
-            "trial": row["uuid"],
-            "session": self._session["uuid"],
-            "presented_utc": utc_now(),
-        }
-        self._store.add("presentation", shown)
-        self._presented = row["uuid"]
+        if shown:
+            self._store.add(
+                "presentation",
+                {
+                    "uuid": str(uuid.uuid4()),
+                    "trial": row["uuid"],
+                    "session": self._session["uuid"],
+                    "presented_utc": utc_now(),
+                },
+            )
+            self._presented = row["uuid"]
         return Presentation(
             trial,
             row["uuid"],
@@ -168,7 +175,7 @@ class StudyRun:
             intensity,
             row["presentations"] + 1,
             self.remaining,
-            self._rest_left(row, shown["presented_utc"]),
+            self._rest_left(row),
         )
 
     def respond(self, token: str, response: Response) -> Acknowledgement:
@@ -207,7 +214,7 @@ class StudyRun:
             if done is None:
                 insert(write, "response", row)
                 practice = self._come_again(write, planned, trial, response)
-        self._presented = None
+        self._presented, self._answered_here = None, True
         known = self._recorded(planned)
         assert known is not None
         return dataclasses.replace(known, repeated=done is not None, practice=practice)
@@ -239,22 +246,29 @@ class StudyRun:
         of this participant."""
         return self._recorded(self._planned(token)) is not None
 
-    def _rest_left(self, row: Row, now: str) -> si.Second:
+    def _rest_left(self, row: Row) -> si.Second:
         whole = float(row["pause_s"])
         if not whole:
             return 0.0
-        if not row["presentations"]:
-            self._first_shown = row["uuid"], self._clock()
-        token, begun = self._first_shown
-        if token == row["uuid"]:
-            # Its beginning was seen here: the wall clock may be set meanwhile, this one is not.
-            return max(whole - (self._clock() - begun), 0.0)
-        first = self._store.rows(
-            "SELECT min(presented_utc) AS at FROM presentation WHERE trial = ?", [row["uuid"]]
-        )[0]["at"]
-        gone = (datetime.fromisoformat(now) - datetime.fromisoformat(first)).total_seconds()
+        token, left, seen = self._break
+        if token != row["uuid"]:
+            left, seen = self._rest_after_answer(whole), self._clock()
+            self._break = row["uuid"], left, seen
+        # Its beginning was seen here: the wall clock may be set meanwhile, this one is not.
+        return max(left - (self._clock() - seen), 0.0)
+
+    def _rest_after_answer(self, whole: si.Second) -> si.Second:
+        """What is left (s) of a break that began with the answer before, by the wall clock."""
+        [last] = self._store.rows(
+            "SELECT max(r.ended_utc) AS ended FROM response r JOIN trial t ON t.uuid = r.trial "
+            "WHERE t.participant = ?",
+            [self.participant],
+        )
+        if self._answered_here or last["ended"] is None:
+            return whole
+        gone = datetime.fromisoformat(utc_now()) - datetime.fromisoformat(last["ended"])
         # A clock that was set back meanwhile makes no break longer than it was planned.
-        return min(max(whole - gone, 0.0), whole)
+        return min(max(whole - gone.total_seconds(), 0.0), whole)
 
     def _planned(self, token: str) -> dict[str, Any]:
         found = self._store.rows(
@@ -338,10 +352,13 @@ class StudyRun:
 
 
 def spoiled_by(design: StudyDesign, response: Response) -> str:
-    """Which of a design's rules the exploration of an answer breaks; empty for none, and where
-    nothing was recorded of it."""
+    """Why the exploration of an answer does not count: a surface that was not played as planned, or
+    one of the design's rules that is broken; empty where it counts, and where nothing was recorded
+    of it."""
     rules = design.rules or TrialRules()
     for one in response.explorations:
+        if one.unusable:
+            return f"the surface was not played as planned: {one.unusable}"
         broken = rules.broken(one.path_length, one.mean_speed, one.mean_normal_force, one.touch)
         if broken:
             return broken

@@ -90,7 +90,8 @@ class TrialMotion:
     is none; its metadata must not name the participant. `raw_trace` is the random name of a file
     that the device wrote into the study's folder of traces, empty if there is none. `touch` is the
     share of the time in which the finger touched. `began` and `ended` are when the device said that
-    it plays, and that its output is at zero (s, `time.monotonic`).
+    it plays, and that its output is at zero (s, `time.monotonic`). `unusable` says why what was
+    played cannot be used; empty where it can.
     """
 
     path_length: si.Metre = math.nan
@@ -101,6 +102,7 @@ class TrialMotion:
     touch: si.Dimensionless = math.nan
     began: si.Second = math.nan
     ended: si.Second = math.nan
+    unusable: str = ""
 
 
 class StudyDevice(Protocol):

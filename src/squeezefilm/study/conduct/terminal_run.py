@@ -49,6 +49,8 @@ class Desk:
             participant must not read it. Without one nobody is told.
         progress: shows what goes on while it is open; it is closed whenever anybody is asked.
         mark: is told what happens when, see `conduct`.
+        placed: returns when a surface that is presented by hand is in place, see `conduct`; without
+            one the question comes, and the response time runs, as soon as the surface is asked for.
     """
 
     examiner: Examiner
@@ -57,6 +59,7 @@ class Desk:
     progress: Callable[[], AbstractContextManager[SayProgress]] | None = None
     by_hand: Callable[[str], None] | None = None
     mark: Mark = lambda *_: None
+    placed: Callable[[], None] | None = None
 
 
 def open_study(
@@ -140,11 +143,13 @@ def run_session(
                 remove_rows(store, who)
             raise
         desk.tell(f"participant {who}: go on with --participant {who}")
-        if again := why_begun_again(store, session):
+        again = why_begun_again(store, session)
+        if again:
             desk.tell(again)
         run = StudyRun(store, session)
         try:
-            count = conduct(run, device, desk.examiner, mark=desk.mark)
+            placed = desk.placed if drive == "none" else None
+            count = conduct(run, device, desk.examiner, mark=desk.mark, placed=placed)
         except KeyboardInterrupt:
             # Stopped by a person: what was answered up to here deserves its verification too.
             end_session(store, session, device)
@@ -153,6 +158,8 @@ def run_session(
     said = f"{count} trials on {display} recorded"
     if after.problems:
         said += f". CAUTION, the device is off after the session: {'; '.join(after.problems)}"
+    if (aside := why_begun_again(store, session)) != again:
+        said += f". CAUTION, {aside}"
     said += _attended(store, who, display)
     if run.state == "display changes":
         said += f"; next display: {display_wanted(store, who)}"

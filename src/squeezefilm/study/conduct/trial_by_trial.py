@@ -44,8 +44,13 @@ def conduct(
     *,
     clock: Callable[[], float] = time.monotonic,
     mark: Mark = lambda *_: None,
+    placed: Callable[[], None] | None = None,
 ) -> int:
     """Present and ask every trial that is left on the session's display. Returns how many.
+
+    `placed` returns when a surface that somebody puts there by hand is in place; None where a
+    device plays. A trial counts as presented from then on, or from when the device begins: not in
+    the break before it.
 
     One surface plays while the question is asked, as the person compares it with what lies
     beside it; the response time runs from its onset. Two surfaces play one after the other, and
@@ -55,10 +60,10 @@ def conduct(
     Raises what the device and the study's file raise; the trial then comes again.
     """
     count = 0
-    while (presentation := run.next_trial()) is not None:
+    while (presentation := run.next_trial(shown=False)) is not None:
         if presentation.rest:
             examiner.rest(presentation.rest)
-        response = _presented(presentation, device, examiner, clock, mark)
+        response = _presented(run, presentation, device, examiner, clock, mark, placed)
         told = run.respond(presentation.token, response)
         examiner.acknowledge(presentation, told)
         count += 1
@@ -66,11 +71,13 @@ def conduct(
 
 
 def _presented(
+    run: StudyRun,
     presentation: Presentation,
     device: StudyDevice,
     examiner: Examiner,
     clock: Callable[[], float],
     mark: Mark,
+    placed: Callable[[], None] | None,
 ) -> Response:
     trial = presentation.trial
     begun, begun_utc = clock(), utc_now()
@@ -80,9 +87,17 @@ def _presented(
     for place, surface in enumerate(presentation.surfaces):
         # A real grating lies in its box; nothing plays.
         plays = isinstance(surface, Stimulus)
+        by_hand = plays and placed is not None
+        if place == 0 and not by_hand:
+            run.next_trial()
         try:
             if isinstance(surface, Stimulus):
                 device.present(surface, trial.seed)
+                if placed is not None:
+                    placed()
+                    if place == 0:
+                        run.next_trial()
+                        begun, begun_utc = clock(), utc_now()
                 mark(f"start {surface.name}", clock())
             if trial.asks and last == 0:
                 asked = clock()

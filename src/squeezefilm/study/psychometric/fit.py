@@ -292,8 +292,9 @@ def confidence_intervals(
 ) -> dict[str, Interval]:
     """Of each fitted parameter the values that simulated experiments do not refuse, in its unit."""
     found, experiments = {}, Experiments(likelihood.code, experiment)
-    for at, name in enumerate(fitted):
-        low, high = inverted_interval(likelihood, best, experiments, at, level)
+    for name in fitted:
+        place = PARAMETERS.index(name)
+        low, high = inverted_interval(likelihood, best, experiments, place, level)
         if name == "width" or (name == "threshold" and axis == "log"):
             low, high = float(np.exp(low)), float(np.exp(high))
         found[name] = low, high

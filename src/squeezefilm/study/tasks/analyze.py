@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from squeezefilm.study.identification.response_times import (
 from squeezefilm.study.record.answers import Answers, recorded_answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.tasks.asked_again import asked_again, require_rerun
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
     Estimate,
@@ -70,6 +72,7 @@ def analyze_study(
     columns: Mapping[str, str] | None = None,
     mixed: bool = False,
     resamples: int = 1000,
+    reruns: int = 0,
     seed: int = 0,
     progress: Tell | None = None,
 ) -> dict[str, StudyAnalysis]:
@@ -80,21 +83,21 @@ def analyze_study(
     analysed; practice and familiarisation are left out, catch trials say who attended. Results say
     whose answers they are. `mixed` adds statsmodels' mixed models to match-to-sample, whose stimuli
     must each have the grating of their own period among the answers; `resamples` are its
-    bootstraps'.
+    bootstraps'. `reruns` (39 or more) adds thresholds of adaptive series in two intervals by so
+    many simulated runs of them, `seed` is theirs too (`tasks.asked_again`).
 
     Raises:
-        InputError: stimuli that have no right answer, or no answer yet.
+        InputError: stimuli that have no right answer, no answer yet, or reruns of what has none.
         RecordError: the file is damaged.
     """
+    how: dict[str, Any] = {"mixed": mixed, "resamples": resamples, "reruns": reruns, "seed": seed}
     if design is not None and not isinstance(store, StudyStore):
         if design.task == "match-to-sample":
             stimuli_and_answers(design)
         answers, name = read_answers(store, design, columns), design.name
     elif not isinstance(store, StudyStore):
         with StudyStore.open(store) as opened:
-            return analyze_study(
-                opened, mixed=mixed, resamples=resamples, seed=seed, progress=progress
-            )
+            return analyze_study(opened, **how, progress=progress)
     else:
         if store.design.task == "match-to-sample":
             stimuli_and_answers(store.design)
@@ -103,14 +106,7 @@ def analyze_study(
     if not (answers.phase == "main").any():
         where = store.path if isinstance(store, StudyStore) else store
         raise InputError(f"{where} has no answered main trial yet; run some first")
-    return analyze_answers(
-        answers,
-        name,
-        mixed=mixed,
-        resamples=resamples,
-        seed=seed,
-        progress=progress,
-    )
+    return analyze_answers(answers, name, **how, progress=progress)
 
 
 def analyze_answers(
@@ -120,6 +116,7 @@ def analyze_answers(
     assumed: tuple[str, ...] = (),
     mixed: bool = False,
     resamples: int = 1000,
+    reruns: int = 0,
     level: si.Dimensionless = 0.95,
     seed: int = 0,
     progress: Tell | None = None,
@@ -127,8 +124,10 @@ def analyze_answers(
     """The same of answers in memory, like those of simulated participants, which `assumed` says
     what they rest on. Displays without a main trial are left out.
 
-    Raises `InputError` for a task of match-to-sample without a right answer to each stimulus.
+    Raises `InputError` for a task of match-to-sample without a right answer to each stimulus, and
+    for `reruns` of a design without what could be run again.
     """
+    require_rerun(answers.design, reruns)
     tell = progress or (lambda _: None)
     found: dict[str, StudyAnalysis] = {}
     for number, display in enumerate(answers.design.displays):
@@ -139,7 +138,11 @@ def analyze_answers(
         if answers.design.task == "match-to-sample":
             found[display] = _matches(answers, number, said, mixed, resamples, level, seed, tell)
         else:
-            found[display] = _judgements(answers, number, said, assumed, level, seed, tell)
+            one = _judgements(answers, number, said, assumed, level, seed, tell)
+            if reruns:
+                persons = asked_again(main, one.persons, reruns, level, seed, tell)
+                one = dataclasses.replace(one, persons=persons)
+            found[display] = one
     return found
 
 

@@ -40,7 +40,7 @@ from squeezefilm.study.conduct.sessions import Exposure
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
 from squeezefilm.study.record.store import StudyStore
 
-from ...study.scripted import gratings, run_through
+from ...study.scripted import gratings, run_through, staircase
 
 if TYPE_CHECKING:
     from .conftest import Talk
@@ -190,6 +190,58 @@ def test_a_code_pairs_a_tablet_where_the_lab_has_an_address_for_them(lab: Talk) 
     assert "error" in lab.say("pairing code", sitting="no such")["type"]
 
 
+def put_there(lab: Talk, sitting: str, trial: dict[str, Any]) -> None:
+    """Put a trial's surfaces before the participant, or feel those that lie there."""
+    for place in range(trial["surfaces"]):
+        asked = lab.say("feel", sitting=sitting, token=trial["token"], place=place)
+        if asked["type"] == "waiting":
+            assert lab.say("surface in place", sitting=sitting)["place"] == place
+        else:
+            assert asked == {"type": "shown", "place": place}
+
+
+def test_a_trial_by_hand_begins_when_its_surface_is_in_place(lab: Talk) -> None:
+    file = lab.folder / "studies" / "hand.sqlite"
+    StudyStore.create(file, replace(staircase(4), practice=0), 4).close()
+    who = lab.say("enrol", study="hand")["participants"][-1]["pseudonym"]
+    sitting = prepared(lab, study="hand", participant=who)
+    lab.say("consent", sitting=sitting)
+    trial = lab.say("next", sitting=sitting)
+    here = {"sitting": sitting, "token": trial["token"]}
+    answer = {**here, "choice": trial["alternatives"][0]}
+    with StudyStore.open(file) as store:
+
+        def presented() -> list[str]:
+            return [row["at"] for row in store.rows("SELECT presented_utc AS at FROM presentation")]
+
+        def waits_for() -> int | None:
+            (found,) = lab.say("study", study="hand")["sittings"]
+            return found["waits_for"]
+
+        assert "no surface is waited for" in lab.refused("surface in place", sitting=sitting)
+        assert "not presented yet" in lab.refused("respond", **answer)
+        assert lab.say("feel", **here, place=0) == {"type": "waiting", "place": 0}
+        # However often the page is loaded again meanwhile.
+        lab.say("next", sitting=sitting)
+        assert waits_for() is None
+        lab.say("feel", **here, place=0)
+        assert waits_for() == 0
+        assert presented() == []
+        assert "not presented yet" in lab.refused("respond", **answer)
+        assert lab.say("surface in place", sitting=sitting) == {"type": "in place", "place": 0}
+        (began,) = presented()
+        assert waits_for() is None
+        assert lab.say("feel", **here, place=1) == {"type": "waiting", "place": 1}
+        assert "has 2 surfaces" in lab.refused("feel", **here, place=2)
+        assert lab.say("surface in place", sitting=sitting)["place"] == 1
+        assert lab.say("respond", **answer)["type"] == "acknowledged"
+        assert presented() == [began]
+        # When the first surface was put there is when the trial began.
+        (row,) = store.rows("SELECT started_utc FROM response")
+        assert row["started_utc"] == began
+        assert "not the one to be presented now" in lab.refused("feel", **here, place=0)
+
+
 def test_a_sitting_by_hand_from_consent_to_its_end(lab: Talk) -> None:
     of = enrolled(lab)
     sitting = prepared(lab, **of)
@@ -211,19 +263,23 @@ def test_a_sitting_by_hand_from_consent_to_its_end(lab: Talk) -> None:
             break
         # Which study it is, and what is felt, is the experimenter's to know.
         assert "study" not in trial
-        (shown,) = lab.say("study", study="one")["sittings"]
-        assert len(shown["by_hand"]) == trial["surfaces"] == 1
+        (told_of,) = lab.say("study", study="one")["sittings"]
+        assert len(told_of["by_hand"]) == trial["surfaces"] == 1
+        assert told_of["waits_for"] is None
         assert not trial["plays"]
-        assert lab.refused("feel", sitting=sitting, token=trial["token"], place=0) == (
-            "this sitting has no device"
-        )
+        # Real gratings lie there; virtual surfaces are put in place.
+        assert trial["by_hand"] is (number > 3)
+        put_there(lab, sitting, trial)
         choice = trial["alternatives"][0] if trial["alternatives"] else ""
         told = lab.say("respond", sitting=sitting, token=trial["token"], choice=choice)
         assert (told["type"], told["number"], told["repeated"]) == ("acknowledged", number, False)
         assert "study" not in told
     assert (trial["state"], number - 1) == ("finished", 3 + 3 * 2)
-    # Each trial was told when it was shown and when it was answered.
-    assert page.heard == [changed] * (1 + 2 * 9)
+    # Each trial was told when it came next, was shown (asked for and in place) and was answered.
+    assert page.heard == [changed] * (1 + 3 * 3 + 6 * 4)
+    in_place = {"type": "surface in place", "sitting": sitting, "place": 0}
+    assert tablet.heard == [in_place] * 6
+    tablet.heard.clear()
     ended = lab.say("end sitting", sitting=sitting)
     assert (ended["type"], ended["problems"]) == ("study", [])
     assert tablet.heard == [{"type": "sitting ended", "sitting": sitting}]
@@ -242,6 +298,7 @@ def test_the_experimenter_sees_that_a_block_begins_again(lab: Talk) -> None:
     lab.say("consent", sitting=first)
     for _ in range(2):
         trial = lab.say("next", sitting=first)
+        put_there(lab, first, trial)
         lab.say("respond", sitting=first, token=trial["token"], choice=trial["alternatives"][0])
     lab.say("end sitting", sitting=first)
     late = (datetime.now(UTC) - timedelta(hours=30)).isoformat(timespec="milliseconds")
@@ -270,8 +327,10 @@ def test_what_was_measured_of_an_answer_is_recorded(
     sitting = prepared(lab, study=design, participant=who)
     lab.say("consent", sitting=sitting)
     while (trial := lab.say("next", sitting=sitting))["named"]:
+        put_there(lab, sitting, trial)
         lab.say("respond", sitting=sitting, token=trial["token"])
     assert trial["numeric"] is ("estimate" in answer)
+    put_there(lab, sitting, trial)
     how = {"response_time": 1.25, "started_monotonic": 10.5, "ended_monotonic": 11.5, **answer}
     lab.say("respond", sitting=sitting, token=trial["token"], **how)
     with StudyStore.open(lab.folder / "studies" / f"{design}.sqlite") as store:
@@ -310,6 +369,7 @@ def test_a_surface_plays_until_it_is_felt_or_stopped(lab: Talk, device: Device) 
     sitting = prepared(lab, "twin")
     lab.say("consent", sitting=sitting)
     while not (trial := lab.say("next", sitting=sitting))["plays"]:
+        put_there(lab, sitting, trial)
         lab.say("respond", sitting=sitting, token=trial["token"])
     here = {"sitting": sitting, "token": trial["token"]}
     page, other = lab.opened(is_participant=True), lab.opened(is_participant=True)

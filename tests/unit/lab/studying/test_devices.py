@@ -222,6 +222,7 @@ class Talk:
     async def first_played(self, sitting: str) -> dict[str, Any]:
         """The first trial that a device plays; gratings before it are only felt."""
         while not (trial := await self.say("next", sitting=sitting))["plays"]:
+            await self.say("feel", sitting=sitting, token=trial["token"], place=0)
             await self.say("respond", sitting=sitting, token=trial["token"])
         return trial
 
@@ -250,7 +251,7 @@ def test_a_trial_is_recorded_only_with_what_its_device_presented(
         token, choice = trial["token"], trial["alternatives"][0]
         answer = {"sitting": sitting, "token": token, "choice": choice}
         early = await talk.say("respond", **answer)
-        assert "comes again" in early["message"]
+        assert "is not being presented" in early["message"]
         assert (await talk.say("feel", sitting=sitting, token=token, place=0))["place"] == 0
         fake.breaks = True
         broken = await talk.say("respond", **answer)

@@ -25,6 +25,7 @@ from squeezefilm.report.played.terminal import (
     view_table,
 )
 from squeezefilm.session.play.plan import PlayView
+from squeezefilm.session.play.usability import Usability
 from squeezefilm.session.record.trace import TraceExport
 
 VIEW = PlayView(
@@ -250,8 +251,21 @@ def played(**changes: Any) -> Any:
 
 
 def result(**changes: Any) -> Any:
-    outcome = SimpleNamespace(ending=SimpleNamespace(value="completed"), message="all was played")
+    outcome = SimpleNamespace(
+        ending=SimpleNamespace(value="completed"), message="all was played", failed=False,
+        usable=True, usability=Usability(True, 2000, 0.995, 12e-3, 0.001, ""),
+    )  # fmt: skip
     return SimpleNamespace(session=played(**changes), outcome=outcome)
+
+
+def test_a_session_that_cannot_be_used_says_why() -> None:
+    found = result()
+    found.outcome.usable = False
+    found.outcome.usability = Usability(False, 9, 0.1, 10.0, 0.0, "10 % of 9 ticks were made")
+    assert play_rows(found)[1] == ("Usable", "NO", "10 % of 9 ticks were made")
+    # One that failed has said why it ended.
+    found.outcome.failed = True
+    assert play_rows(found)[1] == ("Usable", "NO", "")
 
 
 def test_a_session_is_told_line_by_line() -> None:
@@ -268,6 +282,7 @@ def test_a_session_is_told_line_by_line() -> None:
     )  # fmt: skip
     assert found == [
         ("Ended", "completed", "all was played"),
+        ("Usable", "yes", "99.5 % of 2000 ticks made, longest gap 12 ms, 0.1 % too late"),
         ("Played", "2 s", "mode stream, 1 kHz, compensation inverse, up to 16 V at 40 kHz"),
         # Nothing is said of a period that the texture has nothing at.
         ("Record: contrast at 2 mm", "81 %", "in its place; 92 % of that wave anywhere"),
@@ -292,19 +307,19 @@ def test_what_a_session_does_not_know_is_a_dash() -> None:
     empty = SimpleNamespace(rows=np.zeros((0, 4)))
     found = play_rows(result(by_record=by_record, trace=empty, loop=dict, link=lambda: {"sent": 9}))
     assert [row[:2] for row in found] == [
-        ("Ended", "completed"), ("Played", "0 s"), ("Record: contrast, lag", "–"), ("Loop", "–"),
-        ("Link", "0 lost"),
+        ("Ended", "completed"), ("Usable", "yes"), ("Played", "0 s"),
+        ("Record: contrast, lag", "–"), ("Loop", "–"), ("Link", "0 lost"),
     ]  # fmt: skip
-    assert found[2][2] == "it stood still"
-    assert found[3][2] == "it could not say how late it was"
-    assert found[4][2] == ("of 9 frames; 0 damaged, 0 refused; round trip – on average, – at most")
+    assert found[3][2] == "it stood still"
+    assert found[4][2] == "it could not say how late it was"
+    assert found[5][2] == ("of 9 frames; 0 damaged, 0 refused; round trip – on average, – at most")
     found = play_rows(result(end=lambda: {"state": "idle"}, by_record=judged(math.nan)))
     assert found[-1] == (
         "Device", "0 readings", "0 commands too late to send, 0 late ticks of its own",
     )  # fmt: skip
     assert not any(name == "Record: lag" for name, *_ in found)
     by_record.unjudged = None
-    assert play_rows(result(by_record=by_record))[2] == ("Record: contrast, lag", "–", "")
+    assert play_rows(result(by_record=by_record))[3] == ("Record: contrast, lag", "–", "")
 
 
 def test_no_lag_is_behind_and_nothing_due_is_nothing_lost() -> None:

@@ -22,7 +22,7 @@ def fit(axis: Any) -> Any:
         function=PsychometricFunction("logistic", 3.0, 2.5, 0.5, 0.02, axis),
         intensity=PLACES, positive=np.array([5.0, 6.0, 36.0, 20.0]),
         trials=np.array([10.0, 10.0, 40.0, 20.0]), level=0.9,
-        posterior_interval={"threshold": (2.25, 4.125), "width": (1.0, 9.0)}, falls=False,
+        posterior_interval={"threshold": (2.25, 4.125), "width": (1.0, 9.0)}, falls=False, notes=(),
     )  # fmt: skip
 
 

@@ -96,7 +96,7 @@ def test_a_drive_that_is_not_known_is_refused(tmp_path: Path) -> None:
 def test_without_an_examiner_this_terminal_asks(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sys, "stdin", io.StringIO("12\n"))
+    monkeypatch.setattr(sys, "stdin", io.StringIO("\n12\n"))
     with pytest.raises(KeyboardInterrupt):
         run_study(saved(tmp_path, magnitudes()), tmp_path / "a.sqlite", consent=True)
     said = capsys.readouterr().out

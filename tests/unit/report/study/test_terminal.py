@@ -197,6 +197,14 @@ def test_a_break_is_waited_for_and_then_enter() -> None:
         terminal.examiner().rest(0.0)
 
 
+def test_a_surface_that_is_put_there_by_hand_is_waited_for() -> None:
+    terminal = Terminal("")
+    terminal.examiner().placed()
+    assert terminal.said == ["\nFingers off. Press Enter when the surface is in place. "]
+    with pytest.raises(KeyboardInterrupt):
+        terminal.examiner().placed()
+
+
 def test_what_is_felt_is_named_or_numbered() -> None:
     terminal = Terminal("", "", "")
     examiner = terminal.examiner()

@@ -414,6 +414,7 @@ def test_what_the_devices_state_does_is_noted_once(play_of: PlayOf) -> None:
 def rows_of(*ticks: int) -> FloatArray:
     rows = np.full((len(ticks), len(column.COLUMNS)), math.nan)
     rows[:, column.TICK] = ticks
+    rows[:, [column.TIME, column.FLAGS]] = 0.0
     return rows
 
 

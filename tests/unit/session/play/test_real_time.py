@@ -20,14 +20,27 @@ from squeezefilm.session.play import real_time
 from squeezefilm.session.play.plan import Ending
 from squeezefilm.session.play.player import FADE
 from squeezefilm.session.play.real_time import PlayOutcome, run_play
+from squeezefilm.session.play.usability import Usability
 
 PlanOf = Callable[..., LoopPlan]
+USABLE = Usability(True, 100, 1.0, 2e-3, 0.0, "")
 LATENESS = Lateness(5e3, 0, 0, 0.0, np.zeros(CLASSES, dtype=np.int64))
 
 
 def test_only_time_and_user_end_a_session_without_failure() -> None:
     failed = {one for one in Ending if PlayOutcome(one, "", Path(), 0).failed}
     assert failed == {Ending.FAULT, Ending.LINK, Ending.LOOP}
+
+
+def test_a_session_that_ended_as_it_should_is_usable_only_if_its_ticks_say_so() -> None:
+    held_up = Usability(False, 100, 0.09, 10.0, 0.0, "9 % of 100 ticks were made")
+    for ending in Ending:
+        fine = PlayOutcome(ending, "", Path(), 0, usability=USABLE)
+        assert fine.usable is not fine.failed
+        assert not PlayOutcome(ending, "", Path(), 0, usability=held_up).usable
+    found = PlayOutcome(Ending.DURATION, "", Path(), 0, usability=held_up)
+    assert found.said == "not usable: 9 % of 100 ticks were made"
+    assert PlayOutcome(Ending.LINK, "unplugged", Path(), 0, usability=held_up).said == "unplugged"
 
 
 class Bench:
@@ -126,6 +139,10 @@ class Bench:
     def drain(self) -> None:
         self.note("drain")
 
+    def judge(self) -> Usability:
+        self.note("judged")
+        return USABLE
+
     def run(self, **how: Any) -> PlayOutcome:
         said = {"duration": 0.05, **how}
         return run_play(self.plan, "serial:one", Path("trace"), {"a": 1}, **said)
@@ -144,11 +161,12 @@ FADING = round(FADE / 1e-3)
 def test_a_session_plays_fades_ends_and_is_recorded_to_its_last_row(bench: Bench) -> None:
     before = signal.getsignal(signal.SIGINT)
     found = bench.run()
-    assert found == PlayOutcome(Ending.DURATION, "", Path("trace"), 12, bench.now + 1000.0)
+    assert found == PlayOutcome(Ending.DURATION, "", Path("trace"), 12, bench.now + 1000.0, USABLE)
     assert bench.done == [
         ("safe", ("drive", "limits"), {"study": False, "bench_only": False}), "compiled",
         "loop start", "begin", ("fade", pytest.approx(50, abs=1)),
-        ("end", Ending.DURATION, ""), "loop stop", "drain", "record closed", "close serial:one",
+        ("end", Ending.DURATION, ""), "loop stop", "drain", "judged", "record closed",
+        "close serial:one",
     ]  # fmt: skip
     # Through the fade it steps on.
     assert bench.steps == pytest.approx(50 + FADING, abs=2)
@@ -229,7 +247,9 @@ def test_what_breaks_is_told_and_the_device_is_ended(
     found = bench.run()
     assert (found.ending, found.message) == (ending, str(error))
     assert ("end", ending, str(error)) in bench.done
-    assert bench.done[-4:] == ["loop stop", "drain", "record closed", "close serial:one"]
+    assert bench.done[-5:] == [
+        "loop stop", "drain", "judged", "record closed", "close serial:one",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("where", ["begin", "step"])

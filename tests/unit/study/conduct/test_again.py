@@ -82,6 +82,18 @@ def test_a_spoiled_trial_keeps_its_answer_and_comes_again_at_the_end_of_its_bloc
     StudyStore.open(tmp_path / "a.sqlite").close()
 
 
+def test_a_surface_that_was_not_played_as_planned_comes_again(tmp_path: Path) -> None:
+    store, run = begun(tmp_path / "u.sqlite", dataclasses.replace(gratings(1), familiarisation=0))
+    shown = run.next_trial()
+    assert shown is not None
+    felt = TrialMotion(unusable="9 % of 1000 ticks were made")
+    choice = shown.trial.alternatives[0]
+    told = run.respond(shown.token, Response(choice=choice, explorations=(felt,)))
+    assert told.spoiled == ("the surface was not played as planned: 9 % of 1000 ticks were made")
+    (person,) = store.participants()
+    assert (person["answered"], person["set_aside"]) == (0, 1)
+
+
 def test_an_adaptive_series_asks_again_at_the_same_level(tmp_path: Path) -> None:
     design = dataclasses.replace(staircase(6), rules=FAST)
     store, run = begun(tmp_path / "s.sqlite", design)

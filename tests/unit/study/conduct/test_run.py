@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.study.conduct.run import Response, StudyRun
+from squeezefilm.study.conduct.run import Presentation, Response, StudyRun
 from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
 from squeezefilm.study.conduct.trial_by_trial import conduct
@@ -253,7 +253,7 @@ def test_a_break_goes_on_where_it_was_and_starts_once(
         assert shown is not None
         assert shown.rest == pytest.approx(60.0)
         began = datetime.fromisoformat(
-            store.rows("SELECT max(presented_utc) AS at FROM presentation")[0]["at"]
+            store.rows("SELECT max(ended_utc) AS at FROM response")[0]["at"]
         )
         for later, left in ((20.0, 40.0), (59.0, 1.0), (600.0, 0.0), (-300.0, 60.0)):
             monkeypatch.setattr(
@@ -266,6 +266,70 @@ def test_a_break_goes_on_where_it_was_and_starts_once(
             assert again is not None
             assert again.token == shown.token
             assert again.rest == pytest.approx(left, abs=2e-3)
+
+
+def presentations(store: StudyStore) -> list[int]:
+    found = store.rows(
+        "SELECT (SELECT count(*) FROM presentation p WHERE p.trial = t.uuid) AS n FROM trial t "
+        "ORDER BY t.number"
+    )
+    return [row["n"] for row in found]
+
+
+def test_a_trial_counts_as_presented_when_it_was_shown_and_not_in_the_break_before_it(
+    tmp_path: Path,
+) -> None:
+    """However often a session is killed in a break, and once for each time it is shown."""
+    design = dataclasses.replace(gratings(1), blocks=2, break_between_blocks=60.0)
+    killed = [0]
+
+    class DiesInBreaks(Script):
+        def rest(self, duration: float) -> None:
+            killed[0] += 1
+            if killed[0] <= 3:
+                raise KeyboardInterrupt
+
+    with StudyStore.create(tmp_path / "a.sqlite", design, 7) as store:
+        who = store.enrol()
+        for _ in range(3):
+            with pytest.raises(KeyboardInterrupt):
+                conduct(session(store, who), NoDevice(), DiesInBreaks())
+        assert set(presentations(store)) == {0, 1}
+        conduct(session(store, who), NoDevice(), DiesInBreaks())
+        assert set(presentations(store)) == {1}
+        # What comes next may be asked for as often as one likes.
+        run = session(store, store.enrol())
+        first = [run.next_trial(shown=False) for _ in range(3)]
+        assert {one.times_presented for one in first if one is not None} == {1}
+        assert sum(presentations(store)) == len(presentations(store)) // 2
+        assert first[0] is not None
+        with pytest.raises(InputError, match="was not presented yet"):
+            run.respond(first[0].token, Response())
+
+
+def test_by_hand_the_clock_starts_when_the_surface_is_in_place(tmp_path: Path) -> None:
+    """The experimenter's swap takes 20 s, the answer 1 s."""
+    now = [100.0]
+
+    def placed() -> None:
+        assert presentations(store)[len(answered)] == 0
+        now[0] += 20.0
+
+    class Slow(Script):
+        def ask(self, presentation: Presentation) -> str | float:
+            assert presentations(store)[len(answered)] == 1
+            now[0] += 1.0
+            answered.append(presentation.token)
+            return super().ask(presentation)
+
+    answered: list[str] = []
+    design = dataclasses.replace(gratings(1), familiarisation=0)
+    with StudyStore.create(tmp_path / "a.sqlite", design, 7) as store:
+        run = session(store, store.enrol())
+        conduct(run, NoDevice(), Slow(), clock=lambda: now[0], placed=placed)
+        rows = store.rows("SELECT response_time_s AS took, started_monotonic_s AS at FROM response")
+    assert [row["took"] for row in rows] == [1.0] * 3
+    assert sorted(row["at"] for row in rows) == [120.0, 141.0, 162.0]
 
 
 @pytest.mark.parametrize("step", [3600.0, -3600.0])

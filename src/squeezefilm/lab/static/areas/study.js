@@ -120,14 +120,19 @@ class StudyView {
   /** Numbers of a study that is shown already, without replacing what a hand or the focus is on;
    * whether that was enough. */
   progress(study) {
-    const shape = (one) => JSON.stringify([one.name, one.sittings.map(({ by_hand: _, ...rest }) => rest), one.participants.map((each) => [each.pseudonym, each.display, each.answered === each.planned])]);
+    const shape = (one) => JSON.stringify([one.name, one.sittings.map(({ by_hand: _, waits_for: __, ...rest }) => rest), one.participants.map((each) => [each.pseudonym, each.display, each.answered === each.planned])]);
     if (!this.study || shape(study) !== shape(this.study)) return false;
     for (const one of study.participants) {
       const row = this.main.querySelector(`tr[data-participant="${CSS.escape(one.pseudonym)}"]`);
       if (!row) return false;
       row.querySelector("progress").value = one.answered;
       row.querySelector(".count").textContent = ` ${one.answered} of ${one.planned}`;
-      row.querySelector(".byhand").replaceChildren(...byHand(study, one.pseudonym));
+      const cell = row.querySelector(".byhand"), { activeElement } = document;
+      // Who says with the keyboard that surfaces are in place goes on doing so at the next one.
+      if (cell.contains(activeElement)) this.placing = one.pseudonym;
+      else if (activeElement !== document.body && activeElement) this.placing = null;
+      cell.replaceChildren(...this.byHand(study, one.pseudonym));
+      if (this.placing === one.pseudonym) cell.querySelector("button")?.focus({ preventScroll: true });
     }
     this.study = study;
     this.age.now();
@@ -198,7 +203,18 @@ class StudyView {
       element("td", { class: "nowrap" }, element("progress", { value: one.answered, max: one.planned, "aria-label": "answered" }), element("span", { class: "count", text: ` ${one.answered} of ${one.planned}` })),
       element("td", { text: one.display ?? "finished" }), element("td", {}, sitting ? (sitting.begun ? "running" : "prepared") : "–",
         sitting?.begun_again ? element("p", { class: "warning", text: sitting.begun_again }) : "",
-        element("div", { class: "byhand" }, ...byHand(this.study, one.pseudonym))), element("td", {}, actions));
+        element("div", { class: "byhand" }, ...this.byHand(this.study, one.pseudonym))), element("td", {}, actions));
+  }
+
+  /** What the experimenter has to put before a participant who has no device, and the button that
+   * starts the participant's clock. */
+  byHand(study, pseudonym) {
+    const sitting = study.sittings.find((found) => found.participant === pseudonym), names = sitting?.by_hand ?? [];
+    if (!names.length) return [];
+    const now = sitting.waits_for, shown = names.flatMap((name, k) => [k ? ", then " : "", element(k === (now ?? 0) ? "strong" : "span", { text: name })]);
+    if (now === null) return ["this trial: ", ...shown];
+    return ["present now: ", ...shown, element("p", {}, element("button", { class: "main", text: "Surface is in place",
+      onclick: () => this.tried(() => this.lab.socket.ask("surface in place", { sitting: sitting.id })) }))];
   }
 
   async link(sitting) {
@@ -273,12 +289,6 @@ class StudyView {
       warned.textContent = found.statement;
     });
   }
-}
-
-/** What the experimenter has to put before a participant who has no device. */
-function byHand(study, pseudonym) {
-  const found = study.sittings.find((one) => one.participant === pseudonym)?.by_hand ?? [];
-  return found.length ? ["present now: ", element("strong", { text: found.join(", then ") })] : [];
 }
 
 function conditionsOf(inputs) {
