@@ -6,6 +6,7 @@ on one thread of its own, and the server's loop goes on meanwhile.
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import Any, Literal
 
