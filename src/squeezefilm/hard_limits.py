@@ -237,3 +237,5 @@ READING_MEMORY = HardLimit(
 READING_TIME = HardLimit(
     "processor time for a file", 0.0, 60.0, "a damaged file may keep its reader busy for ever", _S
 )
+OWN_BYTES = HardLimit("bytes of a file of this program", 0, 64e6, "such files have kilobytes")
+LINES_BYTES = HardLimit("bytes of kept answers", 0, 2e9, "they are read into memory")

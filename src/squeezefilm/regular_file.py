@@ -1,16 +1,20 @@
-"""How every file that somebody names is read: a regular file of a limited size, and no other.
+"""The reader of every file, those this program wrote too: a regular file of a limited size.
 
-A pipe would be waited for without an end, and a device such as /dev/zero has none.
+A pipe would be waited for without an end, and a device such as /dev/zero has none. What a file
+holds may have been damaged or written by somebody else, so that JSON of any depth is refused too.
+Who opens a file in another way stands in `tests/architecture/test_readers.py`, with the reason.
 """
 
 from __future__ import annotations
 
 import codecs
 import contextlib
+import json
 import os
 import stat
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from squeezefilm.errors import ConfigError
 from squeezefilm.hard_limits import HardLimit
@@ -35,14 +39,7 @@ def opened(path: str | Path, limit: HardLimit, what: str) -> Iterator[int]:
         raise _refused(path, what, error) from error
     try:
         found = os.fstat(handle)
-        if stat.S_ISDIR(found.st_mode):
-            raise ConfigError(f"cannot be read: it is a directory; give {what}", file=path)
-        if not stat.S_ISREG(found.st_mode):
-            raise ConfigError(
-                "cannot be read: it is a pipe, a device or a socket, and no regular file; save "
-                f"what comes from it, and give {what}",
-                file=path,
-            )
+        _refuse_irregular(found.st_mode, path, what)
         if found.st_size > limit.most:
             raise ConfigError(
                 f"is larger than {limit.most:,.0f} bytes ({limit.name}: {limit.reason}): it has "
@@ -52,6 +49,32 @@ def opened(path: str | Path, limit: HardLimit, what: str) -> Iterator[int]:
         yield handle
     finally:
         os.close(handle)
+
+
+def require_regular(path: str | Path, what: str) -> None:
+    """Refuse what `opened` would refuse as no regular file, without opening it.
+
+    For files that another library opens, and whose locks a second opening would drop (SQLite's).
+    Raises `ConfigError`; a path with nothing there is none of its concern.
+    """
+    try:
+        mode = Path(path).stat().st_mode
+    except FileNotFoundError:
+        return
+    except (OSError, ValueError) as error:
+        raise _refused(path, what, error) from error
+    _refuse_irregular(mode, path, what)
+
+
+def _refuse_irregular(mode: int, path: str | Path, what: str) -> None:
+    if stat.S_ISDIR(mode):
+        raise ConfigError(f"cannot be read: it is a directory; give {what}", file=path)
+    if not stat.S_ISREG(mode):
+        raise ConfigError(
+            "cannot be read: it is a pipe, a device or a socket, and no regular file; move it "
+            f"away, or save what comes from it, and give {what}",
+            file=path,
+        )
 
 
 def read_regular(path: str | Path, limit: HardLimit, what: str) -> bytes:
@@ -81,6 +104,26 @@ def read_regular_text(path: str | Path, limit: HardLimit, what: str) -> str:
     except UnicodeDecodeError as error:
         raise _no_text(found, error, path, what) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_json(path: str | Path, limit: HardLimit, what: str) -> Any:
+    """The value in a file of JSON. Raises as `read_regular_text`, and `ConfigError` for no JSON."""
+    text = read_regular_text(path, limit, what)
+    try:
+        return parsed_json(text)
+    except ValueError as error:
+        raise ConfigError(f"is damaged, and so not {what}: {error}", file=path) from error
+
+
+def parsed_json(text: str | bytes) -> Any:
+    """The value of JSON text that a file held.
+
+    Raises `ValueError` for no JSON, and for what is nested deeper than Python reads.
+    """
+    try:
+        return json.loads(text)
+    except RecursionError as error:
+        raise ValueError("its brackets are nested too deep") from error
 
 
 def _no_text(found: bytes, error: UnicodeDecodeError, path: str | Path, what: str) -> ConfigError:

@@ -190,7 +190,8 @@ def write_whole(path: Path, content: str | bytes) -> None:
         with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)
         raise InputError(
-            f"cannot write {path}: {error.strerror}; nothing was left behind"
+            f"cannot write {path}: {error.strerror}; nothing was left behind. Free space or choose "
+            "another folder, and ask again"
         ) from error
     try:
         sync_folder(path.parent)

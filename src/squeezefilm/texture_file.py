@@ -19,6 +19,7 @@ a misspelt key or type is refused with file, line and key. A picture in a file o
 
 from __future__ import annotations
 
+import os
 import typing
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,6 +36,7 @@ from squeezefilm.render.texture import image as pattern_image
 from squeezefilm.render.texture import levels
 from squeezefilm.render.texture import noise as pattern_noise
 from squeezefilm.render.texture.composition import Composable, require_texture
+from squeezefilm.results import write_whole
 
 MODULES = (image_file, levels, pattern_gates, pattern_image, pattern_noise)
 """The modules whose classes a file may name, beside those these import."""
@@ -107,10 +109,6 @@ def save_texture(texture: TextureFile | Composable, path: str | Path) -> None:
         InputError: a file that exists already or cannot be written, or a text that is too long.
     """
     text = texture_text(texture)
-    try:
-        with Path(path).open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError as error:
-        raise InputError(f"{path} exists already; give another name or remove it") from error
-    except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror}") from error
+    if os.path.lexists(path):
+        raise InputError(f"{path} exists already; give another name or remove it")
+    write_whole(Path(path), text)

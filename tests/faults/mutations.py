@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import random
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 from squeezefilm import presets
@@ -161,3 +163,46 @@ _CHANGES = (
     _scaled, _scaled, _scaled, _scaled, _replaced, _replaced, _negated, _nearby, _nearby, _nearby,
     _retyped, _retyped, _swapped, _line_gone, _line_twice, _odd_text, _renamed, _long,
 )  # fmt: skip
+
+
+def damage_file(file: Path, chance: random.Random) -> str:
+    """Do to a file what an accident or an attacker does to one of this program; says what.
+
+    One to three bits turned, a cut, zeros, a line of 200 000 brackets, a line twice or gone, or in
+    its place a pipe, a link to a device that has no end, or a folder.
+    """
+    data = file.read_bytes()
+    kind = chance.choice(
+        ("bits", "bits", "bits", "bits", "cut", "zeros", "brackets", "lines", *_NO_FILES)
+    )
+    if kind in _NO_FILES:
+        file.unlink()
+        _NO_FILES[kind](file)
+        return kind
+    where = chance.randrange(len(data) + 1)
+    if kind == "bits":
+        changed = bytearray(data)
+        for _ in range(chance.choice((1, 1, 3)) if data else 0):
+            changed[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+        file.write_bytes(changed)
+    elif kind == "cut":
+        file.write_bytes(data[:where])
+    elif kind == "zeros":
+        file.write_bytes(data[:where] + bytes(40) + data[where + 40 :])
+    elif kind == "brackets":
+        begin = data.rfind(b"\n", 0, where) + 1
+        bracket = chance.choice((b"[", b'{"a":', b"[{"))
+        file.write_bytes(data[:begin] + bracket * 200_000 + b"\n" + data[begin:])
+    else:
+        lines = data.splitlines(keepends=True) or [b""]
+        number = chance.randrange(len(lines))
+        lines[number : number + 1] = [lines[number]] * chance.choice((0, 2))
+        file.write_bytes(b"".join(lines))
+    return kind
+
+
+_NO_FILES: dict[str, Callable[[Path], None]] = {
+    "pipe": lambda file: os.mkfifo(file),
+    "device": lambda file: file.symlink_to("/dev/zero"),
+    "folder": lambda file: file.mkdir(),
+}

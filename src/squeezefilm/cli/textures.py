@@ -218,7 +218,8 @@ def export(
     from squeezefilm.results import to_json
     from squeezefilm.session.record.trace import export_trace
 
-    done = export_trace(trace, to)
+    with working(as_json) as step:
+        done = export_trace(trace, to, step)
     if as_json:
         print_json(to_json(done))
     else:

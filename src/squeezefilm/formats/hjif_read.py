@@ -7,7 +7,6 @@ of other bands are left out and listed. See `hjif` for the units assumed.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from squeezefilm import quantities as si
 from squeezefilm.config.scan import require_quick_json
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import HJIF_BYTES
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.regular_file import parsed_json, read_regular_text
 from squeezefilm.render.texture.image import LARGEST_PIXEL, MOST_PIXELS, Image
 from squeezefilm.render.texture.levels import RelativeFriction
 from squeezefilm.render.texture.pattern import Pattern
@@ -108,8 +107,8 @@ def read_hjif(path: str | Path) -> HjifImport:
     text = read_regular_text(path, HJIF_BYTES, "an HJIF file")
     try:
         require_quick_json(text)
-        document = json.loads(text)
-    except (ValueError, RecursionError) as error:
+        document = parsed_json(text)
+    except ValueError as error:
         raise InputError(f"{path} is no JSON that can be read, so no HJIF: {error}") from error
     try:
         return texture_of_hjif(document)

@@ -25,7 +25,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import TABLE_BYTES
-from squeezefilm.regular_file import read_regular, read_regular_text
+from squeezefilm.regular_file import parsed_json, read_regular, read_regular_text
 
 _NAME = re.compile(r"[a-z][A-Za-z0-9_.]*")
 _JSON_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
@@ -100,8 +100,8 @@ def table_from_csv(path: str | Path) -> Table:
     if lines and lines[0].startswith("#"):
         start = 1
         try:
-            metadata = json.loads(lines[0][1:])
-        except (ValueError, RecursionError):
+            metadata = parsed_json(lines[0][1:])
+        except ValueError:
             metadata = {"comment": lines[0][1:].strip()}
         if not isinstance(metadata, dict):
             metadata = {"comment": metadata}
@@ -186,7 +186,7 @@ def table_from_parquet(path: str | Path) -> Table:
         held = parquet.read_table(io.BytesIO(data))
         columns = {name: _floats(held.column(name)) for name in held.column_names}
         note = (held.schema.metadata or {}).get(_KEY, b"{}")
-        return Table(columns, json.loads(note))
+        return Table(columns, parsed_json(note))
     except (OSError, ValueError, TypeError, arrow.ArrowException) as error:
         raise InputError(f"{path} is no table of numbers in Parquet: {error}") from error
 

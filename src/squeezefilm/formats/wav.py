@@ -20,7 +20,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import WAVE_BYTES
-from squeezefilm.regular_file import read_regular
+from squeezefilm.regular_file import parsed_json, read_regular
 
 Encoding = Literal["float32", "int16", "int24"]
 ENCODINGS: tuple[Encoding, ...] = get_args(Encoding)
@@ -153,9 +153,9 @@ def waveform_from(data: bytes, name: str = "the file") -> Waveform:
 
 def _scaled(chunks: Mapping[bytes, bytes], encoding: str, rate: float, name: str) -> Waveform:
     try:
-        note = json.loads(chunks.get(_CHUNK, b"")[:_LONGEST_NOTE])
+        note = parsed_json(chunks.get(_CHUNK, b"")[:_LONGEST_NOTE])
         unit, full_scale = note.pop("unit"), float(note.pop("full_scale"))
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(
             f"{name} does not say what full scale is (no chunk 'sqzf'); only files that "
             "squeezefilm wrote have a unit"

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import secrets
 import time
 from collections.abc import Callable
@@ -18,7 +19,9 @@ from typing import Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import OWN_BYTES
 from squeezefilm.lab.files import write_secret
+from squeezefilm.regular_file import read_json
 
 Role = Literal["experimenter", "participant"]
 
@@ -65,16 +68,17 @@ class Keys:
     _stations: int = 0
 
     def __post_init__(self) -> None:
-        if self.file is None or not self.file.exists():
+        if self.file is None or not os.path.lexists(self.file):
             return
         try:
-            kept = [Session(**one) for one in json.loads(self.file.read_text(encoding="utf-8"))]
-        except (OSError, ValueError, TypeError) as error:
+            rows = read_json(self.file, OWN_BYTES, "the lab's keys")
+            kept = [Session(**row) for row in rows]
+            self._sessions = {one.secret: one for one in kept if one.until > self.clock()}
+        except (ValueError, TypeError) as error:
             raise InputError(
                 f"{self.file} is not readable as the lab's keys ({error}); delete it and open the "
                 "new link that the lab prints"
             ) from error
-        self._sessions = {one.secret: one for one in kept if one.until > self.clock()}
         self._stations = len(self._sessions)
 
     def new_link(self, role: Role = "experimenter", home: str | None = None) -> str:

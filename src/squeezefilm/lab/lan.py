@@ -22,6 +22,7 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import OWN_BYTES
 from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN, Door
 from squeezefilm.lab.files import write_secret
 from squeezefilm.lab.guard import Guard, Places
@@ -34,6 +35,7 @@ from squeezefilm.lab.server import (
     server_of,
     station_routes,
 )
+from squeezefilm.regular_file import read_regular
 
 if TYPE_CHECKING:
     import socket
@@ -77,7 +79,7 @@ def certificate(address: str, file: Path) -> str:
     tablet that trusted it comes back by itself. Only its owner can read it.
 
     Raises:
-        InputError: the package `cryptography` is not there.
+        InputError: the package `cryptography` is not there, or the file cannot be written.
     """
     try:
         from cryptography import x509
@@ -114,7 +116,12 @@ def certificate(address: str, file: Path) -> str:
         serialization.PrivateFormat.PKCS8,
         serialization.NoEncryption(),
     )
-    write_secret(file, secret + made.public_bytes(serialization.Encoding.PEM))
+    try:
+        write_secret(file, secret + made.public_bytes(serialization.Encoding.PEM))
+    except OSError as error:
+        raise InputError(
+            f"{file} cannot be written: {error.strerror}; move away what lies there, or free space"
+        ) from error
     return _spaced(made.public_bytes(serialization.Encoding.DER))
 
 
@@ -187,7 +194,8 @@ def _fingerprint_of(file: Path, address: str, until: datetime.datetime) -> str |
     if file.is_symlink() or not file.is_file():
         return None
     try:
-        found = x509.load_pem_x509_certificate(file.read_bytes())
+        content = read_regular(file, OWN_BYTES, "a certificate")
+        found = x509.load_pem_x509_certificate(content)
         names = found.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
         # That key and certificate belong together is checked by loading them as TLS does.
         ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(file)

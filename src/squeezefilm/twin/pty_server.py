@@ -336,7 +336,7 @@ def running_twin(
     """
     require_pseudo_terminals()
     command = [sys.executable, "-m", "squeezefilm.twin.pty_server", str(display)]
-    command += ["--stroke", stroke, "--force", repr(normal_force)]
+    command += ["--stroke", stroke, "--force", f"{normal_force!r} N"]
     command += ["--with-parent", str(os.getpid())]
     command += [] if settings is None else ["--settings", str(settings)]
     command += [] if truth is None else ["--truth", str(truth)]

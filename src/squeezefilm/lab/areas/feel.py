@@ -14,9 +14,11 @@ from pydantic import Field
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.lab.designing import program as feel
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
+from squeezefilm.regular_file import read_regular_text
 from squeezefilm.results import write_whole
 from squeezefilm.texture_file import load_texture
 
@@ -104,7 +106,8 @@ class FeelArea:
                 raise InputError(f"'{asked.preset}' is no preset texture")
         else:
             file = existing(self._folder, str(asked.file), ".toml")
-        return {"type": "texture text", "text": file.read_text(encoding="utf-8")}
+        text = read_regular_text(file, DESCRIPTION_BYTES, "a TOML file")
+        return {"type": "texture text", "text": text}
 
     async def _on_display(self, work: Callable[..., Answer], asked: OnDisplay) -> Answer:
         # What takes seconds stays out of a drag's way.
@@ -129,7 +132,6 @@ class FeelArea:
         pixel = si.parse_quantity(asked.pixel, si.Unit("m"))
         if not 1e-6 <= pixel <= 0.1:
             raise InputError(f"a pixel of {asked.pixel}: it may have 1 µm to 10 cm")
-        self._folder.mkdir(exist_ok=True)
         write_whole(file, data)
         text = (
             f'title = "{file.stem}, {columns} × {rows} pixels of {asked.pixel}"\n\n[texture]\n'

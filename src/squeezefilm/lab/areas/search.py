@@ -12,11 +12,12 @@ from pydantic import Field
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED
+from squeezefilm.hard_limits import DESCRIPTION_BYTES, DESIGNS_SCREENED, DESIGNS_SOLVED
 from squeezefilm.lab.files import existing, named
 from squeezefilm.lab.searching.asked import asked_of, display_text, folder_of
 from squeezefilm.lab.searching.process import SearchProcess, search
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
+from squeezefilm.regular_file import read_regular_text
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
@@ -119,7 +120,8 @@ class SearchArea:
         else:
             place = named(self._folder, str(asked.file), "")
             file = existing(place, _REQUIREMENTS, ".toml")
-        return {"type": "requirements text", "text": file.read_text(encoding="utf-8")}
+        text = read_regular_text(file, DESCRIPTION_BYTES, "a TOML file")
+        return {"type": "requirements text", "text": text}
 
     async def _asked(self, text: str) -> dict[str, Any]:
         return await self._lab.workers.quick.do("requirements", asked_of, text, self._lab.folder)

@@ -21,7 +21,7 @@ from squeezefilm.analysis.intervals import LEVEL
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display
-from squeezefilm.errors import InputError
+from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.discrepancy import BELIEVED, KINDS, scales_of
@@ -37,7 +37,7 @@ from squeezefilm.measure.calibration.solved_answers import FRICTION, asked_by, s
 from squeezefilm.measure.calibration.written_display import calibrated_display
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.progress import SayProgress
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.regular_file import read_json, read_regular_text
 from squeezefilm.results import stamp, to_json, write_whole
 
 KIND = "squeezefilm blind prediction"
@@ -253,7 +253,7 @@ def load_prediction(path: str | Path) -> BlindPrediction:
     Raises `InputError` for a file that is none, or whose content is not what its SHA-256 says.
     """
     try:
-        content = json.loads(read_regular_text(path, DESCRIPTION_BYTES, "prediction"))
+        content = read_json(path, DESCRIPTION_BYTES, "a prediction")
         if content["kind"] != KIND:
             raise ValueError
         found = BlindPrediction(
@@ -263,7 +263,9 @@ def load_prediction(path: str | Path) -> BlindPrediction:
             dict(content["stamp"]),
             str(content["sha256"]),
         )
-    except (ValueError, KeyError, TypeError) as error:
+    except ConfigError:
+        raise
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(
             f"{path} is no prediction of squeezefilm; write one with measure predict"
         ) from error

@@ -15,6 +15,7 @@ from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.from_text import reads_text
+from squeezefilm.hard_limits import RECORDING_BYTES
 from squeezefilm.measure.calibration.blind import Score, load_prediction, score
 from squeezefilm.measure.calibration.calibrate import calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
@@ -29,6 +30,7 @@ from squeezefilm.measure.calibration.written_display import calibrated_display, 
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.progress import SayProgress
+from squeezefilm.regular_file import read_regular
 from squeezefilm.results import Result, to_json
 
 
@@ -166,8 +168,7 @@ def folder_observations(
 
 
 def _used(file: Path, kind: str, told: Any) -> UsedRecording:
-    with file.open("rb") as content:
-        digest = hashlib.file_digest(content, "sha256").hexdigest()
+    digest = hashlib.sha256(read_regular(file, RECORDING_BYTES, "a recording")).hexdigest()
     taken = (told.who, told.when, told.instrument, told.source)
     return UsedRecording(file.name, kind, *taken, digest)
 

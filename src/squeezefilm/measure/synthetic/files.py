@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,9 +12,11 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import RECORDING_BYTES
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.synthetic.bench import SyntheticBench
-from squeezefilm.results import to_json
+from squeezefilm.regular_file import read_regular
+from squeezefilm.results import to_json, write_whole
 
 _AMPLITUDE = 'given_as = "zero-to-peak"'
 
@@ -37,30 +40,41 @@ class _File(NamedTuple):
 def write_synthetic_bench(folder: str | Path, bench: SyntheticBench) -> tuple[Path, ...]:
     """The recordings of a bench as files in a folder, and the paths of the data.
 
-    Nothing of the truth is among them; see `write_truth`. Raises `InputError` where the folder
-    cannot be made or has such files already.
+    Nothing of the truth is among them; see `write_truth`. Each file is written whole or not at
+    all, and what lies there already of the same bench stays: a call that a full disk stopped is
+    repeated and goes on. Raises `InputError` for a file that cannot be written, and, before any is,
+    where another file lies in the place of one.
     """
     target = Path(folder)
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{target} cannot be made: {error}; name another folder") from error
-    present = [name for name in bench.recordings if (target / f"{name}.csv").exists()]
-    if present:
-        raise InputError(
-            f"{target} has {present[0]}.csv already; name another folder, or remove its files"
-        )
-    paths = []
+    files: dict[Path, bytes] = {}
     for name, recording in bench.recordings.items():
         path, made = target / f"{name}.csv", _file(recording)
-        path.write_text(_csv(made.columns), encoding="utf-8")
-        path.with_suffix(".toml").write_text(_toml(made, recording.told), encoding="utf-8")
-        paths.append(path)
-    return tuple(paths)
+        files[path] = _csv(made.columns).encode()
+        files[path.with_suffix(".toml")] = _toml(made, recording.told).encode()
+    there = {path: _holds(path, content) for path, content in files.items()}
+    if others := [path for path, holds in there.items() if holds is False]:
+        raise InputError(
+            f"{target} has another {others[0].name} already; name another folder, or remove its "
+            "files"
+        )
+    for path, content in files.items():
+        if there[path] is None:
+            write_whole(path, content)
+    return tuple(path for path in files if path.suffix == ".csv")
+
+
+def _holds(path: Path, content: bytes) -> bool | None:
+    """Whether a file has this content; None where there is no file."""
+    if not os.path.lexists(path):
+        return None
+    return read_regular(path, RECORDING_BYTES, "another folder") == content
 
 
 def write_truth(path: str | Path, bench: SyntheticBench) -> None:
-    """The true values by path (SI), law, options and seed as JSON, for whoever checks a fit."""
+    """The true values by path (SI), law, options and seed as JSON, for whoever checks a fit.
+
+    Raises `InputError` where the file cannot be written.
+    """
     truth = bench.truth
     told = {
         "display": truth.display.name,
@@ -69,7 +83,7 @@ def write_truth(path: str | Path, bench: SyntheticBench) -> None:
         "options": to_json(truth.options),
         "values": dict(truth.values),
     }
-    Path(path).write_text(json.dumps(told, indent=2) + "\n", encoding="utf-8")
+    write_whole(Path(path), json.dumps(told, indent=2) + "\n")
 
 
 def _csv(columns: list[_Column]) -> str:

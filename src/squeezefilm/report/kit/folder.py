@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import TABLE_BYTES
+from squeezefilm.regular_file import read_regular
 from squeezefilm.results import to_json, write_whole
 
 _NUMBER = re.compile(r"[-+]?[0-9.]+(e[-+]?[0-9]+)?")
@@ -60,7 +62,7 @@ def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
     try:
         for name, content in files.items():
             file = folder / name
-            old = file.read_bytes() if file.is_file() else None
+            old = read_regular(file, TABLE_BYTES, "a file") if file.is_file() else None
             write_whole(file, content)
             before[file] = old
     except InputError:

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import TABLE_BYTES
+from squeezefilm.regular_file import read_regular_text
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 
 Row = tuple[str, str, str, str]
@@ -26,14 +28,19 @@ def compared_rows(folder: Path | None, rows: str) -> tuple[Row, ...]:
             "--out DIR",
             quantity="compare",
         )
-    with file.open(newline="", encoding="utf-8") as lines:
+    lines = read_regular_text(file, TABLE_BYTES, "a sweep's table").splitlines()
+    try:
         head, *body = list(csv.reader(lines))
+        if any(len(row) != len(head) for row in body):
+            raise ValueError("its rows have different numbers of cells")
+    except (csv.Error, ValueError) as error:
+        raise InputError(f"{file} is no table of a sweep: {error}; make it again") from error
     numbers = re.fullmatch(r"\s*(\d{1,9})\s*,\s*(\d{1,9})\s*", rows)
     places = [int(one) for one in numbers.groups()] if numbers else []
     if not places or not all(1 <= one <= len(body) for one in places):
         raise InputError(
-            f"--compare {rows:.40} names no two rows; write two numbers from 1 to {len(body)}, as "
-            "in --compare 1,2",
+            f"--compare {rows:.40} names no two rows of {file}; write two numbers from 1 to "
+            f"{len(body)}, as in --compare 1,2",
             quantity="compare",
         )
     first, second = (body[one - 1] for one in places)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squeezefilm.errors import InputError
 from squeezefilm.search.design.candidate import (
     Design,
     Evaluated,
@@ -18,7 +19,7 @@ from squeezefilm.search.design.candidate import (
     rough_frequency,
 )
 from squeezefilm.search.design.criteria import bounded, excess_of
-from squeezefilm.search.design.journal import journal
+from squeezefilm.search.design.journal import usable_journal
 from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.store import asked_hash, requirements_hash
 
@@ -73,13 +74,16 @@ class Proposals:
         directions = [optuna.study.StudyDirection.MINIMIZE] * len(requirements.objectives)
         self._study = optuna.create_study(directions=directions)
         self._shared: Any = None
+        self.is_rebuilt = False
         self._others, self._published, self._told = 0, 0, 0
         if folder is not None:
             # A folder may have answers to other requirements, of which these values are none.
             whose = f"{asked_hash(requirements, level)} {requirements_hash(requirements)[:16]}"
+            self._journal = folder / JOURNAL
+            storage, self.is_rebuilt = usable_journal(self._journal)
             self._shared = optuna.create_study(
                 study_name=f"{self._space.shape}, {level}, seed {seed}, {whose}",
-                storage=journal(folder / JOURNAL),
+                storage=storage,
                 directions=directions,
                 load_if_exists=True,
             )
@@ -87,7 +91,14 @@ class Proposals:
 
     def _of_members(self, *, own: bool) -> list[Any]:
         """The published trials of this member, or of all others."""
-        every = self._shared.get_trials(deepcopy=False)
+        try:
+            every = self._shared.get_trials(deepcopy=False)
+        # Optuna reads what was added since, and fails anywhere where that is damaged.
+        except Exception as error:
+            raise InputError(
+                f"{self._journal} was damaged while the search ran ({type(error).__name__}); start "
+                "it again: it goes on from what is kept of its designs"
+            ) from error
         return [one for one in every if (one.user_attrs.get(_MEMBER) == self._member) == own]
 
     def known(self, found: Iterable[Evaluated]) -> None:
@@ -95,6 +106,16 @@ class Proposals:
         for one in found:
             places = self._space.places(one.design.settings)
             self._study.add_trial(_trial(places, self._values(one), self._excess(one)))
+
+    def publish_again(self, found: Iterable[tuple[Evaluated, int]]) -> None:
+        """Publish what other members found, where the journal was lost (`is_rebuilt`).
+
+        What this one found it publishes when it is told of it again.
+        """
+        for answer, member in found:
+            places = self._space.places(answer.design.settings)
+            own = {_MEMBER: member}
+            self._shared.add_trial(_trial(places, self._values(answer), self._excess(answer), own))
 
     def ask(self, count: int, batch: int) -> list[tuple[Any, Design]]:
         """So many designs, each with the trial that is to be told of."""

@@ -1,12 +1,19 @@
-"""Optuna's journal on disk, without waiting for the disk."""
+"""Optuna's journal on disk, without waiting for the disk, and set aside where it is damaged."""
 
 from __future__ import annotations
 
 import contextlib
-import json
+import itertools
+import os
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+from squeezefilm.errors import ConfigError, InputError, SqueezefilmWarning
+from squeezefilm.hard_limits import LINES_BYTES
+from squeezefilm.regular_file import read_regular
+from squeezefilm.search.lines import SET_ASIDE, checked_line, is_damaged
 
 
 def journal(file: Path) -> Any:
@@ -30,9 +37,9 @@ def journal(file: Path) -> Any:
                 _cut_half_line(file)
 
         def append_logs(self, logs: list[dict[str, Any]]) -> None:
-            text = "".join(json.dumps(one, separators=(",", ":")) + "\n" for one in logs)
+            text = b"".join(checked_line(log) + b"\n" for log in logs)
             with self._held(), file.open("ab") as there:
-                there.write(text.encode())
+                there.write(text)
 
         @contextlib.contextmanager
         def _held(self) -> Iterator[None]:
@@ -43,6 +50,63 @@ def journal(file: Path) -> Any:
                 self._own.release()
 
     return JournalStorage(Unhurried())
+
+
+def usable_journal(file: Path) -> tuple[Any, bool]:
+    """The `journal` in a file, and whether it begins anew since the one that lay there is damaged.
+
+    That one is set aside under another name, with a `SqueezefilmWarning`: all that was computed is
+    kept among the designs. Raises `InputError` where neither can be done.
+    """
+    storage, why = None, _damage(file)
+    if not why:
+        try:
+            storage = journal(file)
+        except OSError as error:
+            raise InputError(
+                f"cannot use {file}: {error.strerror}; free space or choose another folder"
+            ) from error
+        # Lines that are whole may contradict each other, and Optuna then fails anywhere.
+        except Exception as error:
+            why = f"cannot be replayed ({type(error).__name__})"
+    if storage is not None:
+        return storage, False
+    try:
+        aside = _set_aside(file)
+    except OSError as error:
+        raise InputError(
+            f"{file} {why}, and cannot be moved ({error.strerror}); move it away: the search "
+            "goes on from what is kept of its designs"
+        ) from error
+    warnings.warn(
+        f"{file} {why}; it is set aside as {aside.name}, and made anew from the designs",
+        SqueezefilmWarning,
+        stacklevel=2,
+    )
+    return journal(file), True
+
+
+def _damage(file: Path) -> str:
+    """What is wrong with a journal, in words that follow its name; empty for one that is sound."""
+    if not os.path.lexists(file):
+        return ""
+    try:
+        *lines, _ = read_regular(file, LINES_BYTES, "a journal").split(b"\n")
+    except ConfigError as error:
+        return error.message
+    numbers = (number for number, line in enumerate(lines, 1) if is_damaged(line))
+    first = next(numbers, None)
+    return "" if first is None else f"is damaged in line {first}"
+
+
+def _set_aside(file: Path) -> Path:
+    """Give what lies at a journal's place another name, which nothing has. Raises `OSError`."""
+    for number in itertools.count(1):
+        aside = file.with_name(f"{file.name}{SET_ASIDE}{number if number > 1 else ''}")
+        if not os.path.lexists(aside):
+            file.rename(aside)
+            return aside
+    raise AssertionError
 
 
 def _cut_half_line(file: Path) -> None:

@@ -205,9 +205,12 @@ class SearchRun:
 
     def _proposals(self, shape: int, level: Level) -> Proposals:
         asked = self._asked
-        return Proposals(
+        proposals = Proposals(
             self.requirements, shape, level, self._folder, asked.seed, member=asked.member
         )
+        if proposals.is_rebuilt:
+            proposals.publish_again(self._store.of_others(shape, level))
+        return proposals
 
     def _solve_the_best(self, pool: Workers, most: int) -> None:
         """Solve the designs that the screening, corrected by what was solved, takes for the best,

@@ -80,7 +80,7 @@ class DesignStore:
         self._made: dict[Design, Made] = {}
         self._made_hash = _made_hash(requirements)
         self.computed = 0
-        self._of_others: dict[Design, Evaluated] = {}
+        self._members: dict[tuple[Design, Level], int] = {}
         if self._lines is not None:
             self._lines.read(self._take)
 
@@ -89,14 +89,23 @@ class DesignStore:
             self._take_made(read)
         elif (known := self._evaluated(read)) is not None:
             self._known[known.design, known.level] = known
-            if known.level == "solved" and read["member"] != self._member:
-                self._of_others[known.design] = known
+            self._members[known.design, known.level] = int(read["member"])
 
     def solved_by_others(self) -> dict[Design, Evaluated]:
         """What other hosts that search in the same folder have solved until now."""
         if self._lines is not None:
             self._lines.read(self._take)
-        return self._of_others
+        shapes = range(len(self._requirements.spaces))
+        others = [one for shape in shapes for one, _ in self.of_others(shape, "solved")]
+        return {one.design: one for one in others}
+
+    def of_others(self, shape: int, level: Level) -> list[tuple[Evaluated, int]]:
+        """What other hosts evaluated of a shape at a level, with the number of each."""
+        return [
+            (self._known[design, at], member)
+            for (design, at), member in self._members.items()
+            if design.shape == shape and at == level and member != self._member
+        ]
 
     def __len__(self) -> int:
         return len(self._known)
@@ -156,6 +165,9 @@ class DesignStore:
 
     def _evaluated(self, read: Mapping[str, Any]) -> Evaluated | None:
         if read["asked"] != self._hashes[read["level"]]:
+            return None
+        names = {one.name for one in self._requirements.spaces[int(read["shape"])].variables}
+        if set(read["values"]) != names:
             return None
         numbers = {str(key): float(value) for key, value in read["numbers"].items()}
         return Evaluated(

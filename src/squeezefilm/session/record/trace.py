@@ -5,7 +5,6 @@ And the trace as a table that other programs read: CSV or Parquet, with its meta
 
 from __future__ import annotations
 
-import json
 import mmap
 import os
 from collections.abc import Mapping
@@ -19,9 +18,13 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.hard_limits import TRACE_BYTES
-from squeezefilm.regular_file import opened
+from squeezefilm.progress import SayProgress, ShareProgress, said_with_time_left
+from squeezefilm.regular_file import opened, parsed_json
 from squeezefilm.results import Result, write_whole
 from squeezefilm.session.record import trace_file as file
+
+_TOLD = 100_000_000
+"""Bytes of a trace after which it is told again how far its reading is."""
 
 FORMATS = {".csv": "csv", ".parquet": "parquet"}
 
@@ -111,10 +114,11 @@ class Trace(Result):
         return {name: self.rows[:, at] for at, name in enumerate(self.columns)}
 
 
-def read_trace(path: str | Path) -> Trace:
+def read_trace(path: str | Path, tell: ShareProgress | None = None) -> Trace:
     """The trace in a file: every whole block of it, and what is missing.
 
-    Content that is cut, damaged or no trace at all raises nothing; `Trace.damage` says so.
+    Content that is cut, damaged or no trace at all raises nothing; `Trace.damage` says so. `tell`
+    is told which share of the file is read.
 
     Raises:
         InputError: a file that cannot be opened, or what is no file (a pipe has no end).
@@ -122,9 +126,9 @@ def read_trace(path: str | Path) -> Trace:
     try:
         with opened(path, TRACE_BYTES, "a trace") as handle:
             if os.fstat(handle).st_size == 0:
-                return _trace(b"")
+                return _trace(b"", tell)
             with mmap.mmap(handle, 0, access=mmap.ACCESS_READ) as data:
-                return _trace(data)
+                return _trace(data, tell)
     except InputError:
         raise
     except (OSError, ValueError) as error:
@@ -147,9 +151,16 @@ class _Found:
     misread: int = 0
 
 
-def _trace(data: bytes | mmap.mmap) -> Trace:
-    found = _Found()
-    for part in file.blocks(data):
+def _trace(data: bytes | mmap.mmap, tell: ShareProgress | None) -> Trace:
+    found, told = _Found(), 0
+
+    def looked_at(place: int) -> None:
+        nonlocal told
+        if tell is not None and place >= told:
+            tell(f"reading the trace, {len(data) / 1e9:.3g} GB", place / len(data))
+            told = place + max(len(data) // 50, _TOLD)
+
+    for part in file.blocks(data, looked_at):
         if isinstance(part, file.Gap):
             found.lost_bytes += part.end - part.start
             found.gaps.append(part)
@@ -238,8 +249,8 @@ def _damage(found: _Found, data: bytes | mmap.mmap) -> Damage:
 
 def _json_object(payload: bytes) -> dict[str, Any] | None:
     try:
-        value = json.loads(payload)
-    except (ValueError, RecursionError):
+        value = parsed_json(payload)
+    except ValueError:
         return None
     return value if isinstance(value, dict) else None
 
@@ -282,8 +293,9 @@ def trace_table(trace: Trace) -> Table:
     return Table({name: rows[:, k].copy() for k, name in enumerate(trace.columns)}, metadata)
 
 
-def export_trace(trace_path: Path, to: Path) -> TraceExport:
-    """Write a trace as CSV or Parquet, by the ending of `to`, whole or not at all.
+def export_trace(trace_path: Path, to: Path, progress: SayProgress | None = None) -> TraceExport:
+    """Write a trace as CSV or Parquet, by the ending of `to`, whole or not at all; `progress` is
+    told how far it is, and how long it takes.
 
     Raises:
         InputError: an ending that is not known, a trace that cannot be read or of which nothing
@@ -294,8 +306,10 @@ def export_trace(trace_path: Path, to: Path) -> TraceExport:
         raise InputError(f"{to} ends with neither .csv nor .parquet; name the file so")
     if to.resolve() == trace_path.resolve():
         raise InputError(f"{to} is the trace itself; give another name")
-    trace = read_trace(trace_path)
+    say = progress or (lambda _: None)
+    trace = read_trace(trace_path, said_with_time_left(say))
     table = trace_table(trace)
+    say(f"writing {len(trace.rows)} rows")
     write_whole(to, csv_text(table) if kind == "csv" else parquet_bytes(table))
     return TraceExport(
         trace=str(trace_path),

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from mmap import mmap
@@ -23,6 +23,9 @@ VERSION = 1
 MARKER = b"\xabSQ\x1a"
 LONGEST_PAYLOAD = 1 << 20
 """Bytes of one block; longer rows are cut into several, so that a damaged one costs little."""
+
+_PIECE = 1 << 26
+"""Bytes that are searched at once: some hundredths of a second."""
 
 _HEADER = struct.Struct("<8sII")
 _BLOCK = struct.Struct("<4sIII")
@@ -82,15 +85,18 @@ def header_version(data: bytes | mmap) -> int | None:
     return int(version)
 
 
-def blocks(data: bytes | mmap) -> Iterator[Block | Gap]:
+def blocks(
+    data: bytes | mmap, looked_at: Callable[[int], object] = lambda _: None
+) -> Iterator[Block | Gap]:
     """Every whole block in the order of the file, and the gaps between them. Raises nothing.
 
     A block is believed only by its CRC, so it does not matter what the bytes before it were.
+    `looked_at` is told, time and again, how many bytes were gone through.
     """
     at = HEADER_SIZE if header_version(data) is not None else 0
     lost_from = at
     while True:
-        found = data.find(MARKER, at)
+        found = _marker(data, at, looked_at)
         if found < 0:
             break
         block = _block_at(data, found)
@@ -103,6 +109,18 @@ def blocks(data: bytes | mmap) -> Iterator[Block | Gap]:
         at = lost_from = block.start + block.length + _CRC.size
     if len(data) > lost_from:
         yield Gap(lost_from, len(data))
+
+
+def _marker(data: bytes | mmap, at: int, looked_at: Callable[[int], object]) -> int:
+    """The place of the next marker from `at` on; -1 for none. In pieces, between which Ctrl-C is
+    heard: a file may have any length without one."""
+    while at < len(data):
+        looked_at(at)
+        found = data.find(MARKER, at, at + _PIECE + len(MARKER) - 1)
+        if found >= 0:
+            return found
+        at += _PIECE
+    return -1
 
 
 def _block_at(data: bytes | mmap, at: int) -> Block | None:

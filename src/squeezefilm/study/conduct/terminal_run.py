@@ -18,6 +18,7 @@ from squeezefilm.formats.traces import Table, csv_text
 from squeezefilm.perception.observer import load_observer
 from squeezefilm.progress import SayProgress
 from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.results import write_whole
 from squeezefilm.study.conduct.again import COUNTED, why_begun_again
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import (
@@ -201,7 +202,7 @@ def _free_path(display: Display) -> FingerPath:
 
 def _written(path: FingerPath, file: Path) -> Path:
     table = Table({"time_s": path.time, "x_m": path.x, "y_m": path.y})
-    file.write_text(csv_text(table), encoding="utf-8")
+    write_whole(file, csv_text(table))
     return file
 
 

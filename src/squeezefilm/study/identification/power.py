@@ -7,6 +7,7 @@ people, so a curve can be cut short, resumed and refined, and gives the same num
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,8 +20,9 @@ from scipy import stats
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import STUDIES, require_within
+from squeezefilm.hard_limits import OWN_BYTES, STUDIES, require_within
 from squeezefilm.kept.computed_by import computed_by
+from squeezefilm.regular_file import read_json
 from squeezefilm.results import config_hash, write_whole
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import proportion_interval
@@ -246,8 +248,8 @@ def _significant(
         name: dict[str, Any] = {"key": key, "computed_by": computed_by()}
         name |= {"people": people, "studies": studies, "alpha": alpha, "seed": seed}
         file = Path(cache) / f"power-{config_hash(name)}.json"
-        if file.is_file():
-            return int(json.loads(file.read_text(encoding="utf-8"))["significant"])
+        if (known := _known_number(file, studies)) is not None:
+            return known
     random = np.random.default_rng([seed, people])
     number = 0
     for _ in range(studies):
@@ -258,6 +260,16 @@ def _significant(
     if file is not None:
         write_whole(file, json.dumps({**name, "significant": number}) + "\n")
     return number
+
+
+def _known_number(file: Path, studies: int) -> int | None:
+    """What a file kept of so many studies; None where there is none, or it was damaged."""
+    with contextlib.suppress(ValueError, KeyError, TypeError, OverflowError):
+        kept = read_json(file, OWN_BYTES, "a count of studies")
+        number = int(kept["significant"])
+        if kept["studies"] == studies and 0 <= number <= studies:
+            return number
+    return None
 
 
 def _first_lasting(sizes: tuple[int, ...], reached: NDArray[np.bool_]) -> int | None:

@@ -15,6 +15,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.errors import InputError
+from squeezefilm.regular_file import parsed_json
 from squeezefilm.study.record.schema import SCHEMA, TABLES
 
 if TYPE_CHECKING:
@@ -137,8 +138,8 @@ def _trial_problems(rows: Rows, design: StudyDesign) -> Iterator[str]:
 
 def _json(text: str) -> Any:
     try:
-        return json.loads(text)
-    except (ValueError, RecursionError):
+        return parsed_json(text)
+    except ValueError:
         # No JSON has this type, so that no check holds for it.
         return ...
 

@@ -14,6 +14,7 @@ import sqlite3
 from pathlib import Path
 
 from squeezefilm.errors import InputError, RecordError
+from squeezefilm.regular_file import require_regular
 from squeezefilm.study.record.schema import APPLICATION_ID, VERSION
 
 _PATIENCE = 5000
@@ -90,12 +91,15 @@ def require_study(path: Path) -> None:
 
     Raises `InputError`.
     """
-    try:
-        regular = path.is_file()
-    except ValueError as error:
-        raise InputError(f"{str(path)!r} is no file's name: {error}") from error
-    if not regular:
+    require_regular(path, "a study's file")
+    if not path.exists():
         raise InputError(f"{path} does not exist; plan a study and create its file first")
+    for part in _LEFT_BEHIND:
+        beside = path.with_name(path.name + part)
+        require_regular(beside, "what belongs to a study's file")
+        # What is written to the log must lie beside the file, and not where a link leads.
+        if beside.is_symlink():
+            raise InputError(f"{beside} is a link, which no study's file has; move it away")
     if path.stat().st_size == 0 and not path.with_name(f"{path.name}-wal").exists():
         raise InputError(
             f"{path} is empty and so no study's file; if no other program is creating it just "

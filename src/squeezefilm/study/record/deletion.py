@@ -18,6 +18,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from squeezefilm.errors import InputError, RecordError
+from squeezefilm.hard_limits import TRACE_BYTES
+from squeezefilm.regular_file import opened
 from squeezefilm.study.record.contents import is_trace, require_identifier
 from squeezefilm.study.record.database import same_folders
 from squeezefilm.study.record.erasure import erase_file, require_plain
@@ -220,7 +222,10 @@ def _holds(path: Path, wanted: list[bytes]) -> bool:
     longest = max(len(one) for one in wanted)
     tail = b""
     try:
-        with path.open("rb") as file:
+        with (
+            opened(path, TRACE_BYTES, "a file to search") as handle,
+            os.fdopen(handle, "rb", closefd=False) as file,
+        ):
             while piece := file.read(_PIECE):
                 whole = tail + piece
                 if any(one in whole for one in wanted):

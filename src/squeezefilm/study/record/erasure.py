@@ -40,6 +40,17 @@ def read_plain(path: Path) -> bytes:
         return file.read()
 
 
+def require_own_folder(folder: Path) -> None:
+    """Refuse a link or a file in the place of a folder to write to. Raises `InputError`; a folder
+    that is not there yet is made by who writes."""
+    if folder.is_symlink() or (os.path.lexists(folder) and not folder.is_dir()):
+        what = "a link" if folder.is_symlink() else "a file"
+        raise InputError(
+            f"{folder} is {what}, and nothing is written to where it leads; put a folder in its "
+            "place, with what belongs in it"
+        )
+
+
 def require_plain(path: Path) -> None:
     """Refuse a file that `erase_file` would refuse. Raises what `plain_file` raises."""
     with plain_file(path, os.O_RDWR):

@@ -20,6 +20,8 @@ from typing import Any, Literal, get_args
 
 from squeezefilm import __version__
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import OWN_BYTES
+from squeezefilm.regular_file import parsed_json, read_json, read_regular_text
 from squeezefilm.results import write_whole
 from squeezefilm.study.record.erasure import erase_file, require_plain
 from squeezefilm.study.record.store import StudyStore
@@ -76,8 +78,11 @@ def exported_folders(store: StudyStore) -> list[tuple[Format, Path]]:
     if not listed.is_file():
         return []
     try:
-        found = [(one["format"], Path(one["folder"])) for one in json.loads(listed.read_text())]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        rows = read_json(listed, OWN_BYTES, "a list of exports")
+        found = [(row["format"], Path(row["folder"])) for row in rows]
+        if not {format for format, _ in found} <= set(FORMATS):
+            raise ValueError("a format that is not known")
+    except (ValueError, KeyError, TypeError) as error:
         raise InputError(
             f"{listed} cannot be read ({error!r}); remove it and export again, and delete old "
             "exports by hand"
@@ -125,10 +130,11 @@ def _marked(mark: Path) -> list[str]:
     None for a mark of zeros: it was being erased, as the last of its files.
     """
     try:
-        if (text := mark.read_text()).startswith("\0"):
+        text = read_regular_text(mark, OWN_BYTES, "the mark of an export")
+        if text.startswith("\0"):
             return []
-        return [str(name) for name in json.loads(text)["files"]]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        return [str(name) for name in parsed_json(text)["files"]]
+    except (ValueError, KeyError, TypeError) as error:
         raise InputError(
             f"{mark} cannot be read ({error!r:.100}); remove this export by hand, or give another "
             "folder"

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from squeezefilm.errors import ContradictionError, InputError
 from squeezefilm.results import write_whole
-from squeezefilm.study.record.erasure import read_plain
+from squeezefilm.study.record.erasure import read_plain, require_own_folder
 from squeezefilm.study.record.schema import TABLES
 from squeezefilm.study.record.store import StudyStore, insert
 
@@ -60,6 +60,7 @@ def merge(store: StudyStore, other: str | Path) -> Merge:
                     f"{other} is of another study: its {what} is {there}, here it is {here}; "
                     "stations must be created from one design and one seed"
                 )
+        require_own_folder(store.traces)
         store.require_whole()
         theirs.require_whole()
         traces = _copy_traces(store, theirs)

@@ -22,6 +22,8 @@ from typing import Any
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError, RecordError
+from squeezefilm.hard_limits import OWN_BYTES
+from squeezefilm.regular_file import read_json
 from squeezefilm.results import write_whole
 from squeezefilm.study.record.erasure import erase_file, overwrite, plain_file, require_plain
 
@@ -153,18 +155,22 @@ class Sittings:
             found = self.file.stat()
         except FileNotFoundError:
             return {}
+        except OSError as error:
+            raise InputError(
+                f"{self.file} cannot be read: {error.strerror}; move it away"
+            ) from error
         version = (found.st_ino, found.st_mtime_ns, found.st_size)
         if version != self._version:
             self._known, self._version = self._read(), version
         return self._known
 
     def _read(self) -> dict[str, Sitting]:
-        try:
-            rows = json.loads(self.file.read_text(encoding="utf-8"))
-            return {row["id"]: Sitting(**row) for row in rows}
-        except FileNotFoundError:
+        if not os.path.lexists(self.file):
             return {}
-        except (OSError, ValueError, TypeError, KeyError, RecursionError) as error:
+        try:
+            rows = read_json(self.file, OWN_BYTES, "a file of sittings")
+            return {row["id"]: Sitting(**row) for row in rows}
+        except (ValueError, TypeError, KeyError) as error:
             raise InputError(
                 f"{self.file} is damaged ({error!r:.200}); move it away: no answer is lost, they "
                 "are in the study's own file"

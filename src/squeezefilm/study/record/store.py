@@ -37,7 +37,7 @@ from squeezefilm.study.record.database import (
     require_study,
     same_folders,
 )
-from squeezefilm.study.record.erasure import require_plain
+from squeezefilm.study.record.erasure import require_own_folder, require_plain
 from squeezefilm.study.record.schema import APPLICATION_ID, SCHEMA, UPGRADE_1, VERSION
 
 _HIGHEST_SEED = 2**53
@@ -336,6 +336,7 @@ class StudyStore:
         """
         name = f"{secrets.token_hex(16)}.csv"
         try:
+            require_own_folder(self.traces)
             write_whole(self.traces / name, text)
         except InputError as error:
             raise RecordError(f"{error}; nothing was acknowledged") from error
@@ -367,6 +368,7 @@ class StudyStore:
     def back_up(self) -> Path:
         """A copy of the file as it is now, in `backups`; there whole or not at all. Raises
         `RecordError`, also for a damaged file."""
+        require_own_folder(self.backups)
         self.require_whole()
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
         target = self.backups / f"{self.path.stem}-{stamp}-{secrets.token_hex(3)}{self.path.suffix}"

@@ -1,12 +1,15 @@
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import optuna
+import pytest
 from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 
-from squeezefilm.search.design.journal import journal
+from squeezefilm.errors import SqueezefilmWarning
+from squeezefilm.search.design.journal import journal, usable_journal
 
 
 def test_optuna_reads_what_was_written_and_goes_on(tmp_path: Path) -> None:
@@ -38,6 +41,44 @@ def test_a_line_that_was_cut_off_costs_itself_only(tmp_path: Path) -> None:
         again.add_trial(_trial(0.75))
         more = optuna.load_study(study_name="a", storage=journal(file))
         assert [one.params["x"] for one in more.trials] == [0.25, 0.75]
+
+
+def _damaged(data: bytes) -> list[bytes]:
+    """A journal after accidents: a changed byte, a line of somebody else's, zeros."""
+    lines = data.splitlines(keepends=True)
+    changed = bytearray(data)
+    changed[len(data) // 2] ^= 4
+    return [
+        bytes(changed),
+        lines[0] + b"[" * 200_000 + b"\n" + b"".join(lines[1:]),
+        b"\0" * 500 + b"\n",
+    ]
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_a_damaged_journal_is_set_aside_and_begun_anew(number: int, tmp_path: Path) -> None:
+    file = tmp_path / "journal.log"
+    optuna.create_study(study_name="a", storage=journal(file)).add_trial(_trial(0.25))
+    damaged = _damaged(file.read_bytes())[number]
+    file.write_bytes(damaged)
+    with pytest.warns(SqueezefilmWarning, match="set aside as journal.log.damaged"):
+        storage, is_rebuilt = usable_journal(file)
+    assert is_rebuilt
+    optuna.create_study(study_name="a", storage=storage).add_trial(_trial(0.5))
+    storage, is_rebuilt = usable_journal(file)
+    assert not is_rebuilt
+    assert [one.params["x"] for one in optuna.load_study(study_name="a", storage=storage).trials]
+    assert (tmp_path / "journal.log.damaged").read_bytes() == damaged
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no pipes with names")
+def test_a_pipe_or_a_device_in_its_place_is_set_aside(tmp_path: Path) -> None:
+    file = tmp_path / "journal.log"
+    for make in (os.mkfifo, lambda path: path.symlink_to("/dev/zero"), Path.mkdir):
+        make(file)
+        with pytest.warns(SqueezefilmWarning, match="set aside"):
+            usable_journal(file)
+        file.unlink()
 
 
 def _trial(x: float) -> optuna.trial.FrozenTrial:

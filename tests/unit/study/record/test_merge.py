@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import ContradictionError, InputError
+from squeezefilm.errors import ContradictionError, InputError, RecordError
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record.merge import merge
@@ -185,3 +185,21 @@ def test_a_link_among_anothers_traces_is_not_followed(tmp_path: Path) -> None:
             merge(store, other)
         assert _contents(store) == before
         assert not (store.traces / trace.name).exists()
+
+
+def test_a_link_in_place_of_the_folder_of_traces_is_not_written_through(tmp_path: Path) -> None:
+    a, b = (_station(tmp_path / f"{name}.sqlite", k, 1) for k, name in enumerate("ab"))
+    b.close()
+    elsewhere = tmp_path / "elsewhere"
+    a.traces.rename(elsewhere)
+    before = sorted(elsewhere.iterdir())
+    a.traces.symlink_to(elsewhere)
+    with pytest.raises(InputError, match="is a link, and nothing is written to where it leads"):
+        merge(a, tmp_path / "b.sqlite")
+    with pytest.raises(RecordError, match="is a link"):
+        a.save_trace("time_s,x_m\n")
+    assert sorted(elsewhere.iterdir()) == before
+    a.traces.unlink()
+    elsewhere.rename(a.traces)
+    assert merge(a, tmp_path / "b.sqlite").traces > 0
+    a.close()

@@ -1,0 +1,140 @@
+"""Files are read by `regular_file` and not otherwise, but for what stands here with its reason."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import squeezefilm
+
+SOURCE = Path(squeezefilm.__file__).parent
+
+OPENING = {
+    "open", "read_text", "read_bytes", "connect", "loadmat", "loadtxt", "genfromtxt", "fromfile",
+    "memmap", "mmap", "UFF", "ZipFile", "file_digest", "load", "loads",
+}  # fmt: skip
+"""Functions and methods that open a file or take apart what was in one, by their last name."""
+
+LOADING = {"json", "pickle", "np", "numpy", "tomllib", "marshal", "plistlib"}
+"""Modules whose `load` and `loads` read; other objects have methods of these names."""
+
+PACKAGE = "a file of this package"
+ROW = "a cell of a study's database, whose rows `require_whole` has looked at"
+TOML = "TOML text, after `require_quick_toml` or of this package"
+WRITES = "opened to write"
+CHILD = "in the child process of `isolated_reading`"
+
+ALLOWED: Mapping[str, Mapping[str, str]] = {
+    "regular_file.py": {"os.open": "the reader itself", "json.loads": "the reader itself"},
+    "isolated_reading.py": {
+        "open": "the pipe of its parent",
+        "json.loads": "a line between the two processes",
+    },
+    "kept/records.py": {"json.loads": "what `read_regular` read; any error counts as not there"},
+    "kept/computed_by.py": {"os.open": "the package's source"},
+    "measure/recordings/matlab.py": {"loadmat": CHILD},
+    "measure/recordings/universal.py": {"pyuff.UFF": CHILD},
+    "measure/recordings/description.py": {"tomllib.loads": TOML},
+    "formats/pictures.py": {"Pillow.open": CHILD},
+    "report/actuators/skin_stretch_figures.py": {"Image.open": "bytes that Matplotlib just drew"},
+    "report/textures/gallery.py": {
+        "read_text": PACKAGE,
+        "read_bytes": "a figure of the checkout's documentation",
+        "Image.open": "a figure of the checkout's documentation",
+    },
+    "report/plate/vtu.py": {"read_bytes": "a draft in a folder of its own"},
+    "report/study/session.py": {"path.open": WRITES},
+    "session/record/trace.py": {"mmap.mmap": "over the descriptor that `opened` gave"},
+    "session/record/trace_writer.py": {"os.open": WRITES},
+    "session/loop/process.py": {"mmap.mmap": "memory shared with its own child"},
+    "session/loop/worker.py": {
+        "mmap.mmap": "memory shared with its parent",
+        "pickle.load": "orders of its parent, by a pipe",
+    },
+    "search/lines.py": {"place.open": WRITES, "open": WRITES},
+    "search/design/journal.py": {"file.open": "looked at by `read_regular` before"},
+    "search/cluster.py": {"pickle.loads": "an answer of the workers whom somebody named"},
+    "search/answers.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
+    "twin/plant.py": {"file.open": WRITES},
+    "twin/pty_server.py": {"os.open": "a terminal of its own"},
+    "results.py": {"os.open": WRITES},
+    "lab/files.py": {"os.open": WRITES},
+    "lab/designing/form.py": {"read_text": PACKAGE},
+    "lab/searching/asked.py": {"tomllib.loads": TOML},
+    "lab/wire.py": {"json.loads": "a message of a page, of limited length"},
+    "lab/serve.py": {"webbrowser.open": "no file"},
+    "presets/materials.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
+    "display.py": {"read_text": PACKAGE},
+    "plausibility/bounds.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
+    "bench/loop_check.py": {"read_text": "/proc/stat, of the kernel"},
+    "config/load.py": {"tomllib.loads": TOML},
+    "config/written.py": {"tomllib.loads": TOML},
+    "actuators/described.py": {"tomllib.loads": TOML},
+    "cli/__init__.py": {"os.open": "/dev/null, to write"},
+    "study/design/trials.py": {"json.loads": ROW},
+    "study/record/tables.py": {"json.loads": ROW},
+    "study/record/merge.py": {"json.loads": ROW},
+    "study/record/deletion.py": {"json.loads": ROW},
+    "study/record/contents.py": {"json.loads": ROW, "sqlite3.connect": "in memory"},
+    "study/record/store.py": {"json.loads": ROW},
+    "study/record/erasure.py": {"os.open": "plain files only, of one name and no link"},
+    "study/record/sittings.py": {"os.open": "a folder, to lock or sync it"},
+    "study/record/database.py": {
+        "os.open": "made anew, and refused where something is",
+        "sqlite3.connect": "after `require_regular`: another opening would drop SQLite's locks",
+    },
+}
+"""By module: each call that opens a file in its own way, and why it may."""
+
+OTHER_OBJECTS = {"StudyStore.open", "host.open", "self.open", "lab.open"}
+"""Methods of these names that open no file themselves."""
+
+
+def openings(tree: ast.AST) -> Iterator[tuple[str, int]]:
+    """Calls that may read a file: their name as it is written, short, and their line."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        name = ast.unparse(node.func)
+        last = name.rpartition(".")[2]
+        if last not in OPENING or name in OTHER_OBJECTS:
+            continue
+        if last in ("load", "loads") and name.rpartition(".")[0] not in LOADING:
+            continue
+        if last == "connect" and not name.startswith("sqlite3"):
+            continue
+        yield name, node.lineno
+
+
+def test_nothing_else_opens_files_for_reading() -> None:
+    unknown, used = [], set()
+    for path in sorted(SOURCE.rglob("*.py")):
+        place = path.relative_to(SOURCE).as_posix()
+        allowed = ALLOWED.get(place, {})
+        for name, line in openings(ast.parse(path.read_text(encoding="utf-8"))):
+            short = name.rpartition(".")[2]
+            key = name if name in allowed else short
+            if key in allowed:
+                used.add((place, key))
+            else:
+                unknown.append(f"{place}:{line}: {name}")
+    assert unknown == [], "read files with squeezefilm.regular_file, or give the reason here"
+    stale = {(place, key) for place, keys in ALLOWED.items() for key in keys} - used
+    assert stale == set(), "nothing there opens a file in this way any more"
+
+
+def test_an_opening_is_found_however_it_is_written() -> None:
+    code = "open(p)\np.open()\nPath(p).read_text()\nnp.load(p)\njson.load(f)\nsqlite3.connect(p)"
+    assert [line for _, line in openings(ast.parse(code))] == [1, 2, 3, 4, 5, 6]
+
+
+def test_files_are_written_whole_by_one_function() -> None:
+    """`write_whole` leaves nothing cut behind; these write to a folder or a record of their own."""
+    own = {"bench/play.py", "report/textures/gallery.py"}
+    writers = set()
+    for path in SOURCE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Attribute) and node.attr in ("write_text", "write_bytes"):
+                writers.add(path.relative_to(SOURCE).as_posix())
+    assert writers == own
