@@ -16,3 +16,15 @@ def picture_bytes(values: DimensionlessArray, bits: int = 8) -> bytes:
     stream = io.BytesIO()
     Image.fromarray(grey).save(stream, format="PNG")
     return stream.getvalue()
+
+
+def coloured_bytes(values: DimensionlessArray, kind: str = "PNG", exif: int = 1) -> bytes:
+    """A picture of red, green and blue from 0 to 1, shape (rows, columns, 3), as PNG or JPEG.
+
+    `exif` says how the camera was held (1: upright).
+    """
+    stream, said = io.BytesIO(), Image.Exif()
+    said[0x112] = exif
+    picture = Image.fromarray(np.rint(values * 255).astype(np.uint8))
+    picture.save(stream, format=kind, exif=said, **({"quality": 100} if kind == "JPEG" else {}))
+    return stream.getvalue()

@@ -73,22 +73,25 @@ NamedTexture = Annotated[TextureFile | Composable, ReadBy(load_texture)]
 """A texture, or in its place the name of a preset or the path of a file (see `reads_text`)."""
 
 
-def _with_images(found: TextureFile, path: Path | None) -> TextureFile:
+def _with_images(found: TextureFile, path: Path | None, folder: Path | None = None) -> TextureFile:
     try:
-        whole = image_file.with_images(found, None if path is None else path.parent)
+        whole = image_file.with_images(found, folder if path is None else path.parent)
     except InputError as error:
         raise ConfigError(str(error), file=path, key=error.quantity or "file") from error
     assert isinstance(whole, TextureFile)
     return whole
 
 
-def texture_from_text(text: str, *, file: str | Path | None = None) -> TextureFile:
+def texture_from_text(
+    text: str, *, file: str | Path | None = None, folder: Path | None = None
+) -> TextureFile:
     """The texture in TOML text; `file` is what messages name and beside which pictures lie.
 
-    Raises `ConfigError`, also for a picture where there is no `file`.
+    For a text that is in no file, pictures lie in `folder`.
+    Raises `ConfigError`, also for a picture where there is neither.
     """
-    found = load_text(TextureFile, text, file=file)
-    return _with_images(found, None if file is None else Path(file))
+    path = None if file is None else Path(file)
+    return _with_images(load_text(TextureFile, text, file=file), path, folder)
 
 
 def texture_text(texture: TextureFile | Composable) -> str:

@@ -185,9 +185,8 @@ def test_an_area_that_was_left_is_silent(seen: Watched) -> None:
     # Half a second after a slider moved a display would be solved.
     assert len(seen.asked) == asked
     # One stay draws once a frame, however often the area was entered before.
-    for area in ("device", "design"):
-        seen.go(area)
-        page.wait_for_function("() => framesWaiting() === 1")
+    seen.go("design")
+    page.wait_for_function("() => framesWaiting() === 1")
     seen.go("study")
     seen.settle()
     button = page.get_by_role("button", name="Create the study")
@@ -418,7 +417,7 @@ def test_a_device_that_is_gone_is_not_shown_playing(seen: Watched) -> None:
         assert shown.filter(has_text="position").inner_text().splitlines()[1] == "−4.00 mm"
         if state == "FAULT":
             # Held up, it may still play: what is shown is old, and says so.
-            shown.filter(has_text="nothing heard for").wait_for()
+            page.locator(".results.older .age", has_text="heard 1 s ago").wait_for()
         seen.told("device ended", failed=True, **ended)
         seen.told("playing", now=[])
         shown.filter(has_text=ended["message"]).wait_for()

@@ -42,6 +42,17 @@ class _Source:
 
     text: str
     file: str | Path | None
+    plain: Any = None
+
+    def typed(self, path: Sequence[str | int]) -> Any:
+        """What stands at a path of the text, None where nothing does."""
+        found = self.plain
+        for part in path:
+            try:
+                found = found[part]
+            except (KeyError, IndexError, TypeError):
+                return None
+        return found
 
     def error(self, message: str, path: Sequence[str | int]) -> ConfigError:
         """An error at a key, with its line."""
@@ -86,6 +97,7 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
     except ConfigError as error:
         place = locate(text, (error.key or "").split("."))
         raise ConfigError(error.message, file=file, line=place, key=error.key) from error
+    source = dataclasses.replace(source, plain=split.plain)
     try:
         model = model_of(cls).model_validate(split.plain)
     except ValidationError as error:
@@ -146,7 +158,17 @@ def _build(cls: type[Any], model: BaseModel, path: _Path, source: _Source) -> An
     except InputError as error:
         key = getattr(error, "quantity", None)
         at = (*path, key) if key in values else path
-        raise source.error(str(error), at) from error
+        raise source.error(_as_typed(error, hints, at, source), at) from error
+
+
+def _as_typed(error: InputError, hints: dict[str, Any], at: _Path, source: _Source) -> str:
+    """An error's message, in the unit that was typed where that is none of SI's."""
+    if at and isinstance(typed := source.typed(at), str) and at[-1] in hints:
+        try:
+            si.require_typed(str(at[-1]), typed, hints[str(at[-1])])
+        except InputError as in_the_unit:
+            return str(in_the_unit)
+    return str(error)
 
 
 def _built_value(hint: Any, value: Any, path: _Path, source: _Source) -> Any:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import os
 import re
+import zipfile
 from pathlib import Path
 
 from squeezefilm.errors import InputError
@@ -43,6 +46,16 @@ def fresh(folder: Path, name: str, suffix: str, *, replace: bool = False) -> Pat
     if file.exists() and not replace:
         raise InputError(f"{file.name} exists; choose another name, or allow replacing it")
     return file
+
+
+def zipped(folder: Path) -> str:
+    """A zip of a folder's files in base64, without links and names that begin with a dot."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in sorted(folder.rglob("*")):
+            if path.is_file() and not path.is_symlink() and not path.name.startswith("."):
+                archive.write(path, path.relative_to(folder))
+    return base64.b64encode(out.getvalue()).decode()
 
 
 def write_secret(file: Path, content: bytes) -> None:

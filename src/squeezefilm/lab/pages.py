@@ -20,7 +20,10 @@ MOST_UNREAD = 256
 """Messages that may wait for one page."""
 SLOWEST_PAGE: si.Second = 10.0
 """For a page to take one message."""
+BEAT: si.Second = 0.5
+"""A page that there is nothing to tell hears so often that the lab is alive."""
 Message = dict[str, Any]
+_ALIVE = '{"type":"alive"}'
 _TOO_SLOW = "this page did not read what the lab said to it; reload it"
 
 
@@ -54,10 +57,17 @@ class OpenPage:
         """The page is gone: nothing more is written."""
         self._writer.cancel()
 
+    async def _next(self) -> str:
+        try:
+            async with asyncio.timeout(BEAT):
+                return await self._unread.get()
+        except TimeoutError:
+            return _ALIVE
+
     async def _write(self) -> None:
         try:
             while True:
-                text = await self._unread.get()
+                text = await self._next()
                 async with asyncio.timeout(SLOWEST_PAGE):
                     await self._page.send_text(text)
         except TimeoutError:

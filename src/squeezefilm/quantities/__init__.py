@@ -3,5 +3,6 @@
 from squeezefilm.quantities.bounds import *  # noqa: F403
 from squeezefilm.quantities.checks import *  # noqa: F403
 from squeezefilm.quantities.require import *  # noqa: F403
+from squeezefilm.quantities.typed import *  # noqa: F403
 from squeezefilm.quantities.units import *  # noqa: F403
 from squeezefilm.quantities.vocabulary import *  # noqa: F403

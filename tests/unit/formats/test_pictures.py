@@ -1,14 +1,16 @@
 """Pictures as maps, and pictures beside a texture's file."""
 
+import io
 import struct
 import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.pictures import picture_bytes
+from PIL import Image
+from tests.pictures import coloured_bytes, picture_bytes
 
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.errors import ConfigError, InputError, SqueezefilmWarning
 from squeezefilm.formats.image_file import ImageFile
 from squeezefilm.formats.pictures import picture_from, read_picture
 from squeezefilm.render.texture.image import MOST_PIXELS
@@ -43,9 +45,6 @@ def header(columns: int, rows: int, bits: int = 8, kind: int = 0) -> bytes:
     ("data", "says"),
     [
         (b"GIF89a", "is no PNG"),
-        (header(2, 2, 8, 2), "is colour of 8 bits"),
-        (header(2, 2, 8, 6), "colour with alpha"),
-        (header(2, 2, 1), "greyscale of 1 bits"),
         (header(1 << 20, 1 << 20), "1048576 × 1048576 pixels"),
         (header(0, 5), "0 × 5"),
         (header(4, 4), "damaged"),
@@ -55,6 +54,36 @@ def header(columns: int, rows: int, bits: int = 8, kind: int = 0) -> bytes:
 def test_what_is_no_map_is_refused_before_it_is_decoded(data: bytes, says: str) -> None:
     with pytest.raises(InputError, match=says):
         picture_from(data)
+
+
+def test_of_colours_the_brightness_is_used_and_that_is_said() -> None:
+    colours = np.random.default_rng(6).integers(0, 256, (7, 11, 3)) / 255
+    brightness = colours @ [0.299, 0.587, 0.114]
+    with pytest.warns(SqueezefilmWarning, match="a map is in colour: of each pixel the brightness"):
+        assert picture_from(coloured_bytes(colours), "a map") == pytest.approx(brightness)
+    white = np.ones((1, 1, 3))
+    with pytest.warns(SqueezefilmWarning, match="in colour"):
+        assert picture_from(coloured_bytes(white)) == 1.0
+    # A JPEG keeps colours coarsely, and brightness within some of its 255 steps.
+    grey = np.repeat(GRID[:, :, np.newaxis], 3, axis=2)
+    with pytest.warns(SqueezefilmWarning, match="in colour"):
+        assert picture_from(coloured_bytes(grey, "JPEG")) == pytest.approx(GRID, abs=4 / 255)
+    with pytest.warns(SqueezefilmWarning, match="in colour"):
+        turned = picture_from(coloured_bytes(grey, "JPEG", exif=6))
+    assert turned == pytest.approx(np.rot90(GRID, -1), abs=4 / 255)
+
+
+def test_pixels_that_are_seen_through_have_no_brightness() -> None:
+    def with_alpha(alpha: int) -> bytes:
+        stream = io.BytesIO()
+        picture = Image.fromarray(np.zeros((2, 3), dtype=np.uint8)).convert("LA")
+        picture.putpixel((1, 1), (0, alpha))
+        picture.save(stream, format="PNG")
+        return stream.getvalue()
+
+    assert picture_from(with_alpha(255)).shape == (2, 3)
+    with pytest.raises(InputError, match="transparent pixels"):
+        picture_from(with_alpha(254))
 
 
 def test_as_many_pixels_as_an_image_may_have() -> None:

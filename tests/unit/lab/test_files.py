@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import base64
+import io
+import zipfile
 from pathlib import Path
 
 import pytest
 
 from squeezefilm.errors import InputError
-from squeezefilm.lab.files import existing, fresh, named
+from squeezefilm.lab.files import existing, fresh, named, zipped
 
 
 @pytest.mark.parametrize(
@@ -70,3 +73,17 @@ def test_what_is_read_must_be_there_and_what_is_written_must_not(tmp_path: Path)
     (tmp_path / "three.toml").mkdir()
     with pytest.raises(InputError, match="there is no file"):
         existing(tmp_path, "three", ".toml")
+
+
+def test_a_folder_to_take_away_has_its_files_and_none_that_are_hidden_or_elsewhere(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / "csv"
+    (folder / "data").mkdir(parents=True)
+    (folder / "data" / "trials.csv").write_text("a,b\n")
+    (folder / ".mark.json").write_text("{}")
+    (tmp_path / "secret").write_text("no")
+    (folder / "link.csv").symlink_to(tmp_path / "secret")
+    with zipfile.ZipFile(io.BytesIO(base64.b64decode(zipped(folder)))) as archive:
+        assert archive.namelist() == ["data/trials.csv"]
+        assert archive.read("data/trials.csv") == b"a,b\n"

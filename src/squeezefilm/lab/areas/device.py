@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from squeezefilm import presets
-from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.lab import playing_process as device_process
 from squeezefilm.lab.designing.form import name_of
+from squeezefilm.lab.designing.playable import require_playable
 from squeezefilm.lab.designing.program import title_of
 from squeezefilm.lab.files import existing
 from squeezefilm.lab.playing_process import DeviceSession
@@ -94,9 +94,10 @@ class DeviceArea:
         if not asked.armed:
             raise InputError("the device is not armed; arm it on the page first")
         how = asked.model_dump(include={"mode", "stroke", "sensor", "compensation", "seed"})
-        how["duration"] = si.parse_quantity(asked.duration, si.Unit("s"))
-        voltage = asked.voltage
-        how["voltage"] = None if voltage is None else si.parse_quantity(voltage, si.Unit("V"))
+        typed = (asked.display, _drive(asked.drive), asked.duration, asked.voltage, asked.stroke)
+        how["duration"], how["voltage"] = await self._lab.workers.quick.do(
+            None, require_playable, *typed
+        )
         name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
         display = str(await _display(self._lab, asked.display))
         texture = str(await _texture(self._lab, asked))
@@ -146,6 +147,6 @@ async def _texture(lab: Lab, asked: PlayDevice) -> Path:
     folder = lab.folder / "textures"
     folder.mkdir(exist_ok=True)
     file = folder / ".played.toml"
-    await lab.workers.quick.do(None, title_of, str(asked.texture), file)
+    await lab.workers.quick.do(None, title_of, str(asked.texture), folder)
     write_whole(file, str(asked.texture))
     return file

@@ -50,11 +50,12 @@ class TextureText(Request):
 
 
 class AddPicture(Request):
-    """A greyscale PNG in base64, and the side of its pixels with the unit."""
+    """A PNG or JPEG in base64, and the side of its pixels with the unit."""
 
     name: str = Field(max_length=64)
     data: str = Field(max_length=7_000_000)
     pixel: str = Field(max_length=100)
+    replace: bool = False
 
 
 class SaveTexture(Request):
@@ -62,6 +63,7 @@ class SaveTexture(Request):
 
     name: str = Field(max_length=64)
     text: str = Field(max_length=LONGEST_TEXT)
+    replace: bool = False
 
 
 class SaveStroke(Request):
@@ -71,6 +73,7 @@ class SaveStroke(Request):
     rows: list[tuple[float, float, float, float, float, float, float, float]] = Field(
         max_length=MOST_ROWS
     )
+    replace: bool = False
 
 
 class FeelArea:
@@ -119,12 +122,13 @@ class FeelArea:
         return {"type": "parity", **await self._on_display(feel.parity, asked)}
 
     async def _add_picture(self, asked: AddPicture) -> Answer:
-        file = fresh(self._folder, asked.name, ".png")
         try:
             data = base64.b64decode(asked.data, validate=True)
         except binascii.Error as error:
             raise InputError("the picture's data are no base64; drop it again") from error
-        rows, columns = await self._quick.do(None, feel.pixels_of, data, asked.name)
+        suffix = ".jpg" if data[:2] == b"\xff\xd8" else ".png"
+        file = fresh(self._folder, asked.name, suffix, replace=asked.replace)
+        rows, columns, note = await self._quick.do(None, feel.pixels_of, data, asked.name)
         pixel = si.parse_quantity(asked.pixel, si.Unit("m"))
         if not 1e-6 <= pixel <= 0.1:
             raise InputError(f"a pixel of {asked.pixel}: it may have 1 µm to 10 cm")
@@ -135,19 +139,20 @@ class FeelArea:
             f'type = "image_file"\nfile = "{file.name}"\npixel = "{asked.pixel}"\n'
             'outside = "zero"\n'
         )
-        await self._quick.do(None, feel.title_of, text, self._folder / "texture.toml")
-        return {"type": "texture text", "text": text}
+        await self._quick.do(None, feel.title_of, text, self._folder)
+        return {"type": "texture text", "text": text, "note": note}
 
     async def _save_texture(self, asked: SaveTexture) -> Answer:
-        await self._quick.do(None, feel.title_of, asked.text, self._folder / "texture.toml")
-        file = fresh(self._folder, asked.name, ".toml")
+        await self._quick.do(None, feel.title_of, asked.text, self._folder)
+        file = fresh(self._folder, asked.name, ".toml", replace=asked.replace)
         self._folder.mkdir(exist_ok=True)
         write_whole(file, asked.text)
         return {"type": "saved", "file": f"textures/{file.name}"}
 
     async def _save_stroke(self, asked: SaveStroke) -> Answer:
-        file = fresh(self._lab.folder / "strokes", asked.name, ".csv")
-        felt = fresh(self._lab.folder / "strokes", f"{file.stem}.felt", ".csv")
+        folder, replace = self._lab.folder / "strokes", asked.replace
+        file = fresh(folder, asked.name, ".csv", replace=replace)
+        felt = fresh(folder, f"{file.stem}.felt", ".csv", replace=replace)
         file.parent.mkdir(exist_ok=True)
         # The motion alone is what a stroke's file has elsewhere; what was felt lies beside it.
         write_whole(felt, _csv(COLUMNS, asked.rows))

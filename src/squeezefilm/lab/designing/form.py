@@ -23,6 +23,8 @@ from squeezefilm.errors import InputError
 
 LONGEST_VALUE = 2000
 """Characters of one value in the form."""
+EDITED = ", edited"
+"""What stands behind the name of a preset that was edited."""
 OWN_VALUES = "values of its own"
 """What stands for a material where the text names none."""
 
@@ -127,7 +129,7 @@ def edited(text: str, path: str, value: str) -> str:
 
     `value` is what a person typed: quantity text, a number, or a word. A source that stood beside
     the old value no longer vouches for the new one: it is kept with "changed from …" before it, and
-    the evidence becomes unstated.
+    the evidence becomes unstated. A display that has a preset's name is called "NAME, edited".
 
     Raises:
         InputError: a path that is not there, or a text that is no display with the new value, in
@@ -145,7 +147,10 @@ def edited(text: str, path: str, value: str) -> str:
         if path.endswith(".material"):
             _with_material(document, path.split(".")[-2], value.strip())
         else:
-            _assign(document, rows, path, written)
+            write_value(document, rows, path, written)
+        name = str(document["name"])
+        if path != "name" and tomlkit.dumps(document) != text and name in presets.display_names():
+            document["name"] = name + EDITED
         found = tomlkit.dumps(document)
     except InputError:
         raise
@@ -157,7 +162,7 @@ def edited(text: str, path: str, value: str) -> str:
     return found
 
 
-def _assign(document: Any, rows: dict[str, dict[str, Any]], path: str, written: Any) -> None:
+def write_value(document: Any, rows: dict[str, dict[str, Any]], path: str, written: Any) -> None:
     """Write a value at a dotted path of a document, and what is left of its source."""
     owner, row = document, rows[path]
     *heads, last = path.split(".")

@@ -19,6 +19,7 @@ from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing.calibrated import calibration_of
+from squeezefilm.lab.designing.ceramics import covered, stretched
 from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.lab.worker import tell
 from squeezefilm.plate.electronics import load_of_mode
@@ -28,7 +29,10 @@ from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.progress import Pace
 from squeezefilm.results import stamp, to_json
 
+STRETCHED = "stretch the ceramics"
+"""Asked for in place of a value."""
 QUALITIES = ("screening", "solved")
+_BEAM: si.Dimensionless = 0.13
 _POINTS = 49
 _LEAST_SPAN = 2e-6
 _GRID = (84, 42)
@@ -44,12 +48,16 @@ def opened(text: str) -> dict[str, Any]:
         "title": display.title,
         "form": form(text),
         "outline": outline(text),
+        "covered": covered(display.actuator),
         "calibration": calibration_of(display),
     }
 
 
 def changed(text: str, path: str, value: str) -> dict[str, Any]:
-    """As `opened`, with one value written anew. Raises as `description.edited`."""
+    """As `opened`, with one value written anew, or with the ceramics stretched over the side at
+    `path` where the value is `STRETCHED`. Raises as `form.edited` and `ceramics.stretched`."""
+    if value == STRETCHED:
+        path, value, text = "name", display_of(text).name, stretched(text, path)
     return opened(edited(text, path, value))
 
 
@@ -115,12 +123,42 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
             "frequency_Hz": frequency.tolist(),
             "amplitude_per_volt_m_per_V": to_json(mode.response(frequency)),
         },
+        "since_screening": _since_screening(display, p, point) if quality == "solved" else "",
         "active_area": _area(display, p),
         "line": _line(p, display.actuator),
         "shape": _shape(p),
         "drive_electronics": to_json(load),
         "provenance": stamp(display),
     }
+
+
+def _since_screening(display: Display, p: Prediction, point: WorkingPoint) -> str:
+    """Why a solved plate is another than it was screened; "" where it differs by no more than a
+    beam's frequency does on 95 random plates (`_BEAM`)."""
+    if not isinstance(display.actuator, RectangularPlate):
+        return ""
+    try:
+        beam = predicted(display, "screening", point)
+    except SqueezefilmError:
+        return ""
+    metre, hertz = si.Unit("m"), si.Unit("Hz")
+    before, after = (
+        f"{si.format_quantity(one.vibration_amplitude, metre, 3)} at "
+        f"{si.format_quantity(one.mode.resonance_frequency, hertz, 3)}"
+        for one in (beam, p)
+    )
+    shares = (
+        beam.vibration_amplitude / p.vibration_amplitude,
+        beam.mode.resonance_frequency / p.mode.resonance_frequency,
+    )
+    if all(abs(share - 1.0) <= _BEAM for share in shares):
+        return ""
+    return (
+        f"The screening said {before}; solved it is {after}, which holds. The screening takes the "
+        "plate as a beam that is alike all across: a plate that bends across as well, or has "
+        "another mode nearby, vibrates otherwise by more than the "
+        f"{si.percent(_BEAM)} within which such a beam's frequency is right."
+    )
 
 
 def banded(point: WorkingPoint, quality: str, samples: int = 64) -> dict[str, Any]:

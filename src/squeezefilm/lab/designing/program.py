@@ -7,6 +7,7 @@ agree.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -61,7 +62,7 @@ def _ready(asked: TextureOnDisplay) -> _Ready:
     if asked.preset is not None and asked.texture is None:
         texture = load_texture(asked.preset)
     elif asked.texture is not None and asked.preset is None:
-        texture = texture_from_text(asked.texture, file=asked.folder / "texture.toml")
+        texture = texture_from_text(asked.texture, folder=asked.folder)
     else:
         raise InputError("say which texture: a preset or a text, one of them")
     display = display_of(asked.display)
@@ -74,18 +75,23 @@ def _ready(asked: TextureOnDisplay) -> _Ready:
     return _Ready(display, texture, p, p.friction, lowered(texture, p, p.inverse))
 
 
-def title_of(text: str, file: Path) -> str:
-    """The title of a texture's text, whose pictures lie beside `file`.
+def title_of(text: str, folder: Path) -> str:
+    """The title of a texture's text, whose pictures lie in `folder`.
 
     Raises `ConfigError` as `texture_from_text` does.
     """
-    return texture_from_text(text, file=file).title
+    return texture_from_text(text, folder=folder).title
 
 
-def pixels_of(data: bytes, name: str) -> tuple[int, int]:
-    """Rows and columns of a picture's bytes. Raises `InputError` as `picture_from` does."""
-    rows, columns = picture_from(data, name).shape
-    return rows, columns
+def pixels_of(data: bytes, name: str) -> tuple[int, int, str]:
+    """Rows and columns of a picture's bytes, and what `picture_from` warns of.
+
+    Raises `InputError` as `picture_from` does.
+    """
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        rows, columns = picture_from(data, name).shape
+    return rows, columns, "; ".join(str(one.message) for one in said)
 
 
 def feel(asked: TextureOnDisplay) -> dict[str, Any]:

@@ -13,7 +13,7 @@ const TITLES = {
 const OPEN = new Set(["actuator", "drive", "finger"]);
 
 /** Fill `place` from the rows of `form`; sections that were open stay open, focus stays. */
-export function displayForm(place, rows, { write, slide, limits }) {
+export function displayForm(place, rows, { write, forget, slide, limits, unwritten, refused, notes }) {
   const opened = new Map([...place.querySelectorAll("details")].map((one) => [one.dataset.section, one.open]));
   const focus = document.activeElement?.dataset?.path, kind = document.activeElement?.type;
   const sections = new Map();
@@ -24,8 +24,16 @@ export function displayForm(place, rows, { write, slide, limits }) {
   place.replaceChildren();
   for (const [section, members] of [...sections].sort(([a], [b]) => rank(a) - rank(b))) {
     const box = element("details", { "data-section": section, open: opened.get(section) ?? OPEN.has(section) },
-      element("summary", { text: title(section, rows) }), ...members.map((row) => field(row, write, slide, limits)));
+      element("summary", { text: title(section, rows) }), ...members.map((row) => field(row, { write, forget, slide, limits })));
     place.append(box);
+  }
+  for (const [path, note] of notes) place.querySelector(`[data-path="${CSS.escape(path)}"]`)?.closest(".field").append(note);
+  // What was typed and could not be written stays, and is said.
+  for (const [path, message] of [...[...unwritten.keys()].map((path) => [path, "not written yet"]), ...refused]) {
+    const control = place.querySelector(`[data-path="${CSS.escape(path)}"]:not([type=range])`);
+    if (!control) continue;
+    if (unwritten.has(path)) control.value = unwritten.get(path);
+    mark(control, document.getElementById(`${control.id}-wrong`), message);
   }
   if (focus) place.querySelector(`[data-path="${CSS.escape(focus)}"][type="${kind}"]`)?.focus();
 }
@@ -45,7 +53,7 @@ function title(section, rows) {
   return section.replace("actuator.", "").replaceAll("_", " ").replaceAll(".", " ");
 }
 
-function field(row, write, slide, limits) {
+function field(row, { write, forget, slide, limits }) {
   const id = `f-${row.path.replaceAll(".", "-")}`;
   const mark = { assumed: " *", unstated: " ?" }[row.evidence];
   const tip = row.name in GLOSSARY || row.source ? row.name : null;
@@ -56,12 +64,12 @@ function field(row, write, slide, limits) {
   if (row.choices) {
     const list = element("select", { id, "data-path": row.path },
       ...row.choices.map((one) => element("option", { value: one, text: one, selected: one === row.text })));
-    const { wrong, commit } = committed(list, row, write);
+    const { wrong, commit } = committed(list, row, write, forget);
     list.addEventListener("change", commit);
     return element("div", { class: "field" }, label, list, wrong, source);
   }
   const text = element("input", { id, type: "text", value: row.text, "data-path": row.path, spellcheck: "false", autocomplete: "off" });
-  const { wrong, commit } = committed(text, row, write);
+  const { wrong, commit } = committed(text, row, write, forget);
   text.addEventListener("change", commit);
   const parts = row.unit === null || row.whole ? null : split(row.text);
   let range = null;
@@ -91,14 +99,21 @@ function field(row, write, slide, limits) {
 }
 
 /** What writes a control's value, and where a refusal is said: beside it, until it holds what may be. */
-function committed(control, row, write) {
+function committed(control, row, write, forget) {
   const wrong = element("p", { class: "error", role: "alert", id: `${control.id}-wrong`, hidden: true });
   control.setAttribute("aria-describedby", wrong.id);
   const commit = async () => {
-    const refused = control.value === row.text ? "" : await write(row.path, control.value);
-    control.setAttribute("aria-invalid", String(refused !== ""));
-    wrong.textContent = refused;
-    wrong.hidden = refused === "";
+    const same = control.value === row.text;
+    if (same) forget(row.path);
+    const refused = same ? "" : await write(row.path, control.value);
+    mark(control, wrong, refused);
   };
   return { wrong, commit };
+}
+
+/** Say beside a control why its value is not the display's; nothing where it is. */
+function mark(control, wrong, message) {
+  control.setAttribute("aria-invalid", String(message !== ""));
+  wrong.textContent = message;
+  wrong.hidden = message === "";
 }

@@ -37,7 +37,7 @@ export class Finger {
 
   reset() {
     this.renderer.reset();
-    Object.assign(this, { time: null, x: 0, y: 0, speed: 0, direction: 0, amplitude: 0, wanted: 0 });
+    Object.assign(this, { time: null, x: 0, y: 0, speed: 0, direction: 0, amplitude: 0, wanted: 0, velocity: 0 });
   }
 
   /** One sample of the pointer: place (m) and time (s). Returns what the finger meets now. */
@@ -52,7 +52,7 @@ export class Finger {
     if (dt > 0) {
       const along = ready.wave?.along === "y" ? y - this.y : x - this.x;
       const velocity = along / dt, share = 1 - Math.exp(-dt / SPEED_TIME);
-      this.velocity = (this.velocity ?? 0) + share * (velocity - (this.velocity ?? 0));
+      this.velocity += share * (velocity - this.velocity);
       this.speed = Math.abs(this.velocity);
       if (this.speed > RESTING) this.direction = Math.sign(this.velocity);
       this.wanted = this.renderer.tick(x, y, this.velocity, time);

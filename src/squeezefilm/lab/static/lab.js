@@ -2,6 +2,7 @@
 // `show(place, visit)`, which fills the place; what it begins ends with the visit.
 
 import { DisplayStore } from "./display_store.js";
+import { element } from "./numbers.js";
 import { Socket } from "./socket.js";
 import { StopBar } from "./stop_bar.js";
 import { watchTips } from "./tips.js";
@@ -19,19 +20,21 @@ const page = {
 };
 let visit = new Visit(page);
 
-/** Say something at the top of the page, in words; empty to take it back. */
-function notify(text, action = null) {
-  notice.replaceChildren();
-  notice.hidden = !text;
-  if (!text) return;
-  notice.append(text);
-  const button = document.createElement("button");
-  button.textContent = action ? action.label : "Close";
-  button.addEventListener("click", () => {
-    notify("");
-    if (action) action.act();
-  });
-  notice.append(button);
+/** Say what was done at the top of the page, or with `failed` what could not be; with a link, if
+ * there is something to take away. */
+function notify(text, { failed = false, link = null } = {}) {
+  notice.classList.toggle("failed", failed);
+  notice.hidden = false;
+  notice.replaceChildren(text, ...(link ? [link] : []), element("button", { text: "Close", onclick: () => {
+    notice.hidden = true;
+  } }));
+}
+
+/** Say how it stands with the lab; while it does not answer, what it told before is grey. */
+function state(text, here) {
+  if (connection.textContent !== text) connection.textContent = text;
+  connection.classList.toggle("lost", !here);
+  document.body.classList.toggle("away", !here);
 }
 
 async function showArea() {
@@ -52,9 +55,9 @@ async function showArea() {
 
 socket.on("connection", ({ open, refused }) => {
   const away = refused ? "this page's session is over – open the link that the lab printed" : "the lab is not running – trying again";
-  connection.textContent = open ? "connected" : away;
-  connection.classList.toggle("lost", !open);
+  state(open ? "connected" : away, open);
 });
+socket.on("silence", ({ seconds }) => state(seconds ? `the lab has not answered for ${Math.round(seconds)} s` : "connected", !seconds));
 window.addEventListener("hashchange", showArea);
 watchTips(document.getElementById("tip"));
 offerTour(document.getElementById("tour"));

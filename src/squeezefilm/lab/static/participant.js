@@ -26,6 +26,10 @@ socket.on("connection", ({ open, refused }) => {
   if (open && window.squeezefilmMine) goOn();
   if (!open) freeze();
 });
+socket.on("silence", ({ seconds }) => {
+  connection.textContent = seconds ? "The lab does not answer. Nothing you answered is lost; please wait." : "";
+  connection.classList.toggle("lost", seconds > 0);
+});
 socket.on("sitting ended", (message) => message.sitting === sitting && goOn());
 socket.on("surface in place", (message) => message.sitting === sitting && inPlace?.());
 // A key held down repeats, and must not answer the trials that follow.

@@ -3,6 +3,10 @@
 import { plain } from "./numbers.js";
 
 const PLAN = 0.62;
+// A cycle takes two seconds here and thirty microseconds there.
+const CYCLE = 2000;
+// How many cycles are shown of a new mode. A mode that moved for ever would keep the computer busy.
+const CYCLES = 3;
 
 export class PlanView {
   constructor(canvas) {
@@ -10,12 +14,28 @@ export class PlanView {
     this.outline = null;
     this.line = null;
     this.shape = null;
+    this.began = this.until = 0;
+    this.watched = false;
     this.still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   }
 
   set(outline, line, shape) {
     Object.assign(this, { outline, line, shape });
     this.picture = null;
+    this.move(CYCLES);
+  }
+
+  /** Let the mode move for so many cycles from now, the one that has begun included. */
+  move(cycles) {
+    const now = performance.now();
+    if (now > this.until) this.began = this.until = now;
+    this.until = Math.max(this.until, this.began + (Math.floor((now - this.began) / CYCLE) + cycles) * CYCLE);
+  }
+
+  /** Let it move for as long as somebody points at it, and to the end of the cycle. */
+  watch(is) {
+    this.watched = is;
+    this.move(1);
   }
 
   colours() {
@@ -26,6 +46,7 @@ export class PlanView {
     );
   }
 
+  /** Draw the moment, and say whether the next one looks different. */
   draw(now) {
     const { canvas, outline } = this;
     const width = canvas.clientWidth, height = canvas.clientHeight, ratio = devicePixelRatio || 1;
@@ -39,14 +60,16 @@ export class PlanView {
     g.clearRect(0, 0, width, height);
     const box = { left: 14, top: 22, width: width - 28, height: height * PLAN - 30 };
     // A canvas not laid out yet, or folded away, has no room inside its margins: nothing can be drawn to scale.
-    if (!outline || !this.line || box.width <= 0 || box.height <= 0) return;
+    if (!outline || !this.line || box.width <= 0 || box.height <= 0) return false;
     const c = this.colours();
-    // A cycle takes two seconds here and thirty microseconds there.
-    const phase = this.still ? 1 : Math.cos((now / 1000) * Math.PI);
+    if (this.watched) this.move(1);
+    const moves = !this.still && now < this.until;
+    const phase = moves ? Math.cos((2 * Math.PI * (now - this.began)) / CYCLE) : 1;
     g.font = "13px system-ui, sans-serif";
     const across = this.drawPlan(g, box, c, phase);
     const side = { left: across.left, width: across.width, top: height * PLAN + 8, height: height * (1 - PLAN) - 30 };
     this.drawSide(g, side, c, phase);
+    return moves;
   }
 
   drawPlan(g, box, c, phase) {

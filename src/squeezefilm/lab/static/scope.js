@@ -17,6 +17,11 @@ export class Scope {
     this.rows = [];
   }
 
+  /** Whether what is drawn differs from one moment to the next: it scrolls until the last is out. */
+  moves(now) {
+    return this.rows.length > 0 && this.rows.at(-1)[0] > now - this.seconds;
+  }
+
   draw(now) {
     const { canvas } = this, ratio = devicePixelRatio || 1;
     const width = canvas.clientWidth, height = canvas.clientHeight;

@@ -1,7 +1,9 @@
 // One websocket to the lab: requests with answers, messages nobody asked for, and coming back after
 // the server was away. Requests that were on the way when it went are refused, never sent twice.
+// The lab says twice a second that it is alive; where it says nothing, what is shown may be old.
 
 const FIRST_WAIT = 250, LONGEST_WAIT = 4000;
+const LOOK = 250, SILENT = 1500;
 
 export class Socket {
   constructor(path) {
@@ -10,8 +12,17 @@ export class Socket {
     this.listeners = new Map();
     this.number = 0;
     this.wait = FIRST_WAIT;
-    this.open = false;
+    this.open = this.silent = false;
+    this.heard = 0;
     this.connect();
+    setInterval(() => this.listen(), LOOK);
+  }
+
+  /** Say while nothing is heard over an open connection for how long that is (s), and 0 when it ends. */
+  listen() {
+    const silence = performance.now() - this.heard, was = this.silent;
+    this.silent = this.open && silence > SILENT;
+    if (this.silent || was) this.emit("silence", { seconds: this.silent ? silence / 1e3 : 0 });
   }
 
   connect() {
@@ -20,10 +31,13 @@ export class Socket {
     this.socket = socket;
     socket.addEventListener("open", () => {
       this.open = true;
+      this.heard = performance.now();
       this.wait = FIRST_WAIT;
       this.emit("connection", { open: true });
     });
     socket.addEventListener("message", (event) => {
+      this.heard = performance.now();
+      if (this.silent) this.listen();
       const message = JSON.parse(event.data);
       const asked = this.waiting.get(message.id);
       if (asked) {
@@ -35,7 +49,7 @@ export class Socket {
     socket.addEventListener("close", () => {
       const was = this.open;
       this.open = false;
-      for (const asked of this.waiting.values()) asked.reject(new Error("the lab went away"));
+      for (const asked of this.waiting.values()) asked.reject(away("the lab went away"));
       this.waiting.clear();
       if (was) this.emit("connection", { open: false, refused: false });
       else this.askWhy();
@@ -58,7 +72,7 @@ export class Socket {
   ask(type, fields = {}) {
     return new Promise((resolve, reject) => {
       if (!this.open) {
-        reject(new Error("the lab is not connected"));
+        reject(away("the lab is not connected"));
         return;
       }
       const id = (this.number += 1);
@@ -77,4 +91,9 @@ export class Socket {
   emit(type, message) {
     for (const listener of this.listeners.get(type) ?? []) listener(message);
   }
+}
+
+/** An error that says nothing of what was asked, only that nobody answered. */
+function away(message) {
+  return Object.assign(new Error(message), { away: true });
 }

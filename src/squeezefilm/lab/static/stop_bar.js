@@ -19,6 +19,7 @@ export class StopBar {
     this.others = element("p", { class: "muted" });
     place.append(element("button", { class: "stop", text: "STOP (Space or Escape)", onclick: () => this.stop() }), this.said, this.others);
     socket.on("connection", ({ open }) => (open ? this.learn() : this.lost()));
+    socket.on("silence", ({ seconds }) => this.silent(seconds));
     socket.on("playing", ({ now }) => this.take(now));
     socket.on("device progress", ({ text }) => this.say(`${text}…`));
     socket.on("device view", (view) => this.say(`playing, ${plain(view.time_s)} s`));
@@ -48,6 +49,13 @@ export class StopBar {
     this.take([]);
   }
 
+  /** A lab that is held up cannot stop anything, and the process that plays goes on without it. */
+  silent(seconds) {
+    if (!this.plays) return;
+    if (seconds) this.say(`no answer for ${Math.round(seconds)} s: what plays may go on, and STOP is heard only when the lab answers; switch the amplifier off by hand`, true);
+    else this.say("playing");
+  }
+
   take(now) {
     this.now = now;
     if (now.some((one) => one.key === "device")) this.begun = false;
@@ -66,7 +74,7 @@ export class StopBar {
     } catch (error) {
       this.begun = false;
       if (!this.plays) this.say("ready");
-      if (!this.always) this.notify(error.message);
+      if (!this.always) this.notify(error.message, { failed: true });
       this.show();
       throw error;
     }
@@ -77,7 +85,7 @@ export class StopBar {
     this.begun = false;
     this.say(text, Boolean(failed));
     // Where the bar goes with what played, a failure is still said.
-    if (failed && !this.always) this.notify(`The device's session ${text}.`);
+    if (failed && !this.always) this.notify(`The device's session ${text}.`, { failed: true });
     this.show();
   }
 

@@ -38,20 +38,30 @@ export class Visit {
       return await this.page.socket.ask(type, fields);
     } catch (error) {
       if (!this.signal.aborted) throw error;
-      this.notify(error.message);
+      this.notify(error.message, { failed: true });
       return never();
     }
   }
 
-  /** Draw with every frame of the screen. */
-  frames(draw) {
+  /** Draw with the frames of the screen for as long as `draw` says that more is to come. What this
+   * returns draws again; so does another size of one of the canvases, and another colour scheme. */
+  frames(draw, canvases = []) {
     let next = 0;
     const step = (now) => {
-      next = requestAnimationFrame(step);
-      draw(now);
+      next = 0;
+      if (draw(now)) wake();
     };
-    if (!this.signal.aborted) next = requestAnimationFrame(step);
-    this.keep(() => cancelAnimationFrame(next));
+    const wake = () => {
+      if (!next && !this.signal.aborted) next = requestAnimationFrame(step);
+    };
+    const sizes = new ResizeObserver(wake), dark = matchMedia("(prefers-color-scheme: dark)");
+    for (const canvas of canvases) sizes.observe(canvas);
+    dark.addEventListener("change", wake, { signal: this.signal });
+    this.keep(() => {
+      sizes.disconnect();
+      cancelAnimationFrame(next);
+    });
+    return wake;
   }
 
   /** Fields have again what was in them when an area of this name was left. */

@@ -13,8 +13,9 @@ from typing import Any, Literal
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.lab.files import existing, fresh
+from squeezefilm.lab.files import existing, fresh, zipped
 from squeezefilm.lab.studying.by_hand import ByHand
+from squeezefilm.lab.studying.conditions import conditions_of
 from squeezefilm.lab.studying.told import confusion_counts, described, shown_sitting
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.results import to_json
@@ -22,7 +23,6 @@ from squeezefilm.study.conduct.again import why_begun_again
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import (
     Exposure,
-    SessionConditions,
     begin_session,
     display_wanted,
     end_session,
@@ -149,7 +149,7 @@ class Studies:
                 "or lower the display's voltage"
             )
         # Checked now, so that a mistake is the experimenter's and not the participant's to see.
-        _conditions(conditions, consent, consented=False)
+        conditions_of(conditions, consent, consented=False)
         sitting = self.sittings.new(
             study=study,
             participant=participant,
@@ -204,7 +204,7 @@ class Studies:
                 self.store(sitting.study),
                 sitting.participant,
                 device,
-                _conditions(sitting.conditions, sitting.consent_text, consented=True),
+                conditions_of(sitting.conditions, sitting.consent_text, consented=True),
                 exposure,
                 acknowledged=sitting.acknowledged,
             )
@@ -351,10 +351,10 @@ class Studies:
         return {"deleted": to_json(found), **self.status(name)}
 
     def export(self, study: str, format: str) -> dict[str, Any]:
-        """Export a study beside its file."""
+        """Export a study beside its file; `zip` holds the same in base64, for a link."""
         si.require_one_of("format", format, ("csv", "psych-ds", "bids"))
         path = export_study(self.store(study), format)  # type: ignore[arg-type] # checked above
-        return {"folder": str(path.relative_to(self.folder.parent))}
+        return {"folder": str(path.relative_to(self.folder.parent)), "zip": zipped(path)}
 
     def path(self, name: str) -> Path:
         """A study's file."""
@@ -382,14 +382,3 @@ def devices() -> list[str]:
     from serial.tools import list_ports
 
     return ["twin", *sorted(f"serial:{one.device}" for one in list_ports.comports())]
-
-
-def _conditions(given: dict[str, Any], consent_text: str, *, consented: bool) -> SessionConditions:
-    import hashlib
-
-    known = {one.name for one in dataclasses.fields(SessionConditions)}
-    odd = set(given) - (known - {"consent", "consent_form"})
-    if odd:
-        raise InputError(f"conditions have no field '{sorted(odd)[0][:60]}'")
-    form = "text sha256 " + hashlib.sha256(consent_text.encode()).hexdigest()[:16]
-    return SessionConditions(consent=consented, consent_form=form, **given)

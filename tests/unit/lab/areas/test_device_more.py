@@ -94,11 +94,15 @@ def test_what_a_page_asks_is_what_is_played(lab: Talk, session: Session) -> None
 
 
 def test_what_is_not_said_is_a_stroke_of_ten_seconds(lab: Talk, session: Session) -> None:
-    lab.say("play device", **{**HOW, "drive": "serial:/dev/ttyACM0"})
+    # Above 42 V a device is not even connected where the display names no insulation.
+    onto = {**HOW, "drive": "serial:/dev/ttyACM0"}
+    assert "must name its touch-side insulation" in lab.refused("play device", **onto)
+    assert session.begun == []
+    lab.say("play device", **onto, voltage="40 V")
     work = session.work
     assert (work.drive, work.mode, work.compensation) == ("serial:/dev/ttyACM0", "stream", "none")
     assert (work.stroke, work.sensor) == ("60 mm/s over 4 cm", "device")
-    assert (work.duration, work.voltage, work.seed) == (10.0, None, 0)
+    assert (work.duration, work.voltage, work.seed) == (10.0, 40.0, 0)
 
 
 def test_nothing_is_played_that_was_not_armed(lab: Talk, session: Session) -> None:

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from pydantic import ValidationError
-from tests.pictures import picture_bytes
+from tests.pictures import coloured_bytes, picture_bytes
 from tests.unit.lab.areas.too_long import require_refused_if_longer
 
 from squeezefilm import presets
+from squeezefilm.errors import SqueezefilmWarning
 from squeezefilm.lab.areas.feel import (
     COLUMNS,
     AddPicture,
@@ -123,6 +124,39 @@ def test_what_is_no_picture_leaves_no_file(lab: Talk) -> None:
         "add picture", name="../p", data=PICTURE, pixel="1 mm"
     )
     assert list(lab.folder.iterdir()) == []
+
+
+def test_what_has_the_name_already_is_replaced_where_that_was_asked_for(lab: Talk) -> None:
+    lab.say("save texture", name="one", text=SINE)
+    lab.say("save texture", name="one", text=SINE + "\n", replace=True)
+    folder = lab.folder / "textures"
+    assert (folder / "one.toml").read_text(encoding="utf-8") == SINE + "\n"
+    other = picture_bytes(np.zeros((2, 2)))
+    given = {"name": "p", "pixel": "1 mm"}
+    lab.say("add picture", data=PICTURE, **given)
+    lab.say("add picture", data=base64.b64encode(other).decode(), replace=True, **given)
+    assert (folder / "p.png").read_bytes() == other
+    lab.say("save stroke", name="s", rows=[[0.0] * 8])
+    lab.say("save stroke", name="s", rows=[], replace=True)
+    assert (lab.folder / "strokes" / "s.felt.csv").read_text().split() == [",".join(COLUMNS)]
+
+
+def test_a_picture_in_colour_is_taken_and_its_brightness_used(lab: Talk) -> None:
+    data = coloured_bytes(np.ones((2, 3, 3)), "JPEG")
+    sent = base64.b64encode(data).decode()
+    # A process that computes says nothing of it a second time, when the texture is read.
+    with pytest.warns(SqueezefilmWarning, match="in colour"):
+        found = lab.say("add picture", name="photo", data=sent, pixel="1 mm")
+    assert found["note"].startswith("photo is in colour: of each pixel the brightness is used")
+    assert (lab.folder / "textures" / "photo.jpg").read_bytes() == data
+    assert 'file = "photo.jpg"' in found["text"]
+    assert lab.say("add picture", name="grey", data=PICTURE, pixel="1 mm")["note"] == ""
+
+
+def test_what_is_wrong_with_a_texture_is_said_of_its_field_and_of_no_file(lab: Talk) -> None:
+    said = lab.refused("load texture", display=STATOR, texture=SINE.replace("1.0", "1.5"))
+    assert said.startswith("line ")
+    assert "texture.toml" not in said
 
 
 def test_a_stroke_is_its_motion_and_what_was_felt_lies_beside_it(lab: Talk) -> None:

@@ -66,7 +66,7 @@ def test_a_value_that_changes_keeps_where_it_was_from() -> None:
     assert edited(GLASS, "actuator.length", "100 mm") == GLASS
     assert edited(GLASS, "actuator.nodal_lines", "7") == GLASS
     # The comments stay.
-    assert found.startswith(GLASS[: GLASS.index("[actuator]")])
+    assert found.startswith(GLASS[: GLASS.index("name =")])
     assert "# A gasket" in found
 
 
@@ -202,3 +202,12 @@ def test_a_value_of_the_library_is_overwritten_beside_its_name() -> None:
         same = edited(text, "actuator.substrate.density", "8530 kg/m3")
         assert display_of(same).provenance == display_of(text).provenance
         assert row_of(found, "actuator.substrate.material")["text"] == "brass CuZn30"
+
+
+def test_an_edited_preset_does_not_keep_the_presets_name() -> None:
+    text = edited(preset_text("biet2008-plate"), "drive.voltage", "12 V")
+    assert name_of(text) == "biet2008-plate, edited"
+    assert name_of(edited(text, "drive.voltage", "13 V")) == "biet2008-plate, edited"
+    # Who names a display keeps the name.
+    own = edited(text, "name", "mine")
+    assert name_of(own) == name_of(edited(own, "drive.voltage", "12 V")) == "mine"

@@ -272,3 +272,21 @@ def test_a_solved_plate_says_what_its_amplifier_gives() -> None:
     load = designed(WorkingPoint(preset_text("biet2008-plate")), "solved")["drive_electronics"]
     assert load["channels"] == 7
     assert load["real_power_W"] == pytest.approx(load["matched_current_A"] * 15 / 2)
+
+
+def test_a_solved_plate_that_was_screened_otherwise_says_why(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def prediction(amplitude: float, frequency: float) -> Any:
+        return SimpleNamespace(
+            vibration_amplitude=amplitude, mode=SimpleNamespace(resonance_frequency=frequency)
+        )
+
+    display, point = display_of(preset_text("touchpad-glass")), WorkingPoint("")
+    monkeypatch.setattr(numbers, "predicted", lambda *_: prediction(1.35e-6, 40e3))
+    said = numbers._since_screening(display, prediction(5.77e-6, 39e3), point)
+    assert "said 1.35 µm at 40 kHz; solved it is 5.77 µm at 39 kHz" in said
+    assert "the 13 % within which such a beam" in said
+    assert numbers._since_screening(display, prediction(1.5e-6, 39e3), point) == ""
+    disc = display_of(preset_text("winfield2007-tpad"))
+    assert numbers._since_screening(disc, prediction(5.77e-6, 39e3), point) == ""

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.pictures import picture_bytes
+from tests.pictures import coloured_bytes, picture_bytes
 
 from squeezefilm import load_display
 from squeezefilm.chain.prediction import predict
@@ -123,8 +123,8 @@ def test_a_texture_comes_from_a_preset_or_from_a_text_with_pictures_beside_it(
     (tmp_path / "islands.png").write_bytes(picture_bytes(np.array([[0.0, 1.0, 0.0]])))
     found = feel(TextureOnDisplay(STATOR, PICTURE, None, "screening", tmp_path))
     assert found["title"] == "a texture of relative_friction"
-    assert title_of('title = "Islands"\n' + PICTURE, tmp_path / "any.toml") == "Islands"
-    assert title_of(PICTURE, tmp_path / "any.toml") == ""
+    assert title_of('title = "Islands"\n' + PICTURE, tmp_path) == "Islands"
+    assert title_of(PICTURE, tmp_path) == ""
     for elsewhere in (NOWHERE, tmp_path / "islands.png"):
         with pytest.raises(SqueezefilmError, match=r"islands\.png"):
             feel(TextureOnDisplay(STATOR, PICTURE, None, "screening", elsewhere))
@@ -191,6 +191,9 @@ def test_samples_lie_all_over_the_display_and_some_are_broken() -> None:
 
 
 def test_a_picture_has_rows_and_columns() -> None:
-    assert pixels_of(picture_bytes(np.zeros((3, 5))), "flat.png") == (3, 5)
+    assert pixels_of(picture_bytes(np.zeros((3, 5))), "flat.png") == (3, 5, "")
+    rows, columns, said = pixels_of(coloured_bytes(np.zeros((3, 5, 3))), "red.png")
+    assert (rows, columns) == (3, 5)
+    assert said.startswith("red.png is in colour: of each pixel the brightness is used")
     with pytest.raises(InputError, match=r"flat\.png is no PNG"):
         pixels_of(b"GIF89a", "flat.png")

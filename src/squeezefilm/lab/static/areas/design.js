@@ -1,11 +1,13 @@
 // Design: the display as a form, and what follows from it while a slider moves.
 
+import { Age } from "../age.js";
 import { AreaMap } from "../area_map.js";
 import { CalibratedView, drawMeasured } from "../calibrated_view.js";
 import { Chart } from "../chart.js";
 import { displayForm } from "../display_form.js";
 import { element, number, plain, quantity } from "../numbers.js";
 import { PlanView } from "../plan_view.js";
+import { download, saveAs } from "../saving.js";
 import { WorkLine } from "../work_line.js";
 
 const SETTLE = 500;
@@ -35,7 +37,7 @@ class DesignView {
       await this.lab.during(this.store.start(this.place));
       this.refresh();
     } catch (error) {
-      this.lab.notify(error.message);
+      this.lab.notify(error.message, { failed: true });
     }
   }
 
@@ -48,6 +50,8 @@ class DesignView {
     this.form = element("div", { class: "form" });
     this.quality = element("p", { class: "quality", role: "status", text: "computing…" });
     this.work = new WorkLine(() => this.cancel());
+    this.age = new Age(this.lab, "computed");
+    this.changed = element("p", { class: "warning", role: "status", hidden: true });
     this.numbers = {
       frequency: number("resonance frequency", "resonance_frequency"),
       amplitude: number("vibration amplitude", "vibration_amplitude"),
@@ -62,7 +66,7 @@ class DesignView {
       power: number("drive power", "drive_power"),
       inductor: number("matching inductor", "matching_inductor"),
     };
-    this.canvas = element("canvas", { class: "plan", role: "img", "aria-label": "the display from above and from the side, with its mode" });
+    this.canvas = element("canvas", { class: "plan", role: "img", "aria-label": "the display from above and from the side, with its mode", title: "The mode moves while you point at it." });
     const chart = (title, tip) => {
       const inside = element("div");
       return { inside, box: element("section", { class: "card" }, element("h2", { text: title, "data-tip": tip, tabindex: "0" }), inside) };
@@ -80,7 +84,7 @@ class DesignView {
     this.place.append(element("div", { class: "columns design" },
       element("section", { class: "card side" }, tools, files, this.error, this.form),
       this.results = element("div", { class: "results" },
-        element("section", { class: "card" }, this.quality, this.work.box,
+        element("section", { class: "card" }, this.quality, this.work.box, this.changed, this.age.box,
           element("div", { class: "numbers" }, ...Object.values(this.numbers).map((one) => one.box))),
         element("section", { class: "card" }, this.canvas),
         this.areaCard = element("section", { class: "card", hidden: true },
@@ -89,7 +93,11 @@ class DesignView {
         element("div", { class: "pair" }, friction.box, response.box), this.calibrated.box, this.warnings)));
     this.plan = new PlanView(this.canvas);
     this.areaMap = new AreaMap(this.areaCanvas);
-    this.lab.frames((now) => this.plan.draw(now));
+    this.redraw = this.lab.frames((now) => this.plan.draw(now), [this.canvas]);
+    for (const type of ["pointerenter", "pointerleave"]) this.canvas.addEventListener(type, () => {
+      this.plan.watch(type === "pointerenter");
+      this.redraw();
+    });
     this.frictionChart = new Chart(friction.inside, {
       x: "vibration amplitude (µm)", y: "µ′/µ", range: [0, 1.02],
       series: [
@@ -139,16 +147,26 @@ class DesignView {
     this.error.hidden = true;
     this.undo.disabled = !this.store.past.length;
     this.redo.disabled = !this.store.future.length;
-    for (const option of this.choice.options) {
-      if (option.value.endsWith(`:${current.name}`)) this.choice.value = option.value;
-    }
+    const named = [...this.choice.options].find((one) => one.value.endsWith(`:${current.name}`));
+    this.choice.options[0].textContent = named ? "choose…" : current.name;
+    this.choice.value = named ? named.value : "";
     displayForm(this.form, current.form, {
       write: (path, value) => refusal(this.store.edit(path, value)),
+      forget: (path) => this.store.forget(path),
+      unwritten: new Map(this.store.edits.map((one) => [one.path, one.value])),
+      refused: this.store.refused,
+      notes: Object.entries(current.covered).map(([path, said]) => [path, this.bare(path, said)]),
       slide: (path, value) => this.compute({ path, value }),
       limits: (path) => this.limits(path),
     });
     this.calibrated.set(current.calibration);
     this.compute({});
+  }
+
+  /** That ceramics stay where they are while the plate grows, and a button that stretches them. */
+  bare(path, said) {
+    return element("p", { class: "warning" }, `${said} `,
+      element("button", { text: "Stretch them", onclick: () => this.tried(this.store.edit(path, "stretch the ceramics")) }));
   }
 
   /** What a value may be, in words; none where newer work took its place. */
@@ -212,22 +230,18 @@ class DesignView {
   async solve(mine, change) {
     const { text } = this.store.current;
     const current = () => mine === this.asked && this.plan.outline !== undefined;
-    const plate = this.store.current.outline.kind === "plate";
+    const { kind } = this.store.current.outline;
     try {
-      let of = "screening";
-      if (plate) {
-        this.computing = "solved";
-        this.work.begin("solving the plate in three dimensions…");
-        const answer = await this.lab.socket.ask("compute design", { text, quality: "solved", ...change });
-        if (!current()) return;
-        of = "solved";
-        this.solvedAt = mine;
-        this.present(answer);
-        this.older(false);
-      }
+      this.computing = "solved";
+      this.work.begin(kind === "plate" ? "solving the plate in three dimensions…" : `solving the ${kind} and its drive…`);
+      const answer = await this.lab.socket.ask("compute design", { text, quality: "solved", ...change });
+      if (!current()) return;
+      this.solvedAt = mine;
+      this.present(answer);
+      this.older(false);
       this.computing = "band";
       this.work.begin("computing the band of what is uncertain…");
-      const band = await this.lab.socket.ask("compute design", { text, quality: "band", of, ...change });
+      const band = await this.lab.socket.ask("compute design", { text, quality: "band", of: "solved", ...change });
       if (current()) {
         this.work.end();
         this.presentBand(band);
@@ -262,6 +276,7 @@ class DesignView {
 
   present(found) {
     this.found = found;
+    this.age.now();
     const n = this.numbers;
     const say = (one, text, note = "") => {
       one.value.textContent = text;
@@ -292,7 +307,10 @@ class DesignView {
     const model = found.vibration_model.replaceAll("_", " ");
     this.quality.textContent = `${found.quality === "solved" ? "solved" : "screening"}: vibration by ${model}, friction by ${found.friction_model} under a finger ${pace}; ${quantity(found.voltage_V, "V")} at resonance`;
     this.quality.dataset.quality = found.quality;
+    this.changed.textContent = found.since_screening;
+    this.changed.hidden = !found.since_screening;
     this.plan.set(this.store.current.outline, found.line, found.shape);
+    this.redraw();
     const micro = (values) => values.map((value) => (value === null ? null : value * 1e6));
     const curve = found.friction_curve;
     const empty = curve.amplitude_m.map(() => null);
@@ -335,27 +353,19 @@ class DesignView {
     await this.tried(this.store.open({ text: await file.text() }));
   }
 
+  /** The display's name as a file may have it. */
+  fileName() {
+    return this.store.current.name.replace(/[^A-Za-z0-9._-]+/g, "-");
+  }
+
   async save() {
-    const name = prompt("Save in the lab's folder under the name", this.store.current.name);
-    if (!name) return;
-    const fields = { text: this.store.current.text, name };
-    try {
-      const { file } = await this.lab.act("save display", fields);
-      this.lab.notify(`Saved as ${file}.`);
-    } catch (error) {
-      if (/exists/.test(error.message) && confirm(`${error.message}. Replace it?`)) {
-        const { file } = await this.lab.act("save display", { ...fields, replace: true });
-        this.lab.notify(`Saved as ${file}.`);
-      } else this.tried(Promise.reject(error));
-    }
-    await this.listDisplays();
+    const { text } = this.store.current, name = this.fileName();
+    if (await this.tried(saveAs(this.lab, "the display", name, "save display", { text }))) await this.listDisplays();
   }
 
   download() {
-    const { text, name } = this.store.current;
-    const link = element("a", { href: URL.createObjectURL(new Blob([text], { type: "text/plain" })), download: `${name}.toml` });
-    link.click();
-    URL.revokeObjectURL(link.href);
+    const { text } = this.store.current, name = this.fileName();
+    download(text, "text/plain", `${name}.toml`);
   }
 
   pressed(event) {

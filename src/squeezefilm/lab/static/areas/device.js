@@ -1,5 +1,6 @@
 // Device: choose a twin or a port, check it, arm it, play, watch. The page's stop bar stops.
 
+import { Age } from "../age.js";
 import { element, fixed, number, plain, quantity } from "../numbers.js";
 import { Scope } from "../scope.js";
 
@@ -7,14 +8,14 @@ export async function show(place, lab) {
   await new DeviceView(place, lab, lab.display).start();
 }
 
-// After so long without a word from what plays, what is shown is old.
+// After so long (ms) without a word from what plays, what is shown is old.
 const SILENT = 1000;
 // What is known of the device's state after a session ended so.
 const AFTER = { DURATION: "STOPPED", INTERRUPTED: "STOPPED", FAULT: "FAULT" };
 
 class DeviceView {
   constructor(place, lab, store) {
-    Object.assign(this, { place, lab, store, armed: false, running: false, clock: 0, heard: null });
+    Object.assign(this, { place, lab, store, armed: false, running: false, clock: 0 });
   }
 
   async start() {
@@ -30,14 +31,12 @@ class DeviceView {
     const bar = this.lab.stopBar;
     bar.stay(this.lab.signal);
     bar.place.addEventListener("stopped", () => this.disarm(), { signal: this.lab.signal });
-    this.lab.frames((now) => this.draw(now));
+    this.redraw = this.lab.frames(() => this.draw(), this.scopes.map((one) => one.canvas));
     if (this.lab.socket.open) await this.begin();
   }
 
-  draw(now) {
+  draw() {
     for (const scope of this.scopes) scope.draw(this.clock);
-    const silent = this.heard !== null && now - this.heard > SILENT;
-    this.numbers.state.note.textContent = silent ? `nothing heard for ${plain((now - this.heard) / 1e3, 2)} s` : "";
   }
 
   build() {
@@ -71,14 +70,16 @@ class DeviceView {
       new Scope(canvases[3].canvas, [{ label: "lateness", colour: "purple" }], { least: 1 }),
     ];
     this.results = element("section", { class: "card", hidden: true });
+    this.age = new Age(this.lab, "heard");
     this.place.append(element("div", { class: "columns device" },
       element("section", { class: "card side" }, element("h2", { text: "Device" }), this.display, field("drive", this.drive), field("texture", this.texture), field("mode", this.mode),
         field("compensation of the resonator", this.compensation), field("the twin's finger", this.stroke), field("for", this.duration), field("most voltage", this.voltage),
         this.checkButton, this.armButton, this.playButton, this.error),
-      element("div", { class: "results" },
-        element("section", { class: "card" }, element("div", { class: "numbers" }, ...Object.values(this.numbers).map((one) => one.box))),
+      this.moment = element("div", { class: "results" },
+        element("section", { class: "card" }, this.age.box, element("div", { class: "numbers" }, ...Object.values(this.numbers).map((one) => one.box))),
         this.results,
         element("section", { class: "card scopes" }, ...canvases.map((one) => one.box)))));
+    Object.assign(this.age, { place: this.moment, most: SILENT });
     const { mode, compensation, stroke, duration, voltage } = this;
     this.lab.remember("device", { mode, compensation, stroke, duration, voltage });
   }
@@ -145,6 +146,7 @@ class DeviceView {
 
   async play() {
     for (const scope of this.scopes) scope.clear();
+    this.redraw();
     this.results.hidden = true;
     const fields = {
       display: this.store.current.text, drive: this.drive.value, armed: this.armed, preset: this.texture.value,
@@ -156,7 +158,7 @@ class DeviceView {
 
   view(view) {
     const n = this.numbers;
-    this.heard = performance.now();
+    this.age.now();
     n.state.value.textContent = view.state;
     n.position.value.textContent = view.x_m === null ? "not touching" : `${fixed(view.x_m * 1e3, 2)} mm`;
     n.position.note.textContent = view.speed_m_per_s === null ? "" : `${plain(view.speed_m_per_s * 1e3)} mm/s`;
@@ -182,6 +184,7 @@ class DeviceView {
       this.scopes[3].add(time, [scaled(row, "lateness_s", 1e6)]);
     }
     if (rows.length && rows[0][at.time_s] < this.clock - 60) this.clock = rows.at(-1)[at.time_s];
+    this.redraw();
   }
 
   checked({ passed, results }) {
@@ -194,7 +197,7 @@ class DeviceView {
 
   /** Numbers of a moment that is over would be taken for those of now. */
   blank(state, fault = "–", why = "") {
-    this.heard = null;
+    this.age.none();
     for (const one of Object.values(this.numbers)) {
       one.value.textContent = "–";
       one.note.textContent = "";

@@ -4,6 +4,7 @@ import { Finger, frictionAt, parity } from "../finger.js";
 import { gratingFields, gratingText } from "../grating.js";
 import { element, fixed, number, plain, quantity } from "../numbers.js";
 import { Renderer } from "../renderer.js";
+import { download, saveAs, saved } from "../saving.js";
 import { Scope } from "../scope.js";
 import { SurfaceView } from "../surface_view.js";
 
@@ -18,13 +19,13 @@ export async function show(place, lab) {
 class FeelView {
   constructor(place, lab, store) {
     // `turn` counts what was asked to be felt: an answer to an earlier wish is not shown any more.
-    Object.assign(this, { place, lab, store, turn: 0, rows: [], delays: [], down: false, drawn: 0 });
+    Object.assign(this, { place, lab, store, turn: 0, rows: [], delays: [], pointer: null, drawn: 0 });
   }
 
   async start() {
     this.store.holdBack(this.place);
     this.build();
-    this.lab.frames((now) => this.animate(now));
+    this.redraw = this.lab.frames((now) => this.animate(now), [this.scopeCanvas]);
     this.lab.socket.on("connection", ({ open }) => open && this.begin());
     if (this.lab.socket.open) await this.begin();
   }
@@ -66,8 +67,8 @@ class FeelView {
       element("div", { class: "row" }, element("label", {}, "friction from", g.low), element("label", {}, "to", g.high), element("label", {}, "towards", g.angle)),
       element("button", { text: "Use this grating", onclick: () => this.compose() }));
     this.pixel = element("input", { type: "text", value: "0.2 mm", size: "7", id: "pixel" });
-    this.picture = element("input", { type: "file", accept: "image/png", hidden: true, onchange: () => this.readPicture(this.picture.files[0]) });
-    this.drop = element("button", { class: "drop", text: "Drop a greyscale PNG here, or choose one…", onclick: () => this.picture.click() });
+    this.picture = element("input", { type: "file", accept: "image/png, image/jpeg", hidden: true, onchange: () => this.readPicture(this.picture.files[0]) });
+    this.drop = element("button", { class: "drop", text: "Drop a PNG or JPEG here, or choose one…", onclick: () => this.picture.click() });
     this.drop.addEventListener("dragover", (event) => event.preventDefault());
     this.drop.addEventListener("drop", (event) => {
       event.preventDefault();
@@ -142,17 +143,19 @@ class FeelView {
     // Raw events come some milliseconds before the frame's; other browsers have only the latter.
     const raw = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
     canvas.addEventListener("pointerdown", (event) => {
+      // One finger strokes: places of two in turn would be a speed that no finger has.
+      if (this.pointer !== null) return;
       canvas.setPointerCapture(event.pointerId);
-      this.down = true;
+      this.pointer = event.pointerId;
       this.lift();
       this.box = canvas.getBoundingClientRect();
       this.sample(event);
     });
     canvas.addEventListener(raw, (event) => {
-      if (this.down) this.sample(event);
+      if (event.pointerId === this.pointer) this.sample(event);
     });
-    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => {
-      this.down = false;
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) canvas.addEventListener(end, (event) => {
+      if (event.pointerId === this.pointer) this.pointer = null;
     });
     canvas.addEventListener("keydown", (event) => {
       const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
@@ -176,10 +179,11 @@ class FeelView {
     if (this.delays.length > 500) this.delays.shift();
     this.met = met;
     this.scope.add(stamp / 1e3, [met.frictionWanted, met.friction]);
+    this.redraw();
     if (this.recording && this.rows.length < MOST_ROWS) {
       this.rows.push([stamp / 1e3 - this.began, x, y, met.speed, met.wanted, met.amplitude, met.friction, met.force]);
     }
-    this.port?.postMessage({ place: { x, y, velocity: this.finger.velocity ?? 0 } });
+    this.port?.postMessage({ place: { x, y, velocity: this.finger.velocity } });
   }
 
   lift() {
@@ -187,6 +191,7 @@ class FeelView {
     this.view.trail = [];
   }
 
+  /** Draw the moment, and say whether the next one looks different. */
   animate(now) {
     this.drawn += 1;
     if (this.replaying) this.stepReplay(now);
@@ -212,6 +217,7 @@ class FeelView {
       }
     }
     this.scope.draw(now / 1e3);
+    return Boolean(this.replaying) || this.scope.moves(now / 1e3);
   }
 
   async listTextures() {
@@ -292,6 +298,7 @@ class FeelView {
     this.view.set(ready, (x, y) => friction(renderer.value(x, y, ready.nominal_finger_speed_m_per_s, 0)));
     this.port?.postMessage({ ready });
     this.scope.clear();
+    this.redraw();
     this.showStroke();
   }
 
@@ -333,6 +340,7 @@ class FeelView {
   startReplay() {
     this.lift();
     this.replaying = { at: 0, began: performance.now() };
+    this.redraw();
   }
 
   stepReplay(now) {
@@ -347,11 +355,8 @@ class FeelView {
   }
 
   async saveStroke() {
-    const name = prompt("Save the stroke in the lab's folder under the name", "stroke");
-    if (!name) return;
     try {
-      const { file } = await this.lab.act("save stroke", { name, rows: this.rows });
-      this.lab.notify(`Saved as ${file}.`);
+      await saveAs(this.lab, "the stroke", "stroke", "save stroke", { rows: this.rows });
     } catch (error) {
       this.fail(error);
     }
@@ -360,9 +365,7 @@ class FeelView {
   downloadStroke() {
     const head = "time_s,x_m,y_m,speed_m_per_s,wanted_amplitude_m,amplitude_m,relative_friction,tangential_force_N";
     const text = [head, ...this.rows.map((row) => row.join(","))].join("\n");
-    const link = element("a", { href: URL.createObjectURL(new Blob([`${text}\n`], { type: "text/csv" })), download: "stroke.csv" });
-    link.click();
-    URL.revokeObjectURL(link.href);
+    download(`${text}\n`, "text/csv", "stroke.csv");
   }
 
   async readPicture(file) {
@@ -372,8 +375,10 @@ class FeelView {
       const bytes = new Uint8Array(await file.arrayBuffer());
       let text = "";
       for (let k = 0; k < bytes.length; k += 8192) text += String.fromCharCode(...bytes.subarray(k, k + 8192));
-      const name = file.name.replace(/\.png$/i, "").replace(/[^A-Za-z0-9_-]+/g, "-");
-      const found = await this.lab.socket.ask("add picture", { name, data: btoa(text), pixel: this.pixel.value });
+      const name = file.name.replace(/\.[a-z]+$/i, "").replace(/[^A-Za-z0-9_-]+/g, "-");
+      const found = await saved(this.lab, "add picture", { name, data: btoa(text), pixel: this.pixel.value });
+      if (!found) return;
+      if (found.note) this.lab.notify(found.note);
       this.text.value = found.text;
       await this.useText();
     } catch (error) {
@@ -382,12 +387,8 @@ class FeelView {
   }
 
   async saveTexture() {
-    const name = prompt("Save the texture in the lab's folder under the name", "texture");
-    if (!name) return;
     try {
-      const { file } = await this.lab.act("save texture", { name, text: this.text.value });
-      this.lab.notify(`Saved as ${file}.`);
-      await this.listTextures();
+      if (await saveAs(this.lab, "the texture", "texture", "save texture", { text: this.text.value })) await this.listTextures();
     } catch (error) {
       this.fail(error);
     }

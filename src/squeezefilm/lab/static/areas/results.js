@@ -1,5 +1,6 @@
 // Results: a study's analysis and figures, its exports, and taking a participant out of it.
 
+import { Age } from "../age.js";
 import { element } from "../numbers.js";
 import { confusionCard } from "./study.js";
 
@@ -31,6 +32,7 @@ class ResultsView {
     this.error = element("p", { class: "error", role: "alert", hidden: true });
     this.side = element("section", { class: "card side" });
     this.main = element("div", { class: "results" });
+    this.age = new Age(this.lab, "analysed");
     this.place.append(element("div", { class: "columns study" }, this.side, this.main));
     this.lab.socket.on("study changed", ({ study }) => study === this.name && this.tried(() => this.changed()));
     this.lab.socket.on("connection", ({ open }) => open && this.begin());
@@ -44,8 +46,10 @@ class ResultsView {
         ...studies.map((name) => element("option", { value: name, text: name })));
       this.people = element("div");
       const ask = (format) => () => this.tried(async () => {
-        const { folder } = await this.lab.act("export study", { study: this.name, format });
-        this.lab.notify(`Exported to ${folder} in the lab's folder.`);
+        const { folder, zip } = await this.lab.act("export study", { study: this.name, format });
+        const name = `${this.name}-${format}.zip`, bytes = Uint8Array.from(atob(zip), (one) => one.charCodeAt(0));
+        const link = element("a", { href: URL.createObjectURL(new Blob([bytes], { type: "application/zip" })), download: name, text: `Download ${name}` });
+        this.lab.notify(`Exported to ${folder} in the lab's folder.`, { link });
       });
       this.side.replaceChildren(element("h2", { text: "Results" }),
         element("label", { class: "stack" }, "study", this.choice), this.error,
@@ -93,7 +97,8 @@ class ResultsView {
       const { answers, displays } = await this.lab.socket.ask("analyze study", { study: name });
       if (name !== this.name) return;
       this.analysed = answers;
-      this.main.replaceChildren(...displays.flatMap((one) => this.display(one)));
+      this.age.now();
+      this.main.replaceChildren(this.age.box, ...displays.flatMap((one) => this.display(one)));
       if (answers > answersIn(this.study)) await this.changed();
     } catch (error) {
       if (name !== this.name) return;

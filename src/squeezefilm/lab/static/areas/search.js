@@ -1,5 +1,6 @@
 // Search: say what the finger should feel, watch a search for the plates that can do it, open any.
 
+import { Age } from "../age.js";
 import { FrontView } from "../front_view.js";
 import { element, plain } from "../numbers.js";
 
@@ -44,6 +45,7 @@ class SearchView {
     this.startError = element("p", { class: "error", role: "alert", hidden: true });
     this.stage = element("p", { class: "stage", role: "status", text: "No search has been started. The requirements say what the finger should feel, what a display may take and what it may be built from." });
     this.time = element("p", { class: "muted" });
+    this.age = new Age(this.lab, "heard");
     const bar = (text) => {
       const progress = element("progress", { max: 1, value: 0, "aria-label": `${text} so far` }), said = element("span", {});
       return { progress, said, box: element("p", { class: "far" }, said, progress) };
@@ -74,7 +76,7 @@ class SearchView {
         this.startButton, this.startError),
       element("div", { class: "results" },
         element("section", { class: "card" }, this.title = element("h2", { text: "Search" }), this.stage,
-          this.farBox = element("div", { hidden: true }, this.far.screened.box, this.far.solved.box), this.time, this.end,
+          this.farBox = element("div", { hidden: true }, this.far.screened.box, this.far.solved.box), this.time, this.age.box, this.end,
           this.stopButton),
         this.foundBox)));
     this.fresh = !this.lab.shared.search;
@@ -100,7 +102,7 @@ class SearchView {
         await this.choose();
       }
     } catch (error) {
-      this.lab.notify(error.message);
+      this.lab.notify(error.message, { failed: true });
     }
   }
 
@@ -189,7 +191,7 @@ class SearchView {
     try {
       await this.lab.act("stop search");
     } catch (error) {
-      this.lab.notify(error.message);
+      this.lab.notify(error.message, { failed: true });
     }
   }
 
@@ -203,6 +205,7 @@ class SearchView {
     clearInterval(this.ticking);
     if (!search) return;
     this.heard = performance.now();
+    this.age.now();
     if (this.runs) this.ticking = setInterval(() => this.tick(), 1000);
     this.showState(search);
     this.showFound(search);
@@ -306,7 +309,7 @@ class SearchView {
       await this.lab.during(this.lab.display.open({ text }));
       location.hash = "design";
     } catch (error) {
-      this.lab.notify(error.message);
+      this.lab.notify(error.message, { failed: true });
     }
   }
 

@@ -1,5 +1,6 @@
 // Study, the experimenter's side: plan, participants, sittings, progress, answers as they come.
 
+import { Age } from "../age.js";
 import { element, plain } from "../numbers.js";
 
 const FIELDS = [
@@ -26,6 +27,7 @@ class StudyView {
     this.error = element("p", { class: "error", role: "alert", hidden: true });
     this.list = element("section", { class: "card side" });
     this.main = element("div", { class: "results" });
+    this.age = new Age(this.lab, "read");
     this.place.append(element("div", { class: "columns study" }, this.list, this.main));
     this.lab.socket.on("study changed", ({ study }) => study === this.name && this.reload(true));
     this.lab.socket.on("connection", ({ open }) => open && this.begin());
@@ -81,8 +83,8 @@ class StudyView {
   }
 
   async create() {
-    const seed = Number(this.seed.value);
-    if (!Number.isInteger(seed) || seed < 0) throw new Error(`the seed '${this.seed.value}' is no whole number from 0 on`);
+    const typed = this.seed.value.trim(), seed = Number(typed);
+    if (!/^\d+$/.test(typed) || !Number.isSafeInteger(seed)) throw new Error(`the seed '${typed}' is no whole number from 0 on, of at most 15 digits; type one`);
     const turn = ++this.turn;
     const made = await this.lab.act("create study", { design: this.design.value, study: this.title.value, seed });
     this.listing = await this.lab.socket.ask("studies");
@@ -133,6 +135,7 @@ class StudyView {
       if (this.placing === one.pseudonym) cell.querySelector("button")?.focus({ preventScroll: true });
     }
     this.study = study;
+    this.age.now();
     for (const card of this.main.querySelectorAll(".confusion")) card.remove();
     this.main.append(...study.confusion.map((table) => confusionCard(table)));
     return true;
@@ -143,9 +146,10 @@ class StudyView {
     this.name = study.name;
     sessionStorage.setItem("squeezefilm study", study.name);
     const rows = study.participants.map((one) => this.participant(one));
+    this.age.now();
     this.redraw(
       element("section", { class: "card" }, element("h2", { text: study.name }),
-        element("p", { class: "muted", text: `${study.title}. Seed ${study.seed}.` }),
+        element("p", { class: "muted", text: `${study.title}. Seed ${study.seed}.` }), this.age.box,
         element("div", { class: "scroll" }, element("table", { class: "participants" },
           element("tr", {}, ...["participant", "answered", "now on", "sitting", ""].map((text) => element("th", { text }))), ...rows)),
         this.rehearsal(), element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.act("enrol", { study: study.name }))) })),
@@ -226,7 +230,8 @@ class StudyView {
   async end(sitting) {
     const found = await this.lab.act("end sitting", { sitting: sitting.id });
     this.take(found);
-    this.lab.notify(found.problems.length ? `The device is off after the session: ${found.problems.join("; ")}` : "The sitting has ended.");
+    const { problems } = found, failed = problems.length > 0;
+    this.lab.notify(failed ? `The device is off after the session: ${problems.join("; ")}` : "The sitting has ended.", { failed });
   }
 
   async prepare(one) {
@@ -288,14 +293,15 @@ class StudyView {
 
 function conditionsOf(inputs) {
   const found = {};
-  const scale = { temperature: (c) => c + 273.15, relative_humidity: (p) => p / 100, finger_orientation: (d) => (d * Math.PI) / 180 };
+  const units = { temperature: " degC", relative_humidity: " %", finger_orientation: " deg" };
   for (const [key, , type] of FIELDS) {
     const text = inputs[key].value.trim();
     if (!text) continue;
     if (type === "number") {
       const value = Number(text.replace(",", "."));
       if (!Number.isFinite(value)) throw new Error(`${key.replaceAll("_", " ")}: '${text}' is no number`);
-      found[key] = (scale[key] ?? ((same) => same))(value);
+      // The lab reads the unit, and refuses in it.
+      found[key] = key in units ? `${value}${units[key]}` : value;
     } else found[key] = text;
   }
   for (const key of ["hand", "finger"]) if (inputs[key].value) found[key] = inputs[key].value;
