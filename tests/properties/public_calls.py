@@ -113,7 +113,8 @@ NOT_CALLED = {
     plate.elements.box_model.Foundation plate.elements.box_model.Medium
     plate.elements.box_model.Medium.gradient_matrix plate.elements.box_model.kept_products
     plate.elements.box_model.held_components plate.elements.box_model.require_aspect
-    plate.elements.box_model.require_memory plate.solid.electrode_circuits.tied_electrodes
+    plate.elements.cross_section.slice_codes plate.elements.block_ldl.LDLSteps
+    plate.solid.electrode_circuits.tied_electrodes
     plate.solid.coarse_modes.CoarseModes plate.solid.coarse_modes.chosen_modes
     plate.solid.coarse_modes.class_fits plate.solid.coarse_modes.coarse_modes
     plate.solid.guess.estimated_frequency plate.elements.cross_section.CrossSection

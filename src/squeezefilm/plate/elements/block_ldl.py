@@ -1,7 +1,8 @@
 """Part of a dense symmetric matrix eliminated onto the rest, by blocks and mostly in `gemm`.
 
 LAPACK's triangular solves run at a third of the speed of matrix products on current cores; here
-only diagonal blocks are inverted, and everything else is a product of tall matrices.
+only diagonal blocks are inverted, and everything else is a product of tall matrices. Where parts
+of the rows do not meet each other, each is eliminated with those it meets only (`LDLSteps`).
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError
 
 Matrix = NDArray[Any]
@@ -22,16 +24,15 @@ _SCHUR_BLOCK = 128
 
 @dataclass(frozen=True, eq=False)
 class PartialLDL:
-    """A = W D Wᵀ for the first `pivots` rows of a symmetric matrix, and what is left of the rest.
+    """A = W D Wᵀ for the first `pivots` rows of a symmetric matrix.
 
     `W` (rows × pivots, unit block diagonal left out), `inverse` the inverted diagonal blocks,
-    `schur` the remaining matrix, `negative` the number of negative pivots if counted.
+    `negative` the number of negative pivots if counted.
     """
 
     pivots: int
     W: Matrix
     inverse: tuple[Matrix, ...]
-    schur: Matrix
     negative: int
 
     def forward(self, inside: Matrix) -> tuple[Matrix, Matrix]:
@@ -55,8 +56,49 @@ class PartialLDL:
         return x
 
 
-def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> PartialLDL:
-    """Eliminate the first `pivots` rows and columns of a symmetric matrix (real or complex).
+Rows = si.IntArray | slice
+"""Numbers of rows of a matrix."""
+
+
+@dataclass(frozen=True, eq=False)
+class LDLSteps:
+    """The first `pivots` of `size` rows of a symmetric matrix, eliminated in steps.
+
+    A step is which rows it eliminates, which later rows they meet, and how. `forward` and
+    `backward` are those of `PartialLDL`.
+    """
+
+    pivots: int
+    size: int
+    steps: tuple[tuple[Rows, Rows, PartialLDL], ...]
+
+    @property
+    def negative(self) -> int:
+        """The number of negative pivots, if counted."""
+        return sum(ldl.negative for _, _, ldl in self.steps)
+
+    def forward(self, inside: Matrix) -> tuple[Matrix, Matrix]:
+        """The reduced right side of the pivots, and what to subtract from that of the rest."""
+        full = np.zeros((self.size, inside.shape[1]), dtype=inside.dtype)
+        full[: self.pivots] = inside
+        for own, met, ldl in self.steps:
+            reduced, update = ldl.forward(full[own])
+            full = full.astype(reduced.dtype, copy=False)
+            full[own] = reduced
+            full[met] -= update
+        return full[: self.pivots], -full[self.pivots :]
+
+    def backward(self, reduced: Matrix, outside: Matrix) -> Matrix:
+        """The solution at the pivots, given `forward`'s reduced side and the rest's solution."""
+        full = np.concatenate([reduced, outside])
+        for own, met, ldl in self.steps[::-1]:
+            full[own] = ldl.backward(full[own], full[met])
+        return full[: self.pivots]
+
+
+def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> tuple[PartialLDL, Matrix]:
+    """Eliminate the first `pivots` rows and columns of a symmetric matrix (real or complex); the
+    second result is the matrix that is left of the others, their Schur complement.
 
     Not pivoted between blocks: right for matrices whose leading blocks are regular, as those of
     stiffness with a shift and of potentials (quasi-definite) are but for accidents. Raises
@@ -84,7 +126,7 @@ def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> PartialLDL:
                 "a frequency a little beside it"
             ) from error
         if count:
-            # Sylvester's law of inertia: pivot blocks and `schur` together have as many as A.
+            # Sylvester's law of inertia: pivot blocks and what is left together have as many as A.
             negative += int(np.count_nonzero(np.linalg.eigvalsh(block) < 0))
         inverse.append(inverted)
         np.matmul(panel, inverted, out=W[k:, k:e])
@@ -97,4 +139,4 @@ def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> PartialLDL:
         np.matmul(left[j:], right[j:e].T, out=part)
         np.subtract(rest[j:, j:e], part, out=part)
         schur[j:e, e:] = part[e - j :].T
-    return PartialLDL(pivots, W, tuple(inverse), schur, negative)
+    return PartialLDL(pivots, W, tuple(inverse), negative), schur

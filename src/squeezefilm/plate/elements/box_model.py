@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import GeometryError, InputError, OutOfRangeError
-from squeezefilm.hard_limits import SOLID_MEMORY, require_within
 from squeezefilm.materials import ElasticMaterial, Piezoceramic, isotropic_stiffness
 from squeezefilm.plate.elements.lobatto import LineMesh
 from squeezefilm.plate.layout import GlueLayer
@@ -159,20 +158,6 @@ def kept_products(y: LineMesh, z: LineMesh, trunk: float) -> NDArray[np.bool_]:
 
     total = relative(y)[:, None] + relative(z)[None, :]
     return np.asarray(total <= trunk + 1e-9)
-
-
-def require_memory(x: LineMesh, y: LineMesh, z: LineMesh, trunk: float) -> None:
-    """Refuse meshes whose factors would not fit into memory, before anything is made of them.
-
-    A slice has four unknowns at each of its functions, and its dense blocks are 20 bytes a pair
-    of them with what is made on the way (measured on the presets). Raises `InputError`.
-    """
-    slice_unknowns = 4 * int(np.count_nonzero(kept_products(y, z, trunk)))
-    enough = (
-        f"{x.nodes.size} slices of {slice_unknowns} unknowns are too many; ask for fewer nodal "
-        "lines or a lower frequency, or take a beam (--theory timoshenko)"
-    )
-    require_within(SOLID_MEMORY, 20.0 * x.nodes.size * slice_unknowns**2, enough=enough)
 
 
 @dataclass(frozen=True, eq=False)

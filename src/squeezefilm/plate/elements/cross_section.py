@@ -171,6 +171,18 @@ def cross_section(
     return _assemble(model, blocks, present, electrode_of)
 
 
+def slice_codes(model: BoxModel, element: int) -> si.IntArray:
+    """The codes of the unknowns of x element number `element`'s slice, as `CrossSection` has them,
+    without its matrices."""
+    size = potential_base(model) + model.y.nodes.size * model.z.nodes.size * max(
+        len(model.electrodes), 1
+    )
+    present, electrode_of = np.zeros(size, dtype=bool), np.full(size, -1)
+    for j in np.flatnonzero(np.any(model.medium[element] >= 0, axis=1)).tolist():
+        _element_codes(model, element, j, present, electrode_of)
+    return np.flatnonzero(present & (electrode_of < 0))
+
+
 def _element_codes(
     model: BoxModel, element: int, j: int, present: si.FloatArray, electrode_of: si.IntArray
 ) -> tuple[si.IntArray, si.IntArray]:

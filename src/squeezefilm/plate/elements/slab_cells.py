@@ -30,8 +30,12 @@ class Cell:
     joints: tuple[PartialLDL, ...]
     spans: tuple[tuple[int, int], ...]
     at: tuple[tuple[Matrix, Matrix], ...]
-    ends: Matrix
-    negative: int
+
+    @property
+    def negative(self) -> int:
+        """The number of negative pivots, if counted."""
+        inside = sum(bubble.negative for bubble in self.bubbles)
+        return inside + sum(joint.negative for joint in self.joints)
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,12 +40,14 @@ class SlabFactor:
 
     def __init__(self, slabs: Slabs, shift: float, *, count: bool = False) -> None:
         self._slabs, self.shift, self._count = slabs, shift, count
+        # Matrices that are needed on the way only: they would be half of all memory.
         self._dynamic: dict[int, Matrix] = {}
-        self._bubbles: dict[Any, MirroredElement] = {}
+        self._bubbles: dict[Any, tuple[MirroredElement, Matrix]] = {}
         # Reflection along x turns u and nothing else.
         self._mirror_signs = np.where(slabs.components == 0, -1.0, 1.0)
-        cells: dict[Any, Cell] = {}
+        cells: dict[Any, tuple[Cell, Matrix]] = {}
         self._places: list[Place] = []
+        ends: list[Matrix] = []
         for elements, repeated in self._stretches():
             forward, backward = self._key(elements), self._key(elements[::-1])
             mirrored = forward not in cells and backward in cells and mirrors(slabs, elements)
@@ -57,8 +59,11 @@ class SlabFactor:
                 cells[key] = self._cell(elements)
             first = slabs.model.x.first_node
             nodes = range(first[elements[0]], first[elements[-1] + 1] + 1)
-            self._places.append(Place(cells[key], nodes[::-1] if mirrored else nodes, mirrored))
-        self._chain()
+            cell, left = cells[key]
+            self._places.append(Place(cell, nodes[::-1] if mirrored else nodes, mirrored))
+            ends.append(left)
+        self._chain(ends)
+        del self._dynamic, self._bubbles
 
     @property
     def modes_below(self) -> int:
@@ -93,7 +98,7 @@ class SlabFactor:
             tuple(x.orders[e] for e in elements),
         )
 
-    def _bubble(self, e: int) -> MirroredElement:
+    def _bubble(self, e: int) -> tuple[MirroredElement, Matrix]:
         slabs, x = self._slabs, self._slabs.model.x
         length, order = x.edges[e + 1] - x.edges[e], x.orders[e]
         section = slabs.sections[e]
@@ -102,36 +107,43 @@ class SlabFactor:
             return self._bubbles[key]
         if id(section) not in self._dynamic:
             self._dynamic[id(section)] = section.P0 - self.shift * section.R
+        component, iy, _ = code_parts(slabs.model, section.codes)
         made = SliceMatrices(
             section.P2,
             section.P1,
             self._dynamic[id(section)],
             *line_matrices(length, order),
-            np.where(code_parts(slabs.model, section.codes)[0] == 0, -1.0, 1.0),
+            np.where(component == 0, -1.0, 1.0),
+            tuple(
+                (np.flatnonzero((iy > a) & (iy < b)), np.flatnonzero((iy == a) | (iy == b)))
+                for a, b in itertools.pairwise(slabs.model.y.first_node)
+                if slabs.model.y.elements > 1
+            ),
         )
         self._bubbles[key] = mirrored_element(made, count=self._count)
         return self._bubbles[key]
 
-    def _ends(self, e: int, bubble: MirroredElement) -> tuple[Matrix, int, tuple[Matrix, Matrix]]:
+    def _ends(self, e: int, schur: Matrix) -> tuple[Matrix, int, tuple[Matrix, Matrix]]:
         """The end matrix of an element over all unknowns of its two end slices, how many of them
-        the first has, and where those of the element stand in each."""
+        the first has, and where those of the element stand in each; `schur` is over the latter."""
         slabs, x = self._slabs, self._slabs.model.x
         at = slabs.places(e, 0), slabs.places(e, x.orders[e])
         sizes = slabs.sizes[x.first_node[e]], slabs.sizes[x.first_node[e + 1]]
-        out = bubble.schur
+        out = schur
         if (at[0].size, at[1].size) != sizes:
-            out = np.zeros((sum(sizes), sum(sizes)), dtype=bubble.schur.dtype)
+            out = np.zeros((sum(sizes), sum(sizes)), dtype=schur.dtype)
             where = np.concatenate([at[0], sizes[0] + at[1]])
-            out[np.ix_(where, where)] = bubble.schur
+            out[np.ix_(where, where)] = schur
         return out, sizes[0], at
 
-    def _cell(self, elements: Sequence[int]) -> Cell:
+    def _cell(self, elements: Sequence[int]) -> tuple[Cell, Matrix]:
+        """A stretch of elements, and the matrix that is left over its two end slices."""
         # Cells are always made in ascending order of x; mirrored ones reuse them.
-        bubbles = tuple(self._bubble(e) for e in elements)
-        front, n0, first = self._ends(elements[0], bubbles[0])
+        bubbles = [self._bubble(e) for e in elements]
+        front, n0, first = self._ends(elements[0], bubbles[0][1])
         joints, places = [], [first]
-        for e, bubble in zip(elements[1:], bubbles[1:], strict=True):
-            element, m0, at = self._ends(e, bubble)
+        for e, (_, schur) in zip(elements[1:], bubbles[1:], strict=True):
+            element, m0, at = self._ends(e, schur)
             places.append(at)
             m1 = element.shape[0] - m0
             A = np.zeros((m0 + n0 + m1, m0 + n0 + m1), dtype=front.dtype)
@@ -139,25 +151,23 @@ class SlabFactor:
             A[np.ix_(order, order)] = front
             ends = np.concatenate([np.arange(m0), np.arange(m0 + n0, A.shape[0])])
             A[np.ix_(ends, ends)] += element
-            joint = partial_ldl(A, m0, count=self._count)
+            joint, front = partial_ldl(A, m0, count=self._count)
             joints.append(joint)
-            front = joint.schur
-        negative = sum(one.negative for one in bubbles) + sum(one.negative for one in joints)
         stops = np.cumsum([0, *(self._slabs.model.x.orders[e] for e in elements)]).tolist()
         spans = tuple(itertools.pairwise(stops))
-        return Cell(bubbles, tuple(joints), spans, tuple(places), front, negative)
+        inner = tuple(bubble for bubble, _ in bubbles)
+        return Cell(inner, tuple(joints), spans, tuple(places)), front
 
     def _signs(self, node: int) -> Matrix:
         offsets = self._slabs.offsets
         return self._mirror_signs[offsets[node] : offsets[node + 1]]
 
-    def _chain(self) -> None:
-        """Eliminate the end slices of all cells from left to right."""
+    def _chain(self, ends: list[Matrix]) -> None:
+        """Eliminate the end slices of all cells, with these matrices, from left to right."""
         self._negative = sum(place.cell.negative for place in self._places)
         self._links: list[PartialLDL] = []
         carried: Matrix | None = None
-        for place in self._places:
-            S = place.cell.ends
+        for place, S in zip(self._places, ends, strict=True):
             left, right = place.left, place.right
             n = self._slabs.sizes[left]
             if place.mirrored:
@@ -175,13 +185,12 @@ class SlabFactor:
             # A held unknown keeps its place in the slice: its row is that of the identity.
             inside = held[held < n]
             S[inside, inside] = 1
-            link = partial_ldl(S, n, count=self._count)
+            link, carried = partial_ldl(S, n, count=self._count)
             self._links.append(link)
-            carried = link.schur
         assert carried is not None
         last = np.flatnonzero(self._held(self._places[-1].right))
         carried[last, last] = 1
-        self._final = partial_ldl(carried, carried.shape[0], count=self._count)
+        self._final, _ = partial_ldl(carried, carried.shape[0], count=self._count)
         self._negative += sum(link.negative for link in (*self._links, self._final))
 
     def _held(self, *nodes: int) -> Matrix:

@@ -22,14 +22,15 @@ from squeezefilm.plate.solid.symmetry import Symmetry
 
 @dataclass(frozen=True, eq=False)
 class CoarseModes:
-    """Modes of one class on the coarse mesh, with what is taken from it."""
+    """Modes of one class on the coarse mesh, with what is taken from it; the `factor` is let go
+    once they are refined."""
 
     parity: Symmetry
     solved: PlateModel
     values: si.FloatArray
     vectors: si.FloatArray
     labels: list[Label | None]
-    factor: SlabFactor
+    factor: SlabFactor | None
 
 
 def class_fits(parity: Symmetry, label: Label) -> bool:

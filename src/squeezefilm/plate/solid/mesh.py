@@ -21,10 +21,11 @@ from squeezefilm.plate.elements.box_model import (
     Electrode,
     EndCondition,
     Foundation,
+    kept_products,
     require_aspect,
-    require_memory,
 )
 from squeezefilm.plate.elements.lobatto import MAX_ORDER, LineMesh
+from squeezefilm.plate.elements.slab_count import require_memory
 from squeezefilm.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
 from squeezefilm.plate.solid.layers import (
     NORMAL,
@@ -136,7 +137,8 @@ def plate_model(
 
     Raises `InputError` for a frequency beyond its hard limit, before elements are counted,
     `GeometryError` for a class that the plate does not have, `OutOfRangeError` for a plate so thin
-    against its length that elements lose their digits.
+    against its length that elements lose their digits. `InputError` too for a model that would
+    not fit into memory.
     """
     # What resolves a band lies somewhat above it.
     si.require("frequency", frequency, si.Unit("Hz"), above=0, at_most=2 * FREQUENCY.most)
@@ -147,19 +149,12 @@ def plate_model(
             )
     wave = wave_number(plate, frequency)
     _require_thick(plate, frequency, wave)
-    half = tuple(p is not None for p in parity)
-    breaks = [_breaks(plate, axis, half[axis]) for axis in (0, 1)]
-    # Slices stand across the axis with more edges: they are smaller then.
-    swapped = (len(breaks[1][0]), plate.width) > (len(breaks[0][0]), plate.length)
-    along, across = (1, 0) if swapped else (0, 1)
-    thickness = min(plate.thickness, *(patch.thickness for patch in plate.patches))
-    x = _line(breaks[along], half[along], thickness, wave, resolution, cut=True)
-    # A ceramic that ends with the plate's own edge ends there without a corner.
-    every, sharp = breaks[across]
-    inner = [v for v in sharp if v > 0 and v != every[-1]]
-    y = _line((every, inner), half[across], thickness, wave, resolution, cut=False)
     z, layers, ceramics = through_thickness(plate, resolution)
-    require_memory(x, y, z, resolution.trunk)
+    ways = [_in_plane(plate, along, wave, resolution, parity) for along in (0, 1)]
+    work = [_work(x, y, z, resolution.trunk) for x, y in ways]
+    # Slices follow each other where that is less work; the longer way where it is the same.
+    swapped = (work[1], -plate.width) < (work[0], -plate.length)
+    x, y = ways[1 if swapped else 0]
     cells = _Cells(plate, swapped, x, y, z, layers)
     electrode_of, sign_of = _electrode_map(plate, parity)
     medium, ceramic, electrodes, number_of = cells.filled(ceramics, electrode_of)
@@ -175,16 +170,38 @@ def plate_model(
         cells.foundations(),
         resolution.trunk,
     )
+    require_memory(model)
     return PlateModel(
         plate,
         model,
         parity,
-        2 ** sum(half),
+        2 ** sum(own is not None for own in parity),
         swapped,
         tuple(number_of[electrode_of[i]] for i in range(len(plate.patches))),
         sign_of,
         tuple(_share(plate, patch, parity) for patch in plate.patches),
     )
+
+
+def _in_plane(
+    plate: RectangularPlate, along: int, wave: float, resolution: Resolution, parity: Symmetry
+) -> tuple[LineMesh, LineMesh]:
+    """The meshes along and across, where slices follow each other along one axis of the plate."""
+    across = 1 - along
+    half = [own is not None for own in parity]
+    thickness = min(plate.thickness, *(patch.thickness for patch in plate.patches))
+    breaks = _breaks(plate, along, half[along])
+    x = _line(breaks, half[along], thickness, wave, resolution, cut=True)
+    # A ceramic that ends with the plate's own edge ends there without a corner.
+    every, sharp = _breaks(plate, across, half[across])
+    inner = [v for v in sharp if v > 0 and v != every[-1]]
+    return x, _line((every, inner), half[across], thickness, wave, resolution, cut=False)
+
+
+def _work(x: LineMesh, y: LineMesh, z: LineMesh, trunk: float) -> int:
+    """What meshes take to be factorised, to compare: elements along x times the cube of the
+    functions of a slice."""
+    return x.elements * int(np.count_nonzero(kept_products(y, z, trunk))) ** 3
 
 
 def _require_thick(plate: RectangularPlate, frequency: float, wave: float) -> None:

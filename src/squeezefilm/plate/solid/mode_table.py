@@ -13,7 +13,6 @@ from squeezefilm.errors import InputError
 from squeezefilm.plate.elements.box_model import Medium
 from squeezefilm.plate.elements.slabs import Slabs
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.electrode_circuits import shunted_frequencies
 from squeezefilm.plate.solid.model import PlateModel
 from squeezefilm.plate.solid.modes import (
     MODEL,
@@ -129,7 +128,7 @@ def collected_modes(
             f"the frequencies of all {len(order)} modes within {100 * tolerance:.2g} % (estimated)"
             if over == 0
             else f"{over} of {len(order)} modes have an estimated error above {tolerance:.1e}; "
-            + ("the time was up" if coarse else "the finest mesh was used")
+            + ("the time was up" if coarse else "no finer mesh was used")
         ),
         unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
         _fields=tuple(taken(table.fields for table in tables)),
@@ -164,7 +163,7 @@ def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
     # Ratios need few digits: they are taken from the coarse mesh.
     rough, some = piece.found, piece.found.vectors[:, piece.index]
     shares, losses = energy_shares_of(rough.solved.slabs, some)
-    omega = shunted_frequencies(solved, piece.factor, piece.values, piece.vectors)
+    omega = piece.shunted
     shunted = omega.real / np.sqrt(piece.values)
     frequency, error = frequency * shunted, error * shunted
     losses = losses + 2 * omega.imag / omega.real

@@ -9,11 +9,16 @@ import numpy as np
 from scipy.linalg import eigh
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
 from squeezefilm.plate.elements.krylov import modes_near, prolonged
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import CoarseModes
-from squeezefilm.plate.solid.electrode_circuits import inverse_with_open, open_values
+from squeezefilm.plate.solid.electrode_circuits import (
+    inverse_with_open,
+    open_values,
+    shunted_frequencies,
+)
 from squeezefilm.plate.solid.layers import COARSE, FINE, NORMAL, Resolution
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.model import PlateModel
@@ -48,7 +53,8 @@ _SAME = 1e-5
 @dataclass(frozen=True, eq=False)
 class RefinedModes:
     """The refined modes of one class: ω² on the finer mesh and on the one before it, with the
-    drive's terminals short (`values`) and open (`open_values`)."""
+    drive's terminals short (`values`) and open (`open_values`); `shunted` is the complex ω with
+    resistors at work. The `factor` of the mesh is kept for those who go on with it only."""
 
     found: CoarseModes
     index: si.IntArray
@@ -59,7 +65,8 @@ class RefinedModes:
     open_values: si.FloatArray
     vectors: si.FloatArray
     level: int
-    factor: SlabFactor
+    factor: SlabFactor | None
+    shunted: si.ComplexArray
 
 
 def refined_modes(
@@ -69,39 +76,80 @@ def refined_modes(
     highest: float,
     tolerance: float,
     deadline: Deadline | None = None,
+    *,
+    keep_factor: bool = False,
 ) -> RefinedModes:
     """The modes `index` of a class on finer meshes, until the estimated error is below `tolerance`
-    (relative), the finest one is reached or the next would end after the deadline: without time
-    for any, the coarse mesh's own (level `UNREFINED`)."""
+    (relative), the finest that memory holds is reached or the next would end after the deadline:
+    without time for any, the coarse mesh's own (level `UNREFINED`).
+
+    Raises `InputError` where memory does not hold the first of the finer meshes.
+    """
     solved, values, vectors = one.solved, one.values[index], one.vectors[:, index]
+    assert one.factor is not None
     opened = open_values(solved, one.factor, values, vectors)
     piece = RefinedModes(
-        one, index, solved, values, values, opened, opened, vectors, UNREFINED, one.factor
+        found=dataclasses.replace(one, factor=None),
+        index=index,
+        solved=solved,
+        coarse_values=values,
+        values=values,
+        coarse_open_values=opened,
+        open_values=opened,
+        vectors=vectors,
+        level=UNREFINED,
+        factor=one.factor,
+        shunted=np.sqrt(values).astype(complex),
     )
     for level, resolution in enumerate(LEVELS):
-        finer = plate_model(plate, highest, resolution, one.parity)
+        try:
+            finer = plate_model(plate, highest, resolution, one.parity)
+        except InputError:
+            if level == 0:
+                raise
+            break  # The finest mesh that memory holds is the one before.
         if deadline is not None and not deadline.allows(expected_seconds(finer)):
-            return piece
-        slabs = finer.slabs
-        start = prolonged(solved.slabs, slabs, vectors)
-        # Just below the coarse values, where the finer ones are expected.
-        shift = float(np.mean(values)) * (1 - 2e-3)
-        factor = SlabFactor(slabs, shift)
-        solve = inverse_with_open(finer, factor)
-
-        # By shape, not by value or order: a coarse value may be nearer to another mode, and
-        # neighbours may change places between two meshes.
-        pairs = modes_near(slabs, solve, shift, None, start, tolerance=min(1e-6, 1e-3 * tolerance))
-        before, opened = opened, open_values(finer, factor, pairs.values, pairs.vectors)
-        piece = RefinedModes(
-            one, index, finer, values, pairs.values, before, opened, pairs.vectors, level, factor
-        )
+            break
+        # Let go of one mesh's factors before the next one's are made.
+        piece = dataclasses.replace(piece, factor=None)
+        piece = _finer(piece, finer, level, tolerance)
         _, error = extrapolated(piece.coarse_values, piece.values, piece.level)
         worst = np.max(error / (np.sqrt(piece.values) / (2 * np.pi)))
-        if worst <= tolerance or level == len(LEVELS) - 1:
-            return piece
-        solved, values, vectors = finer, pairs.values, pairs.vectors
-    raise AssertionError("no level was solved")
+        if worst <= tolerance:
+            break
+    assert piece.factor is not None
+    shunted = shunted_frequencies(piece.solved, piece.factor, piece.values, piece.vectors)
+    return dataclasses.replace(piece, factor=piece.factor if keep_factor else None, shunted=shunted)
+
+
+def _finer(piece: RefinedModes, finer: PlateModel, level: int, tolerance: float) -> RefinedModes:
+    """The same modes on a finer mesh."""
+    slabs, values = finer.slabs, piece.values
+    start = prolonged(piece.solved.slabs, slabs, piece.vectors)
+    # Just below the coarse values, where the finer ones are expected.
+    shift = float(np.mean(values)) * (1 - 2e-3)
+    factor = SlabFactor(slabs, shift)
+    # By shape, not by value or order: a coarse value may be nearer to another mode, and neighbours
+    # may change places between two meshes.
+    pairs = modes_near(
+        slabs,
+        inverse_with_open(finer, factor),
+        shift,
+        None,
+        start,
+        tolerance=min(1e-6, 1e-3 * tolerance),
+    )
+    return dataclasses.replace(
+        piece,
+        solved=finer,
+        coarse_values=values,
+        values=pairs.values,
+        coarse_open_values=piece.open_values,
+        open_values=open_values(finer, factor, pairs.values, pairs.vectors),
+        vectors=pairs.vectors,
+        level=level,
+        factor=factor,
+    )
 
 
 def with_label(piece: RefinedModes, label: Label) -> RefinedModes:
@@ -116,6 +164,7 @@ def with_label(piece: RefinedModes, label: Label) -> RefinedModes:
         coarse_open_values=piece.coarse_open_values[keep],
         open_values=piece.open_values[keep],
         vectors=piece.vectors[:, keep],
+        shunted=piece.shunted[keep],
     )
 
 

@@ -303,7 +303,7 @@ def _reduced(
         if progress is not None:
             progress(f"response, {told_of(parity)}", number / len(classes))
         known = next((piece for piece in solved if piece.found.parity == parity), None)
-        if known is None:
+        if known is None or known.factor is None:
             part = reduced_class(plate, parity, band, steps, pressures, resolution)
         else:
             mesh = COARSE if known.level == UNREFINED else LEVELS[known.level]

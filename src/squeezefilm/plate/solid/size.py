@@ -7,11 +7,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 from squeezefilm import quantities as si
 from squeezefilm.errors import OutOfTimeError
-from squeezefilm.plate.elements.box_model import kept_products
+from squeezefilm.plate.elements.slab_count import SlabCount, slab_count
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import class_fits
 from squeezefilm.plate.solid.layers import COARSE, NORMAL, Resolution
@@ -23,11 +21,11 @@ from squeezefilm.plate.solid.symmetry import all_classes, drive_classes
 from squeezefilm.progress import Deadline
 
 # Processor time of one thread of the machine that this was written on, fitted to 14 plates of metal
-# and glass (see `benchmarks/size.py`): products of a slice's unknowns that are worked off in a
-# second to factorise and search a mesh, and entries of its factors to go on to the response.
-_RATE, _RESPONSE_RATE = 34e9, 70e6
+# and glass (see `benchmarks/size.py`): cubes of elements' slices that are worked off in a second to
+# factorise and search a mesh, and squares to go on to the response.
+_RATE, _RESPONSE_RATE = 2.0e9, 6.5e6
 # Around what a mesh takes besides (s).
-_BESIDES = 0.1
+_BESIDES = 0.15
 
 
 class SolveSize(NamedTuple):
@@ -59,16 +57,13 @@ class SolveSize(NamedTuple):
 
 
 def expected_seconds(solved: PlateModel) -> si.Second:
-    """How long a mesh takes to be factorised and searched (s): slices times the cube of their
-    unknowns, as `SolveSize.seconds` is right."""
-    slices, unknowns = _counted(solved)
-    return _BESIDES + slices * unknowns**3 / _RATE
+    """How long a mesh takes to be factorised and searched (s): elements times the cube of their
+    slices' unknowns, as `SolveSize.seconds` is right."""
+    return _seconds(slab_count(solved.model))
 
 
-def _counted(solved: PlateModel) -> tuple[int, int]:
-    model = solved.model
-    kept = kept_products(model.y, model.z, model.trunk)
-    return int(model.x.nodes.size), 4 * int(np.count_nonzero(kept))
+def _seconds(count: SlabCount) -> si.Second:
+    return _BESIDES + count.products / _RATE
 
 
 @si.checked_numbers
@@ -93,10 +88,10 @@ def solve_size(plate: RectangularPlate, label: Label, frequency: si.Hertz) -> So
         seconds, most = 0.0, 0
         for parity in driven:
             mesh = plate_model(plate, band, resolution, parity)
-            slices, unknowns = _counted(mesh)
-            seconds += _BESIDES + slices * unknowns**2 / _RESPONSE_RATE
-            seconds += 0.0 if parity in fitting else expected_seconds(mesh)
-            most = max(most, slices * unknowns)
+            count = slab_count(mesh.model)
+            seconds += _BESIDES + count.squares / _RESPONSE_RATE
+            seconds += 0.0 if parity in fitting else _seconds(count)
+            most = max(most, count.unknowns)
         return seconds, most
 
     response, unknowns = answered(NORMAL)

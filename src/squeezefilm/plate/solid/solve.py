@@ -109,7 +109,9 @@ def solve_for_response(
     again = functools.partial(solve_modes, plate, mode=mode, tolerance=tolerance)
     tell = progress or (lambda text, fraction: None)
     with one_blas_thread():
-        modes, pieces = _solved(plate, None, None, mode, 1, tolerance, False, tell, deadline)
+        modes, pieces = _solved(
+            plate, None, None, mode, 1, tolerance, False, tell, deadline, keep_factors=True
+        )
     return dataclasses.replace(modes, _again=again), pieces
 
 
@@ -123,6 +125,8 @@ def _solved(
     driven_only: bool,
     tell: ShareProgress,
     deadline: Deadline | None,
+    *,
+    keep_factors: bool = False,
 ) -> tuple[PlateModes, list[RefinedModes]]:
     classes = drive_classes(plate) if driven_only else all_classes(plate)
     if mode is not None:
@@ -153,7 +157,11 @@ def _solved(
             if index.size:
                 share = _COARSE + (1 - _COARSE) * number / len(found)
                 tell(f"fine mesh, {told_of(one.parity)}", share)
-                pieces.append(refined_modes(plate, one, index, highest, tolerance, deadline))
+                pieces.append(
+                    refined_modes(
+                        plate, one, index, highest, tolerance, deadline, keep_factor=keep_factors
+                    )
+                )
         if mode is None:
             break
         labelled = [piece for piece in (with_label(p, mode) for p in pieces) if piece.index.size]

@@ -98,12 +98,13 @@ class Strips(Shape):
             # Cut to a tenth of a millimetre, but for pieces that fill their pitch.
             piece = full if cover == 1 else round(full * cover / CUT) * CUT
         pitch = (length + self.gap) / count
-        if not _LEAST_PIECE <= piece <= pitch - self.gap + 1e-9:
+        if not _LEAST_PIECE - 1e-9 <= piece <= pitch - self.gap + 1e-9:
             raise GeometryError(
                 f"{count} ceramics on {1e3 * length:.4g} mm are {1e3 * piece:.3g} mm long, and at "
                 f"least {1e3 * _LEAST_PIECE:g} mm and a gap of {1e3 * self.gap:.3g} mm are needed"
             )
-        inset = (pitch - self.gap - piece) / 2
+        # Pieces that fill their pitch may be longer than it by a rounding error.
+        inset = max(0.0, (pitch - self.gap - piece) / 2)
         thickness = float(values["ceramic_thickness"])
         below = [
             CeramicPatch(

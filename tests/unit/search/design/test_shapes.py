@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import itertools
+
 import pytest
 from tests.unit.search.design.made_up import TEXT, drawn, requirements
 
@@ -79,6 +81,24 @@ def test_a_catalogue_makes_the_length() -> None:
         assert isinstance(plate, RectangularPlate)
         assert plate.patches[0].length in (0.009, 0.011)
         assert 0.06 - 1e-9 <= plate.length <= 0.09 + 1e-9
+
+
+def test_no_ceramic_begins_before_the_plate_by_a_rounding_error() -> None:
+    # Cut to 0.1 mm, a piece may fill its pitch to the last bit and one more.
+    wanted = requirements()
+    space = wanted.spaces[0]
+    base = space.at({one.name: 0.5 for one in space.free})
+    built = 0
+    for lines, tenths in itertools.product((5.0, 6.0, 7.0, 8.0, 9.0), range(300, 900, 3)):
+        values = {**base, "nodal_lines": lines, "length": tenths * 1e-4, "cover": 0.99}
+        try:
+            plate = display_of(wanted, design_of(0, values)).actuator
+        except GeometryError:
+            continue  # A cut piece leaves too little of a gap.
+        assert isinstance(plate, RectangularPlate)
+        assert plate.patches[0].x >= 0
+        built += 1
+    assert built > 300
 
 
 def test_ceramics_that_do_not_fit_say_so() -> None:
