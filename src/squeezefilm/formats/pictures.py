@@ -81,12 +81,13 @@ def _header(data: bytes, name: str) -> tuple[int, int, bool]:
 
 def _brightness(data: bytes) -> Read:
     """In the child: the values of a picture, the right way up."""
-    from PIL import Image, ImageOps
+    from PIL import Image as Pillow
+    from PIL import ImageOps
 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as picture:
+            with Pillow.open(io.BytesIO(data), formats=("PNG", "JPEG")) as picture:
                 upright = ImageOps.exif_transpose(picture)
                 if upright.mode in ("L", "I;16", "I"):
                     white = 255 if upright.mode == "L" else 65535

@@ -10,6 +10,8 @@ import zipfile
 from pathlib import Path
 
 from squeezefilm.errors import InputError
+from squeezefilm.hard_limits import OWN_BYTES
+from squeezefilm.regular_file import read_regular
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
@@ -49,12 +51,16 @@ def fresh(folder: Path, name: str, suffix: str, *, replace: bool = False) -> Pat
 
 
 def zipped(folder: Path) -> str:
-    """A zip of a folder's files in base64, without links and names that begin with a dot."""
+    """A zip of a folder's files in base64, without links and names that begin with a dot.
+
+    Raises `ConfigError` for a file that cannot be read or has more than 64 MB.
+    """
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for path in sorted(folder.rglob("*")):
             if path.is_file() and not path.is_symlink() and not path.name.startswith("."):
-                archive.write(path, path.relative_to(folder))
+                data = read_regular(path, OWN_BYTES, "an export's file")
+                archive.writestr(path.relative_to(folder).as_posix(), data)
     return base64.b64encode(out.getvalue()).decode()
 
 
