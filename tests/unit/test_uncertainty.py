@@ -298,7 +298,7 @@ class _Law:
 
 def _predicted(**changes: Any) -> Any:
     values: dict[str, Any] = {
-        "voltage": None, "touch": SimpleNamespace(free_amplitude=3e-6),
+        "voltage": None, "touch": SimpleNamespace(free_amplitude=3e-6), "held_amplitude": 3e-6,
         "mode": SimpleNamespace(half_wavelength=9e-3, modal_mass=None, quality_factor=200.0),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
@@ -568,7 +568,7 @@ def test_the_free_amplitude_follows_voltage_quality_and_dimensions(
     monkeypatch.setattr(
         free_amplitude,
         "beam_response",
-        lambda a: SimpleNamespace(amplitude_per_volt=10 * a.thickness),
+        lambda a: SimpleNamespace(amplitude_per_volt=10 * a.thickness, require_driven=lambda: None),
     )
     monkeypatch.setattr(
         free_amplitude, "working_mode",

@@ -384,5 +384,5 @@ def test_a_summary_says_what_was_to_be_played_and_what_became_of_it(
         "end": {"why": "over", "faded_at_s": None}, "tile": None,
     }  # fmt: skip
     assert {key: found[key] for key in expected} == expected
-    assert set(found) - set(expected) == {"by_record"}
+    assert set(found) - set(expected) == {"by_record", "usability"}
     assert found["by_record"]["not_judged_because"]

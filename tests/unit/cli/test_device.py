@@ -112,7 +112,7 @@ def test_an_export_says_what_was_written(stands_in: StandsIn, tmp_path: Path) ->
     exported = TraceExport("a.sqft", "a.csv", "csv", 7, ("time_s", "x_m"), 2, 0, True, ("cut",))
     asked = stands_in("session.record.trace:export_trace", exported)
     done = run("export", "a.sqft", "--to", "a.csv")
-    assert asked.given == (Path("a.sqft"), Path("a.csv"))
+    assert asked.given[:2] == (Path("a.sqft"), Path("a.csv"))
     assert done.stdout == "a.csv: 7 rows of 2 columns, 2 events\n! cut\n"
     done = run("export", "a.sqft", "--to", "a.csv", "--json")
     assert json.loads(done.stdout)["damage"] == ["cut"]

@@ -155,7 +155,7 @@ def test_gates_of_speed_and_time() -> None:
         (lambda: Constant(1.1), "share = 1.1"),
         (lambda: Constant(math.nan), "share = nan"),
         (lambda: SquareWave(0.0), "spatial_period = 0 m"),
-        (lambda: SquareWave(400.0), "at most 10 m"),
+        (lambda: SquareWave(400.0), "at most 500 mm"),
         (lambda: SquareWave(1e-3, 1.0), "duty = 1"),
         (lambda: SquareWave(1e-3, along=3.0), "no coordinate"),
         (lambda: SineWave(1e-3, math.inf), "phase = inf"),

@@ -32,7 +32,7 @@ sys.path.append(str(Path(__file__).parents[3] / "tools"))
             [("friction", f"relative_friction_interval.{k}") for k in (0, 1)],
         ),
         ("followed", [("followed", "frequency_Hz")]),
-        ("followed.amplitude_per_volt", [("followed", "amplitude_per_volt_m_per_V")]),
+        ("followed.alone_per_volt", [("followed", "alone_per_volt_m_per_V")]),
         (
             "compensation_speed_gain.compensated, no phase inversion",
             [("analyze", "compensation_speed_gain.compensated, no phase inversion")],

@@ -26,7 +26,7 @@ def test_an_opened_display_is_its_text_and_all_that_its_form_shows() -> None:
     display = display_of(STATOR)
     assert opened(STATOR) == {
         "text": STATOR, "name": "biet2008-stator", "title": display.title,
-        "form": form(STATOR), "outline": outline(STATOR), "calibration": None,
+        "form": form(STATOR), "outline": outline(STATOR), "calibration": None, "covered": {},
     }  # fmt: skip
     new = edited(STATOR, "drive.voltage", "99 V")
     assert numbers.changed(STATOR, "drive.voltage", "99 V") == opened(new)
@@ -89,7 +89,7 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
     }  # fmt: skip
     assert {key: found[key] for key in expected} == expected
     assert set(found) - set(expected) == {
-        "friction_curve", "response", "line", "shape", "provenance",
+        "friction_curve", "response", "line", "shape", "provenance", "since_screening",
         # What every prediction says of itself beside.
         "display", "frequency_Hz", "amplitude_model", "mean_pressure", "mean_pressure_error",
         "amplitude_kept_under_finger", "finger_impedance_N_s_per_m", "finger_speed_m_per_s", "heat",
@@ -232,7 +232,7 @@ def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.Monkey
     text = edited(GLASS, "drive.voltage", "99 V")
     found = designed(point, "solved")
     assert (found["text"], found["quality"], found["voltage_V"]) == (text, "solved", 10.0)
-    assert asked == [(display_of(text), "solved", point)]
+    assert asked[0] == (display_of(text), "solved", point)
     assert solved == [display_of(text).actuator]
     assert found["drive_electronics"] is None  # a beam has no admittance
     assert told == [("sweeping", 0.5)]

@@ -57,7 +57,7 @@ def test_arguments_broadcast(texture: Texture) -> None:
     [
         ((0.0, LOW, HIGH), "spatial_period = 0 m"),
         ((-1e-3, LOW, HIGH), "spatial_period = -1 mm"),
-        ((400.0, LOW, HIGH), "at most 10 m"),
+        ((400.0, LOW, HIGH), "at most 500 mm"),
         ((math.nan, LOW, HIGH), "spatial_period = nan"),
         ((1e-3, -1e-9, HIGH), "low = -1 nm"),
         ((1e-3, math.nan, HIGH), "low = nan"),

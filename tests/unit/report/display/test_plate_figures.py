@@ -471,7 +471,7 @@ def test_a_drive_beside_the_resonance_is_said(share: float, said: str | None) ->
     if said:
         assert title.endswith(said)
     name = [*labelled(frequency_response(found).axes[0])][-1]
-    assert words(name).endswith(" µm free, 0.5 µm under the finger")
+    assert words(name).endswith(" µm free, 0.5 µm with the finger on")
 
 
 def test_a_drive_outside_the_sweep_or_none_is_not_drawn() -> None:
