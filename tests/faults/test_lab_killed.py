@@ -95,7 +95,9 @@ def answers(station: Station, sitting: str, rng: random.Random, most: int) -> in
                 now = ask(page, "next", sitting=sitting)
             if now["state"] == "finished":
                 break
-            ask(page, "surface in place", sitting=sitting)
+            for place in range(now["surfaces"]):
+                ask(page, "feel", sitting=sitting, token=now["token"], place=place)
+                ask(page, "surface in place", sitting=sitting)
             answer = ask(
                 page, "respond", sitting=sitting, token=now["token"],
                 choice=rng.choice(now["alternatives"]) if now["alternatives"] else "",
