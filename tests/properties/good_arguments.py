@@ -273,6 +273,8 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.solid.modes.PlateModes.nodal_positions": {"mode": 0},
     "plate.solid.modes.PlateModes.half_wavelength": {"mode": 0},
     "plate.solid.response.HarmonicResponse.line": {"at": 0},
+    "plate.solid.response.HarmonicResponse.largest": {"at": 0},
+    "plate.solid.resonances.label_name": {"label": (4, 0)},
     "plate.solid.response.harmonic_response": {"frequencies": np.array([30e3, 31e3])},
     "plate.beam.response.BeamResponse.amplitude_at": {"position": 10e-3},
     "plate.beam.response.BeamResponse.transfer": {"frequency": np.array([30e3]), "position": WAYS},

@@ -20,9 +20,8 @@ from squeezefilm.compiled import announce
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.sliding.march import row_substeps, substeps
 from squeezefilm.errors import InputError
-from squeezefilm.plate.heat.states import cooling_of
+from squeezefilm.plate.heat.states import cooling_of, heat_capacity
 from squeezefilm.plate.heat.thermal import driven_thickness, thermal_body
-from squeezefilm.plate.heat.warming import heat_capacity
 from squeezefilm.twin import plant_kernel as k
 from squeezefilm.twin.envelope_step import Fingers
 from squeezefilm.twin.friction_rows import FrictionTables

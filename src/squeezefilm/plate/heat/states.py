@@ -13,7 +13,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from squeezefilm import quantities as si
-from squeezefilm.plate.heat.kernel import Drifts, Driven, lost, resonance, surpluses, time_until
+from squeezefilm.plate.heat.kernel import (
+    Drifts,
+    Driven,
+    conductance,
+    lost,
+    resonance,
+    surpluses,
+    time_until,
+)
 from squeezefilm.plate.heat.thermal import Cooling, Thermal, ThermalBody
 
 EMISSIVITIES = (0.1, 0.9)
@@ -25,6 +33,7 @@ HOTTEST: si.Kelvin = 2000.0
 """Beyond it no state is looked for."""
 
 _GRID = 1500
+_REFERENCE_RISE: si.Kelvin = 20.0
 _STEPS_OF_A_TIME_CONSTANT = 2000
 _FALLEN = 0.9
 
@@ -73,6 +82,18 @@ def cooling_of(thermal: Thermal, body: ThermalBody) -> Cooling:
     return Cooling(fixed, body.face_area, length, thermal.emissivity, thermal.ambient_temperature)
 
 
+def heat_capacity(thermal: Thermal, body: ThermalBody) -> si.JoulePerKelvin:
+    """What the body takes per kelvin (J/K): of its mass, or what a measured time constant says.
+
+    With a measured time constant and a computed resistance, by the one at a warmth of 20 K.
+    """
+    if thermal.thermal_time is None:
+        return body.heat_capacity
+    given = conductance(_REFERENCE_RISE, cooling_of(thermal, body))
+    # Held at the room's temperature any capacity is the same.
+    return thermal.thermal_time * given if math.isfinite(given) else body.heat_capacity
+
+
 def drifts_of(thermal: Thermal) -> Drifts:
     """The coefficients as compiled code takes them."""
     return Drifts(
@@ -88,7 +109,7 @@ class WarmCase:
     """One plate at one voltage, as compiled code takes it."""
 
     def __init__(
-        self, source: HeatSource, thermal: Thermal, cooling: Cooling, capacity: si.JoulePerKelvin
+        self, source: HeatSource, thermal: Thermal, body: ThermalBody, drifts: Drifts
     ) -> None:
         self.driven = Driven(
             float(source.frequency),
@@ -98,8 +119,8 @@ class WarmCase:
             float(source.dielectric_power),
             float(source.field or 0.0),
         )
-        self.drifts = drifts_of(thermal)
-        self.cooling, self.capacity = Cooling(*map(float, cooling)), float(capacity)
+        self.drifts, self.cooling = drifts, Cooling(*map(float, cooling_of(thermal, body)))
+        self.capacity = float(heat_capacity(thermal, body))
 
     def states(self, frequency: float) -> tuple[WarmState, ...]:
         """The stable states at a frequency (0: at resonance), the one reached from cold first."""
@@ -144,18 +165,17 @@ class WarmCase:
 
 
 def warmth_ranges(
-    source: HeatSource, thermal: Thermal, body: ThermalBody, capacity: si.JoulePerKelvin
+    source: HeatSource, thermal: Thermal, body: ThermalBody
 ) -> tuple[tuple[si.Kelvin, si.Kelvin] | None, tuple[si.Hertz, si.Hertz]]:
     """The least and the most that the tracked state is warm and has drifted over assumed ranges;
     no range of the warmth with a measured resistance."""
     measured = thermal.thermal_resistance is not None
-    states = []
+    nominal, states = drifts_of(thermal), []
     for emissivity in (thermal.emissivity,) if measured else EMISSIVITIES:
         changed = replace(thermal, emissivity=emissivity)
         for share in COEFFICIENT_SHARES:
-            case = WarmCase(source, changed, cooling_of(changed, body), capacity)
-            case.drifts = case.drifts._replace(frequency=share * case.drifts.frequency)
-            states.append(case.states(0.0)[0])
+            shifted = nominal._replace(frequency=share * nominal.frequency)
+            states.append(WarmCase(source, changed, body, shifted).states(0.0)[0])
     rises, drifts = (
         sorted(getattr(state, name) for state in states)
         for name in ("temperature_rise", "resonance_drift")

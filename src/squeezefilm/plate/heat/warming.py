@@ -19,7 +19,7 @@ from squeezefilm.plate.heat.states import (
     HeatSource,
     WarmCase,
     WarmState,
-    cooling_of,
+    drifts_of,
     warmth_ranges,
 )
 from squeezefilm.plate.heat.thermal import (
@@ -44,8 +44,6 @@ FIELD_SHARE = 1 / 3
 """Of the coercive field, warned of (assumed)."""
 KNOWN_RISE: si.Kelvin = 60.0
 """Up to it coefficients are taken to stay what they are (assumed)."""
-
-_REFERENCE_RISE: si.Kelvin = 20.0
 
 
 @dataclass(frozen=True)
@@ -81,18 +79,6 @@ class Warming:
     doubts: tuple[str, ...]
     rise_range: tuple[si.Kelvin, si.Kelvin] | None = None
     drift_range: tuple[si.Hertz, si.Hertz] | None = None
-
-
-def heat_capacity(thermal: Thermal, body: ThermalBody) -> si.JoulePerKelvin:
-    """What the body takes per kelvin (J/K): of its mass, or what a measured time constant says.
-
-    With a measured time constant and a computed resistance, by the one at a warmth of 20 K.
-    """
-    if thermal.thermal_time is None:
-        return body.heat_capacity
-    given = conductance(_REFERENCE_RISE, cooling_of(thermal, body))
-    # Held at the room's temperature any capacity is the same.
-    return thermal.thermal_time * given if math.isfinite(given) else body.heat_capacity
 
 
 @si.checked_numbers
@@ -140,7 +126,7 @@ def warming(
     """
     thermal = Thermal() if thermal is None else thermal
     body, fixed = thermal_body(actuator), source.frequency if frequency is None else frequency
-    case = WarmCase(source, thermal, cooling_of(thermal, body), heat_capacity(thermal, body))
+    case = WarmCase(source, thermal, body, drifts_of(thermal))
     tracked = case.states(0.0)[0]
     states = case.states(fixed)
     given = conductance(tracked.temperature_rise, case.cooling)
@@ -165,7 +151,7 @@ def warming(
         assumed=_assumed(thermal, body),
         doubts=(),
     )
-    rises, drifts = warmth_ranges(source, thermal, body, case.capacity)
+    rises, drifts = warmth_ranges(source, thermal, body)
     return replace(
         found,
         doubts=tuple(_doubts(found, source, thermal)),

@@ -159,16 +159,13 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
     def largest(self, at: int) -> si.MetrePerVolt:
         """The largest |w| per volt (m/V) anywhere on the upper face, at frequency number `at`."""
         si.require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
-        return float(np.max(np.abs(self._coordinates[at] @ self._face())))
+        return _largest(self._coordinates[at], self._face())
 
     @functools.cached_property
     def maximum(self) -> si.FloatArray:
         """The largest |w| per volt (m/V) anywhere on the upper face, for every frequency."""
         values = self._face()
-        out = np.empty(self.frequencies.size)
-        for k, row in enumerate(self._coordinates):
-            out[k] = np.sqrt(np.max((row.real @ values) ** 2 + (row.imag @ values) ** 2))
-        return out
+        return np.array([_largest(row, values) for row in self._coordinates])
 
     @si.checked_numbers
     def dissipated_power(self, voltage: si.Volt) -> si.FloatArray:
@@ -200,6 +197,12 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
             q = self._coordinates[:, at]
             out += np.einsum("fi,ij,fj->f", q.conj(), getattr(one, matrix), q).real
         return out
+
+
+def _largest(coordinates: si.ComplexArray, face: si.FloatArray) -> float:
+    """The largest |w| of complex coordinates of shapes over the face, real arrays multiplied apart:
+    the shapes would be copied as complex ones."""
+    return float(np.sqrt(np.max((coordinates.real @ face) ** 2 + (coordinates.imag @ face) ** 2)))
 
 
 @si.checked_numbers

@@ -84,15 +84,16 @@ def vibration_rows(p: Prediction) -> list[Row]:
     kept = f"the finger leaves {100 * p.touch.kept:.3g} %"
     if p.touch.mode is None:
         kept = "the finger is taken to change nothing: no modal mass is known"
-    under_finger: list[Row] = []
-    if place is not None:
+    held, under_finger = shown(p.vibration_amplitude, M, 3), list[Row]()
+    # A finger at the antinode has that amplitude: no number is printed twice.
+    if place is not None and (under := shown(p.amplitude_at_place, M, 3)) != held:
         where = f"where it is, at {place_words(p.place)}"
-        under_finger = [("Amplitude under the finger", shown(p.amplitude_at_place, M, 3), where)]
+        under_finger = [("Amplitude under the finger", under, where)]
     return [
         ("Resonance frequency", shown(mode.resonance_frequency, HZ), _solved(mode)),
         drive,
         ("Amplitude, free", shown(free, M, 3), made),
-        ("Amplitude, finger on", shown(p.vibration_amplitude, M, 3), f"{of}; {kept}"),
+        ("Amplitude, finger on", held, f"{of}; {kept}"),
         *under_finger,
     ]
 

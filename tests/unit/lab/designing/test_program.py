@@ -147,8 +147,8 @@ def test_a_display_that_changes_no_friction_renders_nothing(voltage: str, said: 
     with pytest.raises(InputError) as refused:
         felt(still)
     assert str(refused.value) == (
-        f"display 'biet2008-stator, edited' changes no friction at {said} V, so it renders no texture; "
-        "give it a voltage in the Design area"
+        f"display 'biet2008-stator, edited' changes no friction at {said} V, so it renders no "
+        "texture; give it a voltage in the Design area"
     )
 
 

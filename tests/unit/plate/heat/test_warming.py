@@ -10,10 +10,15 @@ from scipy.optimize import brentq
 from squeezefilm.display import load_display
 from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.heat.kernel import conductance
-from squeezefilm.plate.heat.states import EMISSIVITIES, HeatSource, cooling_of, drifts_of
+from squeezefilm.plate.heat.states import (
+    EMISSIVITIES,
+    HeatSource,
+    cooling_of,
+    drifts_of,
+    heat_capacity,
+)
 from squeezefilm.plate.heat.thermal import LOSS_TANGENT, Thermal, thermal_body
 from squeezefilm.plate.heat.warming import (
-    heat_capacity,
     heat_source,
     warming,
     warming_of_mode,
