@@ -25,7 +25,7 @@ from squeezefilm.plate.ring.body import (
 from squeezefilm.plate.ring.modes import AnnularMode
 from squeezefilm.plate.shear.working import shear_working
 from squeezefilm.plate.solid.guess import bare_frequency
-from squeezefilm.plate.solid.resonances import Neighbour
+from squeezefilm.plate.solid.resonances import Neighbour, label_name
 from squeezefilm.plate.solid.working import SolidMode, solid_mode
 from squeezefilm.progress import NO_HURRY, Pace
 
@@ -174,7 +174,7 @@ def working_mode(
     shape, middle = beam.mode, beam.plate.width / 2
     lobe = _beam_lobe(beam)[0], middle
     return WorkingMode(
-        label="({},{})".format(*actuator.working_label),
+        label=label_name(actuator.working_label),
         resonance_frequency=shape.frequency,
         half_wavelength=shape.half_wavelength,
         quality_factor=actuator.quality_factor,
@@ -193,7 +193,7 @@ def solid_working_mode(
     """A solved mode of a plate as the mode that a display works in; without a label of nodal lines
     it is the one that the plate asks for."""
     return WorkingMode(
-        label="({},{})".format(*(label or plate.working_label)),
+        label=label_name(label or plate.working_label),
         resonance_frequency=solid.frequency,
         half_wavelength=solid.half_wavelength,
         quality_factor=solid.quality_factor,
@@ -215,7 +215,7 @@ def _sheared(plate: RectangularPlate) -> WorkingMode:
         near = bare_frequency(plate, plate.working_label)
     found = shear_working(plate, near)
     return WorkingMode(
-        label="({},{})".format(*plate.working_label),
+        label=label_name(plate.working_label),
         resonance_frequency=found.mode.frequency,
         half_wavelength=found.half_wavelength,
         quality_factor=plate.quality_factor,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.plate.solid.resonances import label_name
 from squeezefilm.report.kit import style
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ def tornado(table: SensitivityTable) -> Figure:
     rows = sorted(table.rows, key=lambda row: -abs(row.frequency_shift))
     moving = [row for row in rows if abs(row.frequency_shift) >= 5e-5 or row.amplitude_shift]
     largest = moving[0]
-    label = f"({table.reference.label[0]},{table.reference.label[1]})"
+    label = label_name(table.reference.label)
     figure = style.new_figure(
         f"Mode {label} at {table.reference.frequency / 1e3:.2f} kHz: {largest.name}, "
         f"{largest.change}, shifts it most: {_signed(100 * largest.frequency_shift)} %",

@@ -17,6 +17,7 @@ from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.fits.vibration.driven_shape import REST, DrivenShape
 from squeezefilm.measure.recordings.kinds import GridScan
 from squeezefilm.plate.solid.modes import PlateModes
+from squeezefilm.plate.solid.resonances import label_name
 
 SAME_SHAPE: si.Dimensionless = 0.95
 """From this criterion on a scan is called the shape it is compared with."""
@@ -145,7 +146,7 @@ def shapes_at(
         spline = RectBivariateSpline(modes.x, modes.y, modes.shapes[i])
         w, largest = spline.ev(x, y), float(np.max(np.abs(modes.shapes[i])))
         there = float(spline.ev(np.array([lobe[0]]), np.array([lobe[1]]))[0])
-        label = "in plane" if (own := modes.labels[i]) is None else "({},{})".format(*own)
+        label = label_name(modes.labels[i])
         name = f"{label} at {si.format_quantity(modes.frequencies[i], si.Unit('Hz'))}"
         found[name] = w / (there if abs(there) > 0.05 * largest else largest)
     _, rest = driven.at(x, y)
