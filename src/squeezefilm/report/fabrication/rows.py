@@ -67,7 +67,7 @@ def expected_rows(made: Fabrication) -> list[tuple[str, ...]]:
     found: dict[tuple[str, str], tuple[str, ...]] = {}
     for step in made.steps:
         for one in step.checks:
-            key = one.answer in _KEY or one.what.startswith(("Amplitude under", "Free amplitude"))
+            key = one.answer in _KEY or one.what.startswith(("Amplitude at", "Free amplitude"))
             if key and one.value is not None:
                 row = (one.what, said(one.value, one.unit), expected_said(one), one.remark)
                 found.setdefault((one.what, one.unit), row)

@@ -57,7 +57,7 @@ def test_the_amplitude_is_that_of_analyze(disc: Fabrication) -> None:
         one
         for step in disc.steps
         for one in step.checks
-        if one.what == "Amplitude under the finger"
+        if one.what == "Amplitude at the antinode, finger on"
     )
     assert check.interval == disc.uncertainty.amplitude_interval
     assert check.value == disc.prediction.vibration_amplitude

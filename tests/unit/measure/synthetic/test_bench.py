@@ -89,6 +89,9 @@ def test_recordings_and_files_tell_nothing_of_the_truth(stator: SyntheticBench, 
     write_truth(tmp_path / "truth.json", stator)
     told = json.loads((tmp_path / "truth.json").read_text("utf-8"))
     assert told["values"] == dict(stator.truth.values)
+    # What was begun may be gone on with; another file in its place is not written over.
+    assert write_synthetic_bench(tmp_path / "bench", stator) == paths
+    paths[0].write_text("mine", "utf-8")
     with pytest.raises(InputError, match="already"):
         write_synthetic_bench(tmp_path / "bench", stator)
 
