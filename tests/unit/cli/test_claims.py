@@ -79,3 +79,18 @@ def test_a_changed_verdict_is_told_and_ends_with_1(
     assert done.returncode == 1
     told = "the verdict on 'two-micrometres' changed: holds is on record, does not hold was found\n"
     assert done.stderr.endswith(2 * told)
+
+
+def test_measured_curves_are_compared_in_place_of_the_claims(
+    claims: SimpleNamespace, stands_in: StandsIn, tmp_path: Path
+) -> None:
+    compared = stands_in("measure.fits.friction.friction_curve:compare_folder", [])
+    stands_in("report.measured.curves:show_comparisons")
+    done = run("reproduce", "--data", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert compared.given[0] == tmp_path
+    refused = run("reproduce", "--data", tmp_path, "--write-docs")
+    assert refused.returncode == 2
+    assert "--data writes no documentation" in refused.stderr
+    assert len(compared.calls) == 1
+    assert claims.asked.calls == claims.checkout.calls == []

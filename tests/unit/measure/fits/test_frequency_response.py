@@ -1,9 +1,12 @@
 """Modes out of a frequency response, beside sdypy-EMA's and the circle's."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.vibration import frequency_response
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
 from squeezefilm.measure.fits.vibration.modal_band import ModalBand, band_poles
 from squeezefilm.measure.fits.vibration.modal_circle import modal_circle
@@ -105,3 +108,27 @@ def test_what_cannot_be_fitted_is_refused(f, H, words: str) -> None:
 def test_more_modes_than_there_are_are_refused() -> None:
     with pytest.raises(InputError, match="modes"):
         fit_frequency_response(FrequencyResponse(F, response(PEAK)), modes=13)
+
+
+@pytest.mark.parametrize(
+    ("circle", "tried"),
+    [(F[0], False), (F[1], True), (30.9e3, True), (F[-2], True), (F[-1], False), (None, False)],
+)
+def test_a_mode_more_starts_at_the_residual_and_at_a_circle_within_the_band(
+    circle: float | None, tried: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    band, starts = ModalBand.over(F), []
+
+    def fitted(columns, H, start, *, reach):
+        starts.append(start[2:])
+        return SimpleNamespace(shape=start, residual=np.ones(F.size))
+
+    noticed = None if circle is None else SimpleNamespace(frequency=circle, quality_factor=-50.0)
+    monkeypatch.setattr(frequency_response, "fit_separable", fitted)
+    monkeypatch.setattr(frequency_response, "modal_circle", lambda *_: noticed)
+    residual = np.ones(F.size)
+    residual[70] = 2.0
+    first = SimpleNamespace(shape=np.array([0.0, 0.03]), residual=residual)
+    assert frequency_response._one_more(band, residual, first) is not None
+    expected = [(F[70], 0.03), *([(circle, 0.02)] if tried else [])]
+    assert starts == [pytest.approx(band.shape_of([mode])) for mode in expected]

@@ -119,3 +119,14 @@ def test_points_find_nodes_and_antinode_of_a_wave_that_is_not_even() -> None:
 def test_what_is_no_wave_is_refused(x, w, words: str) -> None:
     with pytest.raises(InputError, match=words):
         fit_line_scan(LineScan(x, w, 33e3))
+
+
+def test_the_error_of_the_ratio_of_waves_is_half_its_interval() -> None:
+    k, noise = np.pi / 11e-3, np.random.default_rng(5).standard_normal((2, X.size))
+    waves = 1e-6 * (np.exp(-1j * k * X) + 0.6 * np.exp(1j * k * X))
+    fit = fit_line_scan(LineScan(X, waves + 1e-8 * (noise[0] + 1j * noise[1]), 33e3))
+    ratio = fit.standing_wave_ratio
+    assert ratio is not None
+    low, high = ratio.interval
+    assert low < 1.6 / 0.4 < high
+    assert ratio.standard_error == pytest.approx((high - low) / (2 * 1.96), rel=0.05)

@@ -192,3 +192,20 @@ def test_two_explanations_stand_apart_in_what_could_be_measured() -> None:
     assert (found.first, found.second, found.measurements) == ("a", "b", MEASUREMENTS)
     assert found.apart == pytest.approx((2.0, 5.0, 0.0, 3.5, 3.0))
     assert prototype._apart(one, one).apart == (0.0,) * 5
+
+
+@pytest.mark.parametrize("end", [0, 1])
+def test_an_end_of_the_range_that_meets_the_frequency_is_the_answer(
+    end: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ends = [8e3, 9e3]
+
+    def point(mass: float, label: Any = None, *, amplitude: bool = True) -> WorkingPoint:
+        is_there = mass == pytest.approx(ends[end], rel=1e-9)
+        wanted = papers.MEASURED_FREQUENCY * (1.0 if is_there else 1.1)
+        return WorkingPoint(label or (8, 0), wanted, 1.0, 80e-9, 50.0, wanted)
+
+    monkeypatch.setattr(prototype, "working_point", point)
+    plate: Any = None
+    made = prototype._explained(plate, "a", "b", "kg", (8e3, 9e3), lambda _, mass: mass)  # type: ignore[arg-type,return-value]
+    assert made.frequency == papers.MEASURED_FREQUENCY

@@ -70,3 +70,13 @@ def test_every_kind_is_written_with_its_units_and_conventions(tmp_path) -> None:
     assert said["c"]["voltage"] == {"amplitude": "10 V", "given_as": "zero-to-peak"}
     assert said["c"]["columns"]["displacement"]["given_as"] == "zero-to-peak"
     assert said["i"]["speed"] == "0.1 m/s"
+
+
+def test_strokes_go_to_and_fro_and_friction_against_them() -> None:
+    same = [np.full(4, value) for value in (1e-6, 0.1, 0.5, 0.4)]
+    made = recorded_strokes(PlannedStrokes(*same), np.random.default_rng(1), noise=1e-6)
+    sliding = np.abs(made.tangential_force) > 0.19
+    forth = np.sign(np.gradient(made.position, made.time)[sliding])
+    assert made.tangential_force[sliding] == pytest.approx(-0.2 * forth, rel=1e-3)
+    turns = np.flatnonzero(np.diff(forth))
+    assert [*forth[turns], forth[-1]] == [-1, 1, -1, 1]

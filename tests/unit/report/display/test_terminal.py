@@ -55,9 +55,12 @@ def test_what_each_value_does_is_printed_where_only_that_is_asked_for(
     terminal.show_analysis(plate_analysis, sensitivities=True)
     words = " ".join(printed().split())
     table = words[words.index("What each value does") :]
-    assert plate_analysis.sensitivities is not None
-    for row in sensitivity_rows(plate_analysis.sensitivities):
+    shifts = plate_analysis.sensitivities
+    assert shifts is not None
+    for row in sensitivity_rows(shifts):
         assert row[0] in table
+    assert f"µ′/µ is {shifts.relative_friction:.2f} as described." in table
+    assert f"--json has all {len(shifts.rows)} values." in table
     assert "timoshenko_beam_plane_strain" not in words[: words.index("What each value does")]
 
 
