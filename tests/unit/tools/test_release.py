@@ -1,7 +1,11 @@
 """What is released says one version, and what CI and pre-commit call exists."""
 
 import email
+import os
 import re
+import shutil
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -72,8 +76,34 @@ def test_the_workflow_runs_what_is_run_by_hand() -> None:
     assert (ROOT / ".ci" / "run").stat().st_mode & 0o111
     assert jobs["elsewhere"]["strategy"]["matrix"]["os"] == ["macos-latest", "windows-latest"]
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    for target in re.findall(r"^make (\w+)", (ROOT / ".ci" / "run").read_text(), re.MULTILINE):
+    stages = re.findall(r"^stage ([a-z ]+)", (ROOT / ".ci" / "run").read_text(), re.MULTILINE)
+    targets = " ".join(stages).split()
+    assert {"lint", "types", "layers", "test", "docs", "slow"} == set(targets)
+    for target in targets:
         assert re.search(rf"^{target}:", makefile, re.MULTILINE)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a script for bash")
+def test_ci_stops_at_the_first_stage_that_fails_and_lists_its_tests(tmp_path: Path) -> None:
+    (tmp_path / ".ci").mkdir()
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "tests" / "faults").mkdir(parents=True)
+    shutil.copy(ROOT / ".ci" / "run", tmp_path / ".ci" / "run")
+    told = 'echo "$*" >>asked; case "$*" in *unit) echo "FAILED tests/a.py::b - c"; exit 2;; esac'
+    for name in ("make", "chromium", "node", "cc", "arm-none-eabi-gcc"):
+        program = tmp_path / "bin" / name
+        program.write_text(f"#!/bin/sh\n{told if name == 'make' else ''}\n")
+        program.chmod(0o755)
+    path = f"{tmp_path / 'bin'}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        [tmp_path / ".ci" / "run"],
+        env={**os.environ, "PATH": path}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 1
+    end = "ci: make test TESTS=tests/architecture tests/unit failed:\nFAILED tests/a.py::b - c\n"
+    assert done.stdout.endswith(end)
+    asked = (tmp_path / "asked").read_text().splitlines()
+    assert asked == ["lint types layers", "test TESTS=tests/architecture tests/unit"]
 
 
 @pytest.mark.parametrize("name", ["fault", "wish"])

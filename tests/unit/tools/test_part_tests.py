@@ -1,0 +1,39 @@
+"""Which tests `make test PART=film` runs: those of the room and of nothing else."""
+
+from pathlib import Path
+
+import pytest
+
+import part_tests
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_a_room_has_the_tests_below_it_and_those_of_its_physics_elsewhere() -> None:
+    files = part_tests.tests_of("film", ROOT)
+    below = {str(file.relative_to(ROOT)) for file in (ROOT / "tests/unit/film").rglob("test_*.py")}
+    assert below < set(files)
+    others = set(files) - below
+    assert "tests/verification/test_film_closed_forms.py" in others
+    assert not any(file.startswith(("tests/unit", "tests/architecture")) for file in others)
+
+
+@pytest.mark.parametrize(
+    ("part", "test"),
+    [
+        ("loading", "tests/unit/test_loading.py"),
+        ("planar", "tests/unit/film/planar/test_teeth.py"),
+        ("film/planar", "tests/unit/film/planar/test_teeth.py"),
+        ("control", "tests/unit/control/test_force_law.py"),
+    ],
+)
+def test_a_module_a_folder_and_a_path_are_parts(part: str, test: str) -> None:
+    files = part_tests.tests_of(part, ROOT)
+    assert test in files
+    assert len(files) < 10
+
+
+@pytest.mark.parametrize("part", ["nowhere", "", "nowhere/film"])
+def test_another_part_is_refused_with_the_rooms(part: str) -> None:
+    with pytest.raises(ValueError, match=r"analysis, arguments, .*film"):
+        part_tests.tests_of(part, ROOT)

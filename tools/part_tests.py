@@ -1,0 +1,61 @@
+"""Print the files of tests of one part of the package, for `make test PART=film`.
+
+    python tools/part_tests.py film
+
+A part is a folder or a module below ``src/squeezefilm``, by its name (`film`) or its path
+(`film/planar`); of several with that name the outermost. Its tests lie in the folder of the same
+path below ``tests/unit``, are named after one of its modules, or stand beside ``tests/unit`` and
+import nothing else of the package.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import import_graph
+
+ROOT = Path(__file__).parents[1]
+_EVERYWHERE = ("squeezefilm.quantities", "squeezefilm.errors")
+
+
+def part_path(part: str, package: Path) -> Path:
+    """The folder or module of a part, from the package on. Raises `ValueError` if there is none."""
+    parts = [path for path in package.rglob("*") if path.suffix == ".py" or path.is_dir()]
+    paths = [path.relative_to(package).with_suffix("") for path in parts]
+    wanted = Path(part).parts
+    named = [path for path in paths if path.parts[-len(wanted) :] == wanted]
+    if not wanted or not named:
+        rooms = sorted(str(path) for path in paths if len(path.parts) == 1 and str(path)[0] != "_")
+        raise ValueError(f"src/squeezefilm holds no '{part}'; it has {', '.join(rooms)}")
+    return min(named, key=lambda path: (len(path.parts), path))
+
+
+def tests_of(part: str, root: Path) -> list[str]:
+    """The paths of a part's files of tests, from the root on, sorted."""
+    source, tests = root / "src", root / "tests"
+    path = part_path(part, source / import_graph.PACKAGE)
+    graph = import_graph.import_graph(source)
+    name = ".".join([import_graph.PACKAGE, *path.parts])
+    modules = {module for module in graph if f"{module}.".startswith(f"{name}.")}
+
+    def belongs(test: Path) -> bool:
+        if tests / "unit" / path in test.parents:
+            return True
+        if import_graph.modules_in_the_name_of(test, tests, graph) & modules:
+            return True
+        if test.relative_to(tests).parts[0] in ("unit", "architecture"):
+            return False
+        named = import_graph.modules_named_by(test, graph)
+        own = {module for module in named if not module.startswith(_EVERYWHERE)}
+        return bool(own) and own <= modules
+
+    files = filter(belongs, import_graph.test_files(tests))
+    return [file.relative_to(root).as_posix() for file in files]
+
+
+if __name__ == "__main__":
+    try:
+        print("\n".join(tests_of(sys.argv[1], ROOT)))
+    except ValueError as error:
+        sys.exit(str(error))
