@@ -15,8 +15,7 @@ from tests.unit.study.scripted import gratings, run_through
 
 from squeezefilm import presets
 from squeezefilm.display import load_display
-from squeezefilm.formats.traces import Table, csv_text, parquet_bytes, table_from_csv
-from squeezefilm.formats.traces import table_from_parquet as from_parquet
+from squeezefilm.formats.traces import Table, csv_text, table_from_csv
 from squeezefilm.kept.folder import CACHE_VARIABLE
 from squeezefilm.kept.store import Kept as KeptResults
 from squeezefilm.lab.keys import Keys
@@ -91,7 +90,6 @@ def _trace(folder: Path) -> None:
 def _tables(folder: Path) -> None:
     table = Table({"time_s": np.arange(5.0), "x_m": np.ones(5)}, {"seed": 1})
     (folder / "a.csv").write_text(csv_text(table), encoding="utf-8")
-    (folder / "a.parquet").write_bytes(parquet_bytes(table))
 
 
 RECORDING = """\
@@ -210,7 +208,6 @@ OWN_FILES = [
         lambda folder: export_trace(folder / "a.sqft", folder / "out.csv"),
     ),
     OwnFile("table", "a.csv", _tables, lambda folder: table_from_csv(folder / "a.csv")),
-    OwnFile("Parquet", "a.parquet", _tables, lambda folder: from_parquet(folder / "a.parquet")),
     OwnFile("recording", "a.csv", _recordings, check_folder),
     OwnFile("description", "a.toml", _recordings, check_folder),
     OwnFile(

@@ -4,7 +4,7 @@ CSV is UTF-8 with a comma, one header line, and before it one comment line ``# {
 metadata, in whose texts commas and semicolons are escaped, so that no spreadsheet finds a formula
 behind one; numbers are written so that they read back as the same float, a missing one is empty.
 Parquet keeps the metadata under the key ``squeezefilm`` of the schema and needs pyarrow (the extra
-``squeezefilm[parquet]``).
+``squeezefilm[parquet]``); it is written for other programs, and none of this one reads it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import TABLE_BYTES
-from squeezefilm.regular_file import parsed_json, read_regular, read_regular_text
+from squeezefilm.regular_file import parsed_json, read_regular_text
 
 _NAME = re.compile(r"[a-z][A-Za-z0-9_.]*")
 _JSON_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
@@ -171,28 +171,6 @@ def parquet_of_columns(columns: Mapping[str, Sequence[Any]], metadata: Mapping[s
     stream = io.BytesIO()
     parquet.write_table(held, stream)
     return stream.getvalue()
-
-
-def table_from_parquet(path: str | Path) -> Table:
-    """The table in a Parquet file.
-
-    Raises:
-        InputError: where pyarrow is not installed, or a file that is none of numbers.
-    """
-    arrow, parquet = _arrow()
-    try:
-        # Read whole first: pyarrow would otherwise guess at partitions from folder names.
-        data = read_regular(path, TABLE_BYTES, "a Parquet file")
-        held = parquet.read_table(io.BytesIO(data))
-        columns = {name: _floats(held.column(name)) for name in held.column_names}
-        note = (held.schema.metadata or {}).get(_KEY, b"{}")
-        return Table(columns, parsed_json(note))
-    except (OSError, ValueError, TypeError, arrow.ArrowException) as error:
-        raise InputError(f"{path} is no table of numbers in Parquet: {error}") from error
-
-
-def _floats(column: Any) -> si.FloatArray:
-    return np.asarray(column.to_numpy(), dtype=float)
 
 
 def _arrow() -> tuple[ModuleType, ModuleType]:

@@ -5,15 +5,22 @@ from __future__ import annotations
 import contextlib
 import itertools
 import os
+import time
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError, InputError, SqueezefilmWarning
 from squeezefilm.hard_limits import LINES_BYTES
 from squeezefilm.regular_file import read_regular
 from squeezefilm.search.lines import SET_ASIDE, checked_line, is_damaged
+
+_LOCK_STAYS = 30
+"""How long a lock may stay unchanged (s), by Optuna's clock, before it is taken to be left."""
+_LOCK_HELD: si.Second = 1.0
+"""How long a lock may be there before that is said; writing takes milliseconds."""
 
 
 def journal(file: Path) -> Any:
@@ -24,14 +31,18 @@ def journal(file: Path) -> Any:
     that loses its power may lose the last of them, which the search then proposes again: what was
     computed is kept elsewhere (see `DesignStore`). A process that is killed loses nothing. A line
     that was cut off is taken away when the file is opened, since Optuna reads none that has one.
+    A lock that a killed process left is taken away after `_LOCK_STAYS`, with a
+    `SqueezefilmWarning` while one waits.
     """
     from optuna.storages import JournalStorage
-    from optuna.storages.journal import JournalFileBackend, JournalFileSymlinkLock
+    from optuna.storages.journal import JournalFileBackend, JournalFileOpenLock
 
     class Unhurried(JournalFileBackend):
         def __init__(self) -> None:
-            self._own = JournalFileSymlinkLock(str(file))
+            # Not Optuna's lock of links: one that leads nowhere it waits for without an end.
+            self._own = JournalFileOpenLock(str(file), _LOCK_STAYS)
             super().__init__(str(file), lock_obj=self._own)
+            _say_where_locked(file.with_name(f"{file.name}.lock"))
             # Nobody writes while the lock is held here: half a line is nobody's any more.
             with self._held():
                 _cut_half_line(file)
@@ -84,6 +95,24 @@ def usable_journal(file: Path) -> tuple[Any, bool]:
         stacklevel=2,
     )
     return journal(file), True
+
+
+def _say_where_locked(lock: Path) -> None:
+    """Warn of a lock that stays for longer than it takes to write; remove a link that leads
+    nowhere, as an earlier version left them."""
+    if lock.is_symlink() and not lock.exists():
+        lock.unlink(missing_ok=True)
+    begun = time.monotonic()
+    while os.path.lexists(lock):
+        if time.monotonic() - begun > _LOCK_HELD:
+            warnings.warn(
+                f"{lock} is there: a search that is held up keeps it, or one that was killed left "
+                f"it; the search begins without it once it has not changed for {_LOCK_STAYS} s",
+                SqueezefilmWarning,
+                stacklevel=2,
+            )
+            return
+        time.sleep(_LOCK_HELD / 50)
 
 
 def _damage(file: Path) -> str:

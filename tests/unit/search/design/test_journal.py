@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import contextlib
 import os
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 
+import squeezefilm.search.design.journal
 from squeezefilm.errors import SqueezefilmWarning
 from squeezefilm.search.design.journal import journal, usable_journal
 
@@ -84,3 +86,23 @@ def test_a_pipe_or_a_device_in_its_place_is_set_aside(tmp_path: Path) -> None:
 def _trial(x: float) -> optuna.trial.FrozenTrial:
     among = {"x": optuna.distributions.FloatDistribution(0.0, 1.0)}
     return optuna.trial.create_trial(params={"x": x}, distributions=among, value=1 + x)
+
+
+@pytest.mark.parametrize("kind", ["file", "link", "link that leads nowhere"])
+def test_a_lock_that_a_killed_search_left_is_said_and_taken_away(
+    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(squeezefilm.search.design.journal, "_LOCK_STAYS", 3)
+    file, lock = tmp_path / "journal.log", tmp_path / "journal.log.lock"
+    if kind == "file":
+        lock.touch()
+    else:
+        # Optuna's link leads to the path as it was given: nowhere, where that was relative.
+        lock.symlink_to(file if kind == "link" else Path("search/journal.log"))
+    says_so = pytest.warns(SqueezefilmWarning, match="journal.log.lock is there: .* killed left it")
+    with contextlib.nullcontext() if kind.endswith("nowhere") else says_so:
+        storage, is_rebuilt = usable_journal(file)
+    assert not is_rebuilt
+    assert not os.path.lexists(lock)
+    study = optuna.create_study(study_name="a", storage=storage)
+    study.add_trial(_trial(0.25))
