@@ -31,6 +31,7 @@ from typing import Any
 
 from squeezefilm import quantities as si
 from squeezefilm.blas_threads import one_blas_thread
+from squeezefilm.interrupts import interrupts_held
 from squeezefilm.loading import loading
 
 _PATIENCE: si.Second = 60.0
@@ -86,7 +87,7 @@ class SecondProcess:
         with contextlib.suppress(OSError):
             ours, theirs = spawn.Pipe()
             self._process = spawn.Process(target=_work, args=(theirs, self._prepare), daemon=True)
-            with theirs, _deaf_to_interrupts():
+            with theirs, interrupts_held():
                 self._process.start()
             self._line, self._is_lost = ours, False
             threading.Thread(target=self._listen, args=(ours,), daemon=True).start()
@@ -260,19 +261,6 @@ def _processors() -> int:
     """How many processors this process may use."""
     allowed = getattr(os, "sched_getaffinity", None)
     return (os.cpu_count() or 1) if allowed is None else len(allowed(0))
-
-
-@contextmanager
-def _deaf_to_interrupts() -> Iterator[None]:
-    """What is started within is not interrupted by Ctrl-C, which is for the process that waits."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _work(line: Connection, prepare: Sequence[Callable[[], object]]) -> None:

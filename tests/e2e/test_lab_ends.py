@@ -35,8 +35,7 @@ def ended(process: subprocess.Popen[str]) -> str:
 def begun(folder: Path) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [
-            sys.executable, "-c", "from squeezefilm.cli import main; main()",
-            "lab", "--no-browser", "--folder", str(folder),
+            sys.executable, "-m", "squeezefilm", "lab", "--no-browser", "--folder", str(folder),
         ],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
     )  # fmt: skip
@@ -50,6 +49,15 @@ def test_as_soon_as_the_link_is_there(tmp_path: Path, wait: float) -> None:
     time.sleep(wait)
     assert ended(process) == ""
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("wait", [0.05, 0.2, 0.5])
+def test_while_the_process_loads_that_is_to_compute(tmp_path: Path, wait: float) -> None:
+    """It is started for the first page."""
+    process = begun(tmp_path)
+    with experimenters_page(RunningLab.of(process, tmp_path)):
+        time.sleep(wait)
+        assert ended(process) == ""
 
 
 def test_while_it_computes(tmp_path: Path) -> None:

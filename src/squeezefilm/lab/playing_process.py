@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.interrupts import hear_interrupts
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.results import to_json
 
@@ -130,6 +131,7 @@ def check(connection: Connection, drive: str, display: str) -> None:
 def _ends(tell: Tell, stopped: Callable[[], str]) -> Iterator[None]:
     """Tell of an end that is no success; `stopped` says what Ctrl-C left of it."""
     try:
+        hear_interrupts()
         yield
     except KeyboardInterrupt:
         # Whatever was driven is at zero: only what comes before and after playing ends like this.

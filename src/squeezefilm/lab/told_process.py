@@ -16,6 +16,7 @@ from typing import Any, ClassVar
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.interrupts import interrupts_held
 
 Tell = Callable[[dict[str, Any]], None]
 
@@ -57,7 +58,9 @@ class ToldProcess:
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe(duplex=False)
         self._process = context.Process(target=work, args=(theirs,), kwargs=arguments, daemon=False)
-        self._process.start()
+        # It hears Ctrl-C, and `stop`, once it can act on it.
+        with interrupts_held():
+            self._process.start()
         theirs.close()
         self._reader = threading.Thread(target=self._read, args=(ours, self._process), daemon=True)
         self._reader.start()

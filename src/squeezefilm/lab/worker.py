@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.interrupts import interrupts_held
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -80,7 +81,9 @@ class _Process:
     def started(cls) -> _Process:
         ours, theirs = _SPAWN.Pipe()
         process = _SPAWN.Process(target=_work, args=(theirs,), daemon=True)
-        process.start()
+        # Ctrl-C in a terminal reaches every process of the lab; the server's own ends this one.
+        with interrupts_held():
+            process.start()
         theirs.close()
         return cls(process, ours)
 
@@ -278,6 +281,7 @@ def _end_with_parent() -> None:
 def _work(line: Connection) -> None:
     """Answer one piece of work after the other, until the line is closed."""
     global _line
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     prepare()
     _line = line
     with contextlib.suppress(EOFError, OSError):
@@ -301,9 +305,7 @@ def _answered(work: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[boo
 
 def prepare() -> None:
     """Make this process one that computes: for a server that may be killed, within limits, its
-    warnings unsaid; Ctrl-C in the terminal is the server's to act on."""
-    # Ctrl-C in a terminal reaches every process of the lab; the server's own ends this one.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    warnings unsaid."""
     threading.Thread(target=_end_with_parent, daemon=True).start()
     for library in ("OMP", "OPENBLAS", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")

@@ -14,6 +14,7 @@ from concurrent.futures.process import BrokenProcessPool
 from types import TracebackType
 from typing import Any
 
+from squeezefilm.interrupts import hear_interrupts, interrupts_held
 from squeezefilm.search.tasks import A, K, Lost, Shares, computed, grouped, tried_again
 
 
@@ -33,7 +34,7 @@ class Processes:
         if self._first is not None:
             self._executors = [_executor() for _ in range(self._jobs)]
             for one in self._executors:
-                one.submit(callable, self._first)
+                _submitted(one, callable, self._first)
         return self
 
     def __exit__(
@@ -72,10 +73,10 @@ class Processes:
             if process == len(self._executors):
                 self._executors.append(_executor())
             try:
-                future = self._executors[process].submit(computed, function, tasks[key])
+                future = _submitted(self._executors[process], computed, function, tasks[key])
             except BrokenProcessPool:  # it died while it had nothing to do
                 self._renew(process)
-                future = self._executors[process].submit(computed, function, tasks[key])
+                future = _submitted(self._executors[process], computed, function, tasks[key])
             running[future] = process, key
 
         try:
@@ -118,10 +119,19 @@ def _executor() -> ProcessPoolExecutor:
     return ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _prepare)
 
 
+def _submitted(
+    executor: ProcessPoolExecutor, function: Callable[..., A], *arguments: Any
+) -> Future[A]:
+    """What an executor will answer; its process, which the first task starts, loads undisturbed."""
+    with interrupts_held():
+        return executor.submit(function, *arguments)
+
+
 def _prepare() -> None:
     """A process of the pool: Ctrl-C ends it without a word, and so does the end of its parent."""
     with contextlib.suppress(ValueError):
         signal.signal(signal.SIGINT, signal.SIG_DFL)
+    hear_interrupts()
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

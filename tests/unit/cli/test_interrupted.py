@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import NoReturn
 
@@ -39,6 +40,43 @@ def test_a_verb_that_ends_by_itself_does_not(
     with pytest.raises(SystemExit):
         cli.main()
     assert capsys.readouterr().err == ""
+
+
+VERBS = {
+    "lab": "lab --no-browser --port 0",
+    "design": "design biet2008-plate --screened 20000 --jobs 2",
+    "sweep": "sweep biet2008-stator --vary voltage=1V..20V:9000 --ask relative_friction --jobs 2",
+    "analyze": "analyze touchpad-glass --out out",
+}
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="there Ctrl-C is sent to a whole group")
+@pytest.mark.parametrize(
+    ("verb", "wait"),
+    [
+        *(("lab", wait) for wait in (0.0, 0.2, 0.5, 1.0, 2.0, 4.0)),
+        *((verb, wait) for verb in ("design", "sweep", "analyze") for wait in (2.0, 4.0)),
+    ],
+)
+def test_ctrl_c_at_any_moment_leaves_no_traceback(verb: str, wait: float, tmp_path: Path) -> None:
+    """In a terminal it reaches the processes of the program too, while they load as well."""
+    begin = "from squeezefilm.__main__ import main; print('begun', flush=True); main()"
+    with subprocess.Popen(
+        [sys.executable, "-c", begin, *VERBS[verb].split()],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path,
+        env=os.environ | {"SQUEEZEFILM_CACHE": "off"}, start_new_session=True,
+    ) as running:  # fmt: skip
+        assert running.stdout is not None
+        assert running.stdout.readline() == "begun\n"
+        time.sleep(wait)
+        os.killpg(running.pid, signal.SIGINT)
+        _, errors = running.communicate(timeout=120)
+    assert "Traceback" not in errors
+    # Python ends so itself where the signal met an import: shells show 130 for either.
+    ended_by_it = (130, -signal.SIGINT)
+    assert running.returncode in (0, *ended_by_it)
+    assert errors.endswith(SAID) or running.returncode == 0
 
 
 @pytest.mark.slow

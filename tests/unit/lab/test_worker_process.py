@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import warnings
 from types import SimpleNamespace
@@ -103,7 +102,6 @@ def test_who_asks_hears_how_far_it_is_and_then_the_answer() -> None:
 def test_a_process_is_prepared_for_a_server_that_may_be_killed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    handled: list[Any] = []
     threads: list[Any] = []
     limited: list[str] = []
 
@@ -111,7 +109,6 @@ def test_a_process_is_prepared_for_a_server_that_may_be_killed(
         threads.append(how)
         return SimpleNamespace(start=lambda: threads.append("started"))
 
-    monkeypatch.setattr(worker.signal, "signal", lambda *given: handled.append(given))
     monkeypatch.setattr(worker, "threading", SimpleNamespace(Thread=thread))
     monkeypatch.setattr(worker, "_limit_memory", lambda: limited.append("memory"))
     for name in ("OMP", "OPENBLAS", "MKL"):
@@ -122,7 +119,6 @@ def test_a_process_is_prepared_for_a_server_that_may_be_killed(
         with warnings.catch_warnings(record=True) as seen:
             warnings.warn("answers carry it", SqueezefilmWarning, stacklevel=1)
         assert seen == []
-    assert handled == [(signal.SIGINT, signal.SIG_IGN)]
     assert threads == [{"target": worker._end_with_parent, "daemon": True}, "started"]
     assert limited == ["memory"]
     assert os.environ["OMP_NUM_THREADS"] == os.environ["OPENBLAS_NUM_THREADS"] == "1"

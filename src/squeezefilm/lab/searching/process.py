@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import SqueezefilmError
+from squeezefilm.interrupts import hear_interrupts
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare
 from squeezefilm.progress import about
@@ -99,6 +100,7 @@ def search(connection: Connection, text: str, folder: Path, out: Path, **how: An
     stop = _Stop()
     tell = telling(connection)
     try:
+        hear_interrupts()
         found = _found(stop, tell, text, folder, out, how)
     except KeyboardInterrupt:
         # Before the first design, or a second time while it was counted what there is.

@@ -22,6 +22,7 @@ from typing import Any, Self
 from squeezefilm import quantities as si
 from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.interrupts import interrupts_held
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import config_hash
 from squeezefilm.study.conduct.playing_process import Surface, WorkerOrders, serve
@@ -265,7 +266,7 @@ class SessionDevice:
             context = multiprocessing.get_context("spawn")
             ours, theirs = context.Pipe()
             process = context.Process(target=serve, args=(theirs, self._orders), daemon=True)
-            with _without_main():
+            with _without_main(), interrupts_held():
                 process.start()
             theirs.close()
             with self._speaking:

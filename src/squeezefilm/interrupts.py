@@ -1,0 +1,35 @@
+"""Ctrl-C and the processes that a program starts: a terminal sends SIGINT to every one of them.
+
+A new Python would meet it with a traceback for as long as it loads. So a process is started with
+SIGINT held back (`interrupts_held`), which it inherits; one that means to act on SIGINT asks for it
+once it can (`hear_interrupts`), and then gets what came meanwhile. Windows holds no signals back.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+from collections.abc import Iterator
+
+
+@contextlib.contextmanager
+def interrupts_held() -> Iterator[None]:
+    """What this thread starts within hears no SIGINT; the thread hears it afterwards."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    from multiprocessing import resource_tracker
+
+    # multiprocessing starts its own process before the first, and lets SIGINT through after that.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def hear_interrupts() -> None:
+    """Let SIGINT through, one that came since this process was started too."""
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
