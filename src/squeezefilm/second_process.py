@@ -31,8 +31,7 @@ from typing import Any
 
 from squeezefilm import quantities as si
 from squeezefilm.blas_threads import one_blas_thread
-from squeezefilm.interrupts import interrupts_held
-from squeezefilm.loading import loading
+from squeezefilm.loading import interrupts_held, loading
 
 _PATIENCE: si.Second = 60.0
 _LEAVE: si.Second = 2.0

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.interrupts import hear_interrupts
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
+from squeezefilm.loading import hear_interrupts
 from squeezefilm.results import to_json
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.interrupts import interrupts_held
+from squeezefilm.loading import interrupts_held
 
 Tell = Callable[[dict[str, Any]], None]
 

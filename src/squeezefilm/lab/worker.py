@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.interrupts import interrupts_held
+from squeezefilm.loading import interrupts_held
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.interrupts import hear_interrupts
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare
+from squeezefilm.loading import hear_interrupts
 from squeezefilm.progress import about
 
 if TYPE_CHECKING:

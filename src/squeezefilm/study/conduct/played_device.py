@@ -22,7 +22,7 @@ from typing import Any, Self
 from squeezefilm import quantities as si
 from squeezefilm.display import load_display
 from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.interrupts import interrupts_held
+from squeezefilm.loading import interrupts_held
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.results import config_hash
 from squeezefilm.study.conduct.playing_process import Surface, WorkerOrders, serve
