@@ -65,6 +65,7 @@ coverage: export SQUEEZEFILM_CACHE = off
 coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which test runs which line
 	@failed=0; \
 	$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(QUICK)" --cov --cov-context=test --cov-report= \
+	  -p tests.costs --seconds out/test-seconds.json \
 	  || failed=1; \
 	$(BIN)/coverage report --skip-covered --sort=-cover; \
 	exit $$failed

@@ -1,6 +1,7 @@
 """Processor time of the tests, as a table of folders and of files.
 
     pytest -p tests.costs --costs docs/development/test-costs.md
+    pytest -p tests.costs --seconds out/test-seconds.json       # of each test that passed
 
 The time of a test is user and system time of its process and of the children that ended meanwhile,
 its fixtures included: what several tests share is counted with the first of them.
@@ -8,6 +9,7 @@ its fixtures included: what several tests share is counted with the first of the
 
 from __future__ import annotations
 
+import json
 import os
 from collections import defaultdict
 from pathlib import Path
@@ -19,15 +21,17 @@ LEAST = 1.0
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Declare where the table is written."""
-    parser.addoption("--costs", type=Path, required=True, help="the Markdown file of the table")
+    """Declare what is written where."""
+    parser.addoption("--costs", type=Path, help="the Markdown file of the table")
+    parser.addoption("--seconds", type=Path, help="the JSON file of each test's time (s)")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Measure in every process; write in the one that hears all reports."""
     config.pluginmanager.register(Stopwatch(), "stopwatch")
     if not hasattr(config, "workerinput"):
-        config.pluginmanager.register(Costs(config.getoption("--costs")), "costs")
+        paths = config.getoption("--costs"), config.getoption("--seconds")
+        config.pluginmanager.register(Costs(*paths), "costs")
 
 
 def processor_time() -> float:
@@ -57,22 +61,28 @@ class Stopwatch:
 
 
 class Costs:
-    """Sums what tests took and writes the table at the end."""
+    """Sums what tests took and writes it at the end."""
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
+    def __init__(self, costs: Path | None, seconds: Path | None) -> None:
+        self._costs, self._seconds = costs, seconds
+        self._passed: dict[str, float] = {}
         self._times: dict[str, dict[bool, float]] = defaultdict(lambda: {False: 0.0, True: 0.0})
         self._tests: dict[str, int] = defaultdict(int)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Add one phase of one test to its file."""
-        file = report.nodeid.partition("::")[0]
-        self._times[file][getattr(report, "is_slow", False)] += getattr(report, "processor_time", 0)
+        file, spent = report.nodeid.partition("::")[0], getattr(report, "processor_time", 0.0)
+        self._times[file][getattr(report, "is_slow", False)] += spent
+        if report.when == "call" and report.passed:
+            self._passed[report.nodeid] = round(spent, 3)
         self._tests[file] += report.when == "call"
 
     def pytest_sessionfinish(self) -> None:
-        """Write the table."""
-        self._path.write_text(table(self._times, self._tests), encoding="utf-8")
+        """Write the table, and what each test took."""
+        if self._costs is not None:
+            self._costs.write_text(table(self._times, self._tests), encoding="utf-8")
+        if self._seconds is not None:
+            self._seconds.write_text(json.dumps(self._passed), encoding="utf-8")
 
 
 def table(times: dict[str, dict[bool, float]], tests: dict[str, int]) -> str:

@@ -97,21 +97,16 @@ def distances(start: Iterable[str], graph: Graph) -> dict[str, int]:
     return found
 
 
-def users(name: str, graph: Graph) -> set[str]:
-    """The module itself and every module that imports it, directly or through others."""
-    importers: dict[str, set[str]] = {}
-    for module, imports in graph.items():
-        for imported in imports:
-            importers.setdefault(imported, set()).add(module)
-    return set(distances([name], {key: frozenset(value) for key, value in importers.items()}))
-
-
 def circles(graph: Graph) -> list[frozenset[str]]:
     """Groups of modules each of which reaches every other by imports."""
-    reached = {name: set(distances(graph[name], graph)) for name in graph}
+    left = dict(graph)
+    while ends := [name for name, imports in left.items() if not imports & left.keys()]:
+        for name in ends:
+            del left[name]
+    reached = {name: set(distances(left[name], left)) for name in left}
     groups = {
         frozenset(o for o in reached[name] if name in reached.get(o, ()))
-        for name in graph
+        for name in left
         if name in reached[name]
     }
     return sorted(groups, key=sorted)

@@ -55,6 +55,7 @@ def print_report(lines: Sequence[Line], equivalent: Mapping[str, str]) -> None:
         print(
             f"\nnoticed: {total['noticed']} of {total['counted']} (95 %: {low:.0%} to {high:.0%})"
         )
+    print(f"processor time: {sum(line['seconds'] for line in mutants) / len(mutants):.1f} s each")
     left_out = [
         f"{line['asked']} ({line['said']}: {line['test']}, {line['seconds']:.0f} s)"
         for line in lines

@@ -1,16 +1,17 @@
 """Put small faults into the source, one at a time, and see which the tests notice.
 
-    make coverage                                 # which quick test runs which line
+    make coverage                                 # which quick test runs which line, for how long
     python tools/mutants.py --seed 1 --count 150 --minutes 240       # or --rooms study,lab
     python tools/mutants.py --report
 
 A sample is drawn by seed over all kinds of faults in turn. Each mutant is tried in a private copy
 of the working tree, never in the checkout, with compiled code cached apart, until a test fails. By
-the quick tests that run its lines and the files named after its module; where none is known to
-(compiled code, other processes) by the files of tests nearest to it by imports. Slow tests are
-asked by nearness too. What passes them all survived. The answers are appended to a file of JSON
-lines; a run that was cut off goes on where it stopped. Mutants that change nothing anybody could
-notice are named in ``tools/equivalent_mutants.toml`` with the reason, and do not count.
+the quick tests that run its lines, the nearest by imports first and for `--budget` seconds of
+processor time together; where none is known to (compiled code, other processes), by those of the
+nearest files. What fails counts if the source as it is passes it. What passes them all survived.
+`--nightly` asks slow tests by nearness too. The answers are appended to a file of JSON lines; a run
+that was cut off goes on where it stopped. Mutants that change nothing anybody could notice are
+named in ``tools/equivalent_mutants.toml`` with the reason, and do not count.
 """
 
 from __future__ import annotations
@@ -18,10 +19,13 @@ from __future__ import annotations
 import argparse
 import ast
 import contextlib
+import functools
 import hashlib
 import json
+import math
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -29,7 +33,7 @@ import sys
 import tempfile
 import time
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -46,13 +50,16 @@ EQUIVALENT = Path(__file__).with_name("equivalent_mutants.toml")
 QUICK = "not realtime and not slow and not nightly and not campaign"
 REALTIME = "realtime and not slow and not nightly"
 SLOW, NIGHTLY = "slow and not nightly", "nightly"
-_MOST_TESTS = 400  # that run a mutant's lines and are asked; the nearest
+_FILES = 12  # of tests that are asked by nearness
+_START = 10.0  # s of processor time in which pytest has collected what is asked
+_UNKNOWN = 1.0  # s, the processor time of a file or test of which nothing is known
 _FAILED = re.compile(r"^(?:FAILED|ERROR) (.+)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What one file of tests said: passed, failed, empty (nothing to run), or slow (cut off)."""
+    """What tests said: passed, failed, empty (nothing to run), or slow (cut off), and in how many
+    seconds of processor time."""
 
     said: str
     test: str
@@ -68,6 +75,7 @@ class Copy:
         for part in (self.tree, self._cache):
             part.mkdir(parents=True, exist_ok=True)
         self.state = self._copy()
+        self._take_compiled()
 
     def _copy(self) -> str:
         """Make the copy equal to the working tree; a digest of what can change an answer."""
@@ -90,25 +98,19 @@ class Copy:
                 shutil.copy2(ROOT / name, target)
         return digest.hexdigest()[:12]
 
-    def forget(self, mutant: Mutant, graph: import_graph.Graph) -> int:
-        """Set aside compiled code that a mutant changes; how many functions must be made anew.
-
-        numba notices an edit of a function's own file only: what uses the mutated module loses its
-        compiled code too, in a copy of the cache that lasts until the next mutant.
-        """
-        shutil.rmtree(self._tried, ignore_errors=True)
-        shutil.copytree(self._cache, self._tried, copy_function=os.link)
-        lost = 0
-        for module in import_graph.users(mutant.module, graph):
-            file = (self.tree / "src" / module.replace(".", "/")).with_suffix(".py")
-            folder = hashlib.sha1(str(file.parent).encode()).hexdigest()
-            for compiled in (self._tried / f"{file.parent.name}_{folder}").glob(f"{file.stem}.*"):
-                compiled.unlink()
-                lost += compiled.suffix == ".nbi"
-        return lost
+    def _take_compiled(self) -> None:
+        """Take over what numba has compiled of the checkout: it knows a file by its time."""
+        for compiled in (ROOT / "src").rglob("__pycache__/*.nb[ic]"):
+            there = self.tree / compiled.parents[1].relative_to(ROOT)
+            folder = self._cache / f"{there.name}_{hashlib.sha1(str(there).encode()).hexdigest()}"
+            folder.mkdir(exist_ok=True)
+            shutil.copy2(compiled, folder / compiled.name)
 
     @contextlib.contextmanager
     def _mutated(self, mutant: Mutant | None) -> Iterator[None]:
+        # What is compiled of a mutant is forgotten with it.
+        shutil.rmtree(self._tried, ignore_errors=True)
+        shutil.copytree(self._cache, self._tried, copy_function=os.link)
         if mutant is None:
             yield
             return
@@ -124,18 +126,19 @@ class Copy:
     def ask(
         self, tests: Sequence[str], marks: str, limit: float, mutant: Mutant | None = None
     ) -> Answer:
-        """Run tests, or files of them, until the first failure, or for `limit` seconds."""
+        """Run tests, or files of them, until the first failure, or for `limit` seconds of processor
+        time, and at most ten times as long by the clock."""
         with self._mutated(mutant):
-            return self._asked(tests, marks, limit, healthy=mutant is None)
+            return self._asked(tests, marks, limit)
 
-    def _asked(self, tests: Sequence[str], marks: str, limit: float, *, healthy: bool) -> Answer:
+    def _asked(self, tests: Sequence[str], marks: str, limit: float) -> Answer:
         shutil.rmtree(self._temporary, ignore_errors=True)
         self._temporary.mkdir()
         environment = {
             **os.environ,
             "PYTHONPATH": str(self.tree / "src"),
-            "PYTHONDONTWRITEBYTECODE": "" if healthy else "1",
-            "NUMBA_CACHE_DIR": str(self._cache if healthy else self._tried),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "NUMBA_CACHE_DIR": str(self._tried),
             "MPLCONFIGDIR": str(self._cache / "matplotlib"),  # its list of fonts takes seconds
             "TMPDIR": str(self._temporary),
             "HOME": str(self._temporary),
@@ -144,7 +147,8 @@ class Copy:
         asked = self._temporary / "asked.txt"
         asked.write_text("\n".join(tests), encoding="utf-8")
         test = tests[0] if len(tests) == 1 else f"{tests[0]} and {len(tests) - 1} others"
-        started = time.monotonic()
+        started = processor_time()
+        limits = resource.RLIMIT_CPU, (math.ceil(limit), math.ceil(limit))
         with tempfile.TemporaryFile() as output:
             process = subprocess.Popen(
                 [*command, "-m", marks, f"@{asked}"],
@@ -153,22 +157,25 @@ class Copy:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 stdin=subprocess.DEVNULL,
+                preexec_fn=functools.partial(resource.setrlimit, *limits),
             )
             try:
-                process.wait(timeout=limit)
+                process.wait(timeout=10 * limit)
             except subprocess.TimeoutExpired:
-                return Answer("slow", test, time.monotonic() - started)
+                return Answer("slow", test, processor_time() - started)
             finally:
                 process.kill()
                 self._end_processes()
                 process.wait()
+            if process.returncode == -signal.SIGKILL:
+                return Answer("slow", test, processor_time() - started)
             output.seek(0)
             # Of the summary alone: what a test logged may stand before it as ERROR too.
             told = output.read().decode(errors="replace")
             failed = _FAILED.search(told.rpartition("short test summary info")[2])
         said = {0: "passed", 5: "empty"}.get(process.returncode, "failed")
         name = failed_test(failed[1], tests) if failed else test
-        return Answer(said, test if said == "passed" else name, time.monotonic() - started)
+        return Answer(said, test if said == "passed" else name, processor_time() - started)
 
     def _end_processes(self) -> None:
         """End what the tests started: every process that has our folder for its temporary files."""
@@ -177,6 +184,12 @@ class Copy:
             with contextlib.suppress(OSError):
                 if mark in (folder / "environ").read_bytes().split(b"\0"):
                     os.kill(int(folder.name), signal.SIGKILL)
+
+
+def processor_time() -> float:
+    """Processor time (s) of the processes that ended so far."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def failed_test(told: str, asked: Sequence[str]) -> str:
@@ -223,9 +236,14 @@ class Nearness:
 
 
 class Reached:
-    """Which quick tests run a line of the source, by what `make coverage` found."""
+    """Which quick tests run a line of the source and how long they take, by `make coverage`."""
 
     def __init__(self, file: Path) -> None:
+        seconds = file.with_name("test-seconds.json")
+        self._seconds: dict[str, float] = json.loads(seconds.read_text(encoding="utf-8"))
+        for test, spent in list(self._seconds.items()):
+            whole = test.partition("::")[0]
+            self._seconds[whole] = self._seconds.get(whole, 0.0) + spent
         self._data = CoverageData(str(file))
         self._data.read()
         package = f"{os.sep}src{os.sep}"
@@ -242,6 +260,23 @@ class Reached:
         contexts = self._data.contexts_by_lineno(name)
         ran = {test for line in lines_of(mutant, source) for test in contexts.get(line, ())}
         return {test.rpartition("|")[0] for test in ran if "|" in test}
+
+    def affordable(self, tests: Iterable[str], files: Sequence[str], budget: float) -> list[str]:
+        """Of tests, or files of them, those that take no longer than a budget (s of processor time)
+        together: of the nearest of some files first, and of those the quickest."""
+        rank = {name: place for place, name in enumerate(files)}
+
+        def order(test: str) -> tuple[int, float, str]:
+            nearness = rank.get(test.partition("::")[0], len(rank))
+            return nearness, self._seconds.get(test, _UNKNOWN), test
+
+        chosen = []
+        for test in sorted(tests, key=order):
+            spent = self._seconds.get(test, _UNKNOWN)
+            if spent <= budget:
+                budget -= spent
+                chosen.append(test)
+        return chosen
 
 
 def lines_of(mutant: Mutant, source: bytes) -> range:
@@ -288,93 +323,63 @@ def read_lines(path: Path) -> list[dict[str, Any]]:
 
 
 class Trial:
-    """Tries mutants in a copy, with so much time and so many files of tests for each."""
+    """Tries mutants in a copy, with so much processor time for each."""
 
     def __init__(self, copy: Copy, report: Report, arguments: argparse.Namespace) -> None:
         self._copy, self._report, self._arguments = copy, report, arguments
         self._nearness = Nearness(copy.tree)
-        self._reached = Reached(arguments.coverage) if arguments.coverage.exists() else None
-        self._parts = [QUICK, REALTIME, *([SLOW, NIGHTLY] if arguments.nightly else [])]
+        self._reached = Reached(arguments.coverage)
+        self._parts = [REALTIME, SLOW, NIGHTLY] if arguments.nightly else []
 
-    def _baseline(self, test: str, marks: str) -> Answer:
-        """What a file says of the source as it is, asked once."""
-        if (test, marks) not in self._report.baselines:
-            limit = self._arguments.file_seconds
-            answer = self._copy.ask([test], marks, limit)
-            self._report.baselines[test, marks] = answer
-            line = {"type": "baseline", "asked": test, "marks": marks, **asdict(answer)}
+    def _passes(self, tests: Sequence[str], marks: str, limit: float) -> bool:
+        """Whether the source as it is passes tests, asked once."""
+        asked = " ".join(tests)
+        if (asked, marks) not in self._report.baselines:
+            answer = self._copy.ask(tests, marks, limit)
+            self._report.baselines[asked, marks] = answer
+            line = {"type": "baseline", "asked": asked, "marks": marks, **asdict(answer)}
             self._report.write(line)
-        return self._report.baselines[test, marks]
+        return self._report.baselines[asked, marks].said == "passed"
 
-    def _notices(self, mutant: Mutant, test: str, marks: str, lost: int) -> Answer | None:
-        """How a file of tests notices a mutant, if it does."""
-        healthy = self._baseline(test, marks)
-        if healthy.said != "passed":
-            return None
-        limit = 4 * healthy.seconds + 30 + 20 * min(lost, 30)
-        answer = self._copy.ask([test], marks, limit, mutant)
+    def _notices(
+        self, mutant: Mutant, tests: Sequence[str], marks: str, limit: float
+    ) -> Answer | None:
+        """How tests notice a mutant, if they do and the source as it is passes them."""
+        answer = self._copy.ask(tests, marks, limit, mutant)
         if answer.said not in ("failed", "slow"):
             return None
-        if answer.said == "slow" or marks == REALTIME:
-            # What hangs on time counts only if the healthy source passes now as it did before.
-            again = self._copy.ask([test], marks, max(answer.seconds, self._arguments.file_seconds))
-            return answer if again.said == "passed" else None
-        return answer
-
-    def _noticed_by_reach(
-        self, mutant: Mutant, files: list[str], lost: int
-    ) -> tuple[int, Answer | None]:
-        """How many quick tests run a mutant's lines, and how one of them notices it, if it does."""
-        if self._reached is None:
-            return 0, None
-        source = (self._copy.tree / "src" / mutant.path).read_bytes()
-        rank = {name: place for place, name in enumerate(files)}
-        known = sorted(
-            self._reached.tests(mutant, source),
-            key=lambda test: (rank.get(test.split("::")[0], len(rank)), test),
-        )[:_MOST_TESTS]
-        if not known:
-            return 0, None
-        limit = 60 + 1.5 * len(known) + 20 * min(lost, 30)
-        answer = self._copy.ask(known, QUICK, limit, mutant)
-        if answer.said not in ("failed", "slow"):
-            return len(known), None
-        # It counts only if the healthy source passes what failed, or all in that time.
-        suspect = [answer.test] if answer.said == "failed" else known
-        again = self._copy.ask(suspect, QUICK, limit)
-        return len(known), answer if again.said == "passed" else None
+        suspect = [answer.test] if answer.said == "failed" else tests
+        return answer if self._passes(suspect, marks, limit) else None
 
     def run(self, mutant: Mutant) -> dict[str, Any]:
         """The line of the report for one mutant."""
-        started, files = time.monotonic(), self._nearness.tests(mutant.module)
+        started, files = processor_time(), self._nearness.tests(mutant.module)
         line: dict[str, Any] = {"type": "mutant", "id": mutant.id, "at": where(mutant)}
         line |= {"room": mutant.room, "kind": mutant.site.kind, "function": mutant.site.function}
         line |= {"before": mutant.before, "after": mutant.site.after}
         line |= {"noticed": False, "marks": "", "said": "passed", "test": ""}
-        lost = self._copy.forget(mutant, self._nearness.graph)
-        reached, answer = self._noticed_by_reach(mutant, files, lost)
-        marks, asked = QUICK, 0
+        source = (self._copy.tree / "src" / mutant.path).read_bytes()
+        known = self._reached.tests(mutant, source)
+        budget = self._arguments.budget
+        asked = self._reached.affordable(known or files[:_FILES], files, budget)
+        marks, answer = QUICK, None
+        if asked:
+            answer = self._notices(mutant, asked, QUICK, 2 * budget + _START)
         for test, part in self._questions(files) if answer is None else ():
-            # A line may run where no test is looking, as what is compiled for several of them.
-            if part == QUICK and reached and not self._nearness.own(test, mutant.module):
-                continue
-            asked += 1
-            answer, marks = self._notices(mutant, test, part, lost), part
+            answer, marks = self._notices(mutant, [test], part, self._arguments.file_seconds), part
             if answer is not None:
                 break
         if answer is not None:
             line |= {"noticed": True, "marks": marks, **asdict(answer)}
-        spent = round(time.monotonic() - started, 1)
-        return line | {"reached": reached, "files": asked, "seconds": spent}
+        spent = round(processor_time() - started, 1)
+        return line | {"reached": len(known), "asked": len(asked), "seconds": spent}
 
     def _questions(self, files: list[str]) -> Iterator[tuple[str, str]]:
-        """Files of tests and which of their tests: quick ones, those in real time, slow ones."""
+        """Files of tests in real time, slow and nightly ones, with which of their tests."""
         for marks in self._parts:
             word = marks.split()[0]
-            marked = [
-                f for f in files if marks == QUICK or f"mark.{word}" in self._nearness.texts[f]
-            ]
-            yield from ((test, marks) for test in marked[: self._arguments.budget])
+            marked = [file for file in files if f"mark.{word}" in self._nearness.texts[file]]
+            yield from ((test, marks) for test in marked[:_FILES])
 
 
 def where(mutant: Mutant) -> str:
@@ -395,10 +400,12 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1, help="of the sample")
     parser.add_argument("--count", type=int, default=70, help="mutants in the sample")
     parser.add_argument("--rooms", default="", help="only these, separated by commas")
-    parser.add_argument("--budget", type=int, default=12, help="files of tests asked per mutant")
+    parser.add_argument(
+        "--budget", type=float, default=8, help="processor time of the tests of a mutant (s)"
+    )
     parser.add_argument("--minutes", type=float, default=60, help="after which none is begun")
     parser.add_argument(
-        "--file-seconds", type=float, default=600, help="files that need more are left"
+        "--file-seconds", type=float, default=600, help="of processor time for a slow file"
     )
     parser.add_argument(
         "--coverage", type=Path, default=ROOT / "out" / "coverage", help="made by `make coverage`"
@@ -419,6 +426,8 @@ def main() -> None:
     if arguments.report:
         print_report(read_lines(arguments.file), equivalent_mutants())
         return
+    if not arguments.list and not arguments.coverage.exists():
+        sys.exit(f"{arguments.coverage} is not there: run `make coverage` first")
     rooms = sorted(filter(None, arguments.rooms.split(",")))
     drawn = sample(all_mutants(ROOT / "src", rooms), arguments.seed)
     chosen: list[Mutant] = []

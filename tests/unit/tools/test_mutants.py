@@ -1,6 +1,5 @@
 """The runner of mutants: nearest tests first, answers outlast a cut, the source is not changed."""
 
-import itertools
 import json
 import subprocess
 import sys
@@ -71,17 +70,31 @@ def test_the_lines_of_a_mutant_begin_with_its_statement() -> None:
     )
 
 
-def test_the_tests_that_run_a_line_are_told_from_a_file_of_coverage(tmp_path: Path) -> None:
-    data = CoverageData(str(tmp_path / "coverage"))
-    for context, lines in (
-        ("", [1]),
-        ("tests/a.py::test_b[x|y]|run", [4, 8]),
-        ("tests/a.py::test_c|run", [9]),
-    ):
+def known(folder: Path, contexts: dict[str, list[int]], seconds: dict[str, float]) -> Path:
+    """The two files that `make coverage` writes, in a folder; the first of them."""
+    data = CoverageData(str(folder / "coverage"))
+    for context, lines in contexts.items():
         data.set_context(context)
         data.add_lines({"/anywhere/src/squeezefilm/gap.py": lines})
     data.write()
-    reached = mutants.Reached(tmp_path / "coverage")
+    (folder / "test-seconds.json").write_text(json.dumps(seconds))
+    return folder / "coverage"
+
+
+def test_the_nearest_and_quickest_are_asked_for_so_much_processor_time(tmp_path: Path) -> None:
+    seconds = {"far.py::a": 0.1, "near.py::a": 3.0, "near.py::b": 2.0, "near.py::c": 9.0}
+    reached = mutants.Reached(known(tmp_path, {}, seconds))
+    files = ["near.py", "far.py", "new.py"]
+    assert reached.affordable(seconds, files, 5.0) == ["near.py::b", "near.py::a"]
+    assert reached.affordable(seconds, files, 4.9) == ["near.py::b", "far.py::a"]
+    # Of whole files the sum counts; what is not known counts as a second.
+    assert reached.affordable(files, files, 13.9) == ["far.py", "new.py"]
+    assert reached.affordable(files, files, 14.0) == ["near.py"]
+
+
+def test_the_tests_that_run_a_line_are_told_from_a_file_of_coverage(tmp_path: Path) -> None:
+    contexts = {"": [1], "tests/a.py::test_b[x|y]|run": [4, 8], "tests/a.py::test_c|run": [9]}
+    reached = mutants.Reached(known(tmp_path, contexts, {}))
     assert reached.tests(mutant_at(6, "1"), SOURCE) == {"tests/a.py::test_b[x|y]"}
     assert reached.tests(mutant_at(9, "found"), SOURCE) == {"tests/a.py::test_c"}
     assert reached.tests(mutant_at(1, "least"), SOURCE) == set()
@@ -109,9 +122,9 @@ def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
         subprocess.run(["git", *who, *command], cwd=root, check=True)
     answers, work = tmp_path / "answers.jsonl", tmp_path / "work"
     monkeypatch.setattr(mutants, "ROOT", root)
-    monkeypatch.setattr(
-        sys, "argv", ["mutants.py", "--file", str(answers), "--work", str(work), "--count", "9"]
-    )
+    coverage = known(tmp_path, {"tests/unit/test_gap.py::test_half|run": [2]}, {})
+    words = ["--file", str(answers), "--work", str(work), "--coverage", str(coverage)]
+    monkeypatch.setattr(sys, "argv", ["mutants.py", *words, "--count", "9"])
     mutants.main()
     lines = [json.loads(line) for line in answers.read_text().splitlines()]
     found = {(line["before"], line["after"]): line for line in lines if line["type"] == "mutant"}
@@ -128,11 +141,9 @@ def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
     assert answers.read_text() == before
 
 
-def test_only_marked_files_are_asked_a_second_time() -> None:
+def test_only_marked_files_are_asked_for_slow_tests() -> None:
     trial = mutants.Trial.__new__(mutants.Trial)
-    trial._parts = [mutants.QUICK, mutants.REALTIME]
+    trial._parts = [mutants.REALTIME, mutants.SLOW]
     trial._nearness = mutants.Nearness.__new__(mutants.Nearness)
     trial._nearness.texts = {"a.py": "", "b.py": "@pytest.mark.realtime", "c.py": ""}
-    trial._arguments = mutants.argparse.Namespace(budget=2)
-    asked = list(itertools.islice(trial._questions(["a.py", "b.py", "c.py"]), 9))
-    assert asked == [("a.py", mutants.QUICK), ("b.py", mutants.QUICK), ("b.py", mutants.REALTIME)]
+    assert list(trial._questions(["a.py", "b.py", "c.py"])) == [("b.py", mutants.REALTIME)]

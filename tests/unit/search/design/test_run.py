@@ -39,9 +39,18 @@ def _search(folder: Path | None = None, **changes: int) -> DesignSearch:
     return run.search_designs(requirements(), out=folder, **asked)  # type: ignore[arg-type]
 
 
+@pytest.fixture(scope="module")
+def whole() -> DesignSearch:
+    """The usual search, by formula, that several tests read."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "evaluate_all", evaluated_by_formula)
+        patch.setattr(run, "made_of", _made)
+        return _search()
+
+
 @pytest.mark.usefixtures("by_formula")
-def test_the_front_is_feasible_and_nobody_beats_it() -> None:
-    found = _search()
+def test_the_front_is_feasible_and_nobody_beats_it(whole: DesignSearch) -> None:
+    found = whole
     assert len(found.front) >= 8
     assert all(one.evaluated.is_feasible for one in found.front)
     assert all(one.evaluated.level == "solved" for one in found.front)
@@ -79,6 +88,7 @@ def test_a_plate_is_one_task_with_voltages_over_the_whole_range(
     assert len(alone.solved) == alone.plates_solved
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("by_formula")
 def test_seeds_agree() -> None:
     """The campaign in tests/recovery asks it of real plates."""
@@ -109,9 +119,8 @@ def test_hosts_that_search_in_one_folder_end_with_what_all_have_solved(tmp_path:
 @pytest.mark.parametrize("after", [3, 40, 55, 80])
 @pytest.mark.usefixtures("by_formula")
 def test_a_search_that_was_stopped_goes_on(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int, whole: DesignSearch
 ) -> None:
-    whole = _search()
     count = 0
 
     def stopping(*args: object) -> list[Evaluated]:
@@ -236,9 +245,8 @@ def test_whoever_watches_sees_the_front_grow() -> None:
     assert list(seen[-1].front) == [one.evaluated for one in found.front]
 
 
-@pytest.mark.usefixtures("by_formula")
-def test_the_reasons_name_the_limits_and_what_they_cost() -> None:
-    found = _search()
+def test_the_reasons_name_the_limits_and_what_they_cost(whole: DesignSearch) -> None:
+    found = whole
     said = [limit_in_words(one, len(found.screened)) for one in found.limits]
     hot = next(text for text in said if text.startswith("temperature rise"))
     assert "at most 60 K" in hot
@@ -262,13 +270,14 @@ def test_the_nearest_limits_come_first_whatever_is_not_known() -> None:
     assert list(near.values()) == sorted(near.values())
 
 
-@pytest.mark.usefixtures("by_formula")
-def test_a_plate_of_the_front_is_a_display_that_can_be_written_and_read() -> None:
+def test_a_plate_of_the_front_is_a_display_that_can_be_written_and_read(
+    whole: DesignSearch,
+) -> None:
     from squeezefilm import config
     from squeezefilm.config.write import text_of
     from squeezefilm.display import Display
 
-    found = _search()
+    found = whole
     display = found.display()
     again = config.load_text(Display, text_of(display, display.provenance))
     assert config_hash(again) == config_hash(display)
