@@ -9,6 +9,8 @@ SEED ?= $(shell date +%Y%m%d)
 MUTANTS_SEED ?= 1
 COUNT ?= 150
 MINUTES ?= 480
+# Without bytecode each process compiles a thousand modules anew, and pytest its tests.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help demo lab test slow gate costs check lint types layers gallery pictures docs bench coverage nightly campaign release clean
 

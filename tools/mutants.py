@@ -137,7 +137,7 @@ class Copy:
         environment = {
             **os.environ,
             "PYTHONPATH": str(self.tree / "src"),
-            "PYTHONDONTWRITEBYTECODE": "1",
+            "PYTHONDONTWRITEBYTECODE": "",
             "NUMBA_CACHE_DIR": str(self._tried),
             "MPLCONFIGDIR": str(self._cache / "matplotlib"),  # its list of fonts takes seconds
             "TMPDIR": str(self._temporary),
