@@ -140,7 +140,7 @@ NOT_CALLED = {
     plate.solid.mesh.plate_model plate.solid.mesh.wave_number
     plate.solid.model.PlateModel.evaluation
     plate.solid.model.PlateModel.field plate.solid.model.PlateModel.force
-    plate.solid.modes.label_of plate.solid.modes.profiles plate.solid.modes.surface_shapes
+    plate.solid.modes.label_of plate.elements.nodal_lines.profiles plate.solid.modes.surface_shapes
     plate.elements.nodal_lines.zero_crossings plate.solid.symmetry.mirror_map
     plate.solid.reduced.ReducedClass
     plate.solid.reduced.harmonic_solution
@@ -152,7 +152,8 @@ NOT_CALLED = {
     plate.shear.elements.ShearSystem plate.shear.elements.ShearSystem.deflection
     plate.shear.elements.make_axis plate.shear.elements.shear_system
     plate.solid.guess.bare_frequency plate.solid.guess.screened_frequency
-    plate.solid.guess.straightness plate.beam.modes.scaled_mode plate.beam.modes.wave_numbers
+    plate.elements.nodal_lines.line_counts
+    plate.beam.modes.scaled_mode plate.beam.modes.wave_numbers
     plate.beam.pieces.pieced_beam_mode
     plate.shear.section.ShearLayout.mirrored
     plate.elements.slab_factor.SlabFactor plate.elements.slabs.Slabs.grid

@@ -16,7 +16,7 @@ from squeezefilm.plate.layout import (
     RectangularPlate,
     turned,
 )
-from squeezefilm.plate.solid.guess import bare_frequency, screened_frequency, straightness
+from squeezefilm.plate.solid.guess import bare_frequency, screened_frequency
 from squeezefilm.plate.solid.mode_table import energy_shares_of
 from squeezefilm.plate.solid.modes import PlateModes
 from squeezefilm.plate.solid.response import harmonic_response
@@ -119,13 +119,6 @@ def test_the_shear_plate_tells_where_to_look() -> None:
     expected = wave**2 * np.sqrt(stiffness / GLASS.density) / (2 * np.pi)
     assert bare_frequency(plate, (4, 0)) == pytest.approx(expected, rel=1e-12)
     assert screened_frequency(plate, (0, 0)) is None
-
-
-def test_straight_lines_are_one_product() -> None:
-    x, y = np.linspace(0, 1, 40)[:, None], np.linspace(0, 1, 30)[None, :]
-    straight = np.cos(9 * x) * np.ones_like(y)
-    assert straightness(straight) == pytest.approx(1)
-    assert straightness(straight + 0.5 * np.cos(4 * x) * np.cos(7 * y)) < 0.95
 
 
 @pytest.mark.slow

@@ -17,6 +17,7 @@ from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.shear.modes import MODELLING_ERROR, ShearMode, shear_mode, shear_modes
 from squeezefilm.plate.shear.section import ShearLayout, isotropic_section, shear_layout
+from squeezefilm.plate.working_mode import working_mode
 
 STEEL = ElasticMaterial("NAFEMS steel", 200e9, 0.3, 8000.0)
 
@@ -189,3 +190,44 @@ def test_an_unsymmetric_plate_is_solved_whole(plate: RectangularPlate) -> None:
         shear_modes(shifted, 34e3, parities=((1, 1),))
     with pytest.raises(InputError, match="no mode"):
         shear_mode(plate, (2, 0), 34e3)
+
+
+def test_a_bare_plate_has_the_labels_that_analysis_gives_it() -> None:
+    """Each label once, and more lines either way make a higher mode: k grows with both."""
+    modes = shear_modes(bare(0.15, 0.1, 0.7e-3), 0.0, 24, degree=7)
+    modes = tuple(mode for mode in modes if not mode.is_rigid)
+    assert len({mode.nodal_lines for mode in modes}) == len(modes) > 15
+    for low, high in itertools.permutations(modes, 2):
+        if all(a <= b for a, b in zip(low.nodal_lines, high.nodal_lines, strict=True)):
+            assert low.frequency < high.frequency, (low.label, high.label)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_every_random_glass_with_edge_strips_has_its_working_mode(seed: int) -> None:
+    """As a design search draws and screens them: the mode is there, within 10 % of the beam's."""
+    draws = np.random.default_rng(seed)
+    for _ in range(8):
+        lines, length, width = (
+            int(draws.integers(5, 21)),
+            *draws.uniform([0.06, 0.05], [0.15, 0.09]),
+        )
+        strip, thick = draws.uniform(3e-3, 8e-3), draws.choice([0.3e-3, 0.5e-3, 1e-3])
+        polarity = 1 if lines % 2 == 0 else -1
+        display = load_display("touchpad-glass").actuator
+        assert isinstance(display, RectangularPlate)
+        glass = dataclasses.replace(
+            display,
+            length=length,
+            width=width,
+            thickness=draws.choice([0.55e-3, 0.9e-3, 1.75e-3]),
+            nodal_lines=lines,
+            patches=(
+                CeramicPatch(0.0, 0.0, length, strip, thick),
+                CeramicPatch(0.0, width - strip, length, strip, thick, polarity=polarity),
+            ),
+            supports=(),
+        )
+        screened, beam = working_mode(glass, "shear"), working_mode(glass, "timoshenko")
+        assert screened.resonance_frequency == pytest.approx(beam.resonance_frequency, rel=0.1)
+        assert screened.half_wavelength == pytest.approx(beam.half_wavelength, rel=0.1)

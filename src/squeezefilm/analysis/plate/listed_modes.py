@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from squeezefilm import quantities as si
+from squeezefilm.plate.elements.nodal_lines import profiles
 from squeezefilm.plate.layout import Actuator, RectangularPlate
-from squeezefilm.plate.solid.modes import profiles
 from squeezefilm.plate.solid.resonances import DrivenMode, Moving, strongest_neighbour
 from squeezefilm.plate.solid.screening import SCREENING_ERROR, symmetry_in_words
 from squeezefilm.plate.working_mode import CROWDED, WorkingMode

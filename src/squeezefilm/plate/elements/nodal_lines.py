@@ -1,4 +1,4 @@
-"""Where a vibration stands still along a line, and the half wavelength that follows."""
+"""Where a vibration stands still: nodal lines, how many, and the half wavelength that follows."""
 
 from __future__ import annotations
 
@@ -14,6 +14,24 @@ def zero_crossings(position: si.FloatArray, profile: si.FloatArray) -> si.FloatA
     x, w = position[strong], profile[strong]
     at = np.flatnonzero(np.signbit(w[1:]) != np.signbit(w[:-1]))
     return np.asarray(x[at] - w[at] * (x[at + 1] - x[at]) / (w[at + 1] - w[at]))
+
+
+def profiles(shape: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, float]:
+    """The product X(x) Y(y) nearest to a shape, and its share of the shape's square: 1 for straight
+    nodal lines."""
+    U, s, V = np.linalg.svd(shape, full_matrices=False)
+    return U[:, 0] * s[0], V[0], float(s[0] ** 2 / np.sum(s**2)) if s[0] > 0 else 0.0
+
+
+def line_counts(shape: si.FloatArray, x: si.MetreArray, y: si.MetreArray) -> tuple[int, int]:
+    """How many nodal lines cross the length and how many the width, of a deflection (x, y).
+
+    They are counted on the nearest product X(x) Y(y). Where two modes are near one another and
+    share their motions, the lines of the shape itself are not straight and cannot be counted; the
+    product is that of the mode which has the larger share.
+    """
+    along, across, _ = profiles(shape)
+    return zero_crossings(x, along).size, zero_crossings(y, across).size
 
 
 def within_nodes(

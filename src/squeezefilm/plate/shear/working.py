@@ -8,7 +8,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.plate.elements.nodal_lines import line_distance, zero_crossings
+from squeezefilm.plate.elements.nodal_lines import line_distance, profiles, zero_crossings
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import ShearMode, shear_mode
 
@@ -21,7 +21,7 @@ class ShearWorking:
     """A mode of a shear plate along the line that crosses its nodal lines in the middle.
 
     `deflection` along `position` (m) is 1 at the largest lobe between the outermost lines, at
-    `lobe` (x, y); `half_wavelength` (m) is that of `line_distance`;
+    `lobe` (x, y); `half_wavelength` (m) is that of `line_distance` on the shape's nearest product;
     `amplitude_per_volt` (m/V) and `modal_mass` (kg) are those of that lobe.
     """
 
@@ -52,6 +52,7 @@ def shear_working(plate: RectangularPlate, near: si.Hertz) -> ShearWorking:
     across, side = (mode.y, plate.width) if along_x else (mode.x, plate.length)
     at = int(np.argmin(np.abs(across - side / 2)))
     w = mode.deflection[:, at] if along_x else mode.deflection[at, :]
+    lengthwise, crosswise, _ = profiles(mode.deflection)
     turns = np.flatnonzero(np.signbit(w[1:]) != np.signbit(w[:-1]))
     if turns.size < 2:
         raise InputError(
@@ -68,7 +69,7 @@ def shear_working(plate: RectangularPlate, near: si.Hertz) -> ShearWorking:
         position=line,
         deflection=w / float(w[peak]),
         lobe=place if along_x else place[::-1],
-        half_wavelength=line_distance(zero_crossings(line, w)),
+        half_wavelength=line_distance(zero_crossings(line, lengthwise if along_x else crosswise)),
         amplitude_per_volt=size * mode.amplitude_per_volt(plate.quality_factor),
         modal_mass=mode.modal_mass / size**2,
     )

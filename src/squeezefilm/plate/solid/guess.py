@@ -13,16 +13,11 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError, SqueezefilmError
 from squeezefilm.plate.beam.modes import free_beam_mode, timoshenko_frequency
-from squeezefilm.plate.elements.nodal_lines import zero_crossings
-from squeezefilm.plate.laminate import plate_laminate
+from squeezefilm.plate.laminate import plate_laminate, section_with
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.shear.modes import ShearMode, shear_modes
-from squeezefilm.plate.shear.section import shear_layout
-from squeezefilm.plate.solid.modes import Label, profiles
+from squeezefilm.plate.shear.modes import shear_mode
+from squeezefilm.plate.solid.modes import Label
 
-# So many modes of one class of symmetry around the bare plate's frequency are looked at: strips on
-# a part of the face move a mode by some ten percent.
-_NEAREST = 16
 _COVERED = 0.8
 
 
@@ -30,8 +25,7 @@ def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
     """A first guess of a mode's frequency: a Timoshenko beam with the mode's wave number, or the
     shear plate where ceramics cover little of it."""
     section = plate_laminate(plate, "plane_strain")
-    lines = [(n, span) for n, span in zip(label, (plate.length, plate.width), strict=True)]
-    k2 = sum(((n - 0.5) * np.pi / span) ** 2 for n, span in lines if n >= 2)
+    k2 = _wave_number(plate, label) ** 2
     k2 += 2 * (np.pi / plate.length) * (np.pi / plate.width) if label == (1, 1) else 0.0
     if k2 == 0:
         raise InputError(
@@ -55,43 +49,30 @@ def bare_frequency(plate: RectangularPlate, label: Label) -> si.Hertz:
 
     0 for labels that are no bending (fewer than two lines across a side do not bend it).
     """
-    spans = (plate.length, plate.width)
-    k2 = sum(
-        ((n - 0.5) * math.pi / span) ** 2 for n, span in zip(label, spans, strict=True) if n > 1
-    )
     substrate, h = plate.substrate, plate.thickness
     stiffness = substrate.plane_strain_modulus * h**3 / 12
+    k2 = _wave_number(plate, label) ** 2
     return k2 / (2 * math.pi) * math.sqrt(stiffness / (substrate.density * h))
 
 
-def screened_frequency(plate: RectangularPlate, label: Label) -> si.Hertz | None:
-    """The frequency of a mode by the shear plate (Hz), searched around the bare plate's.
+def _wave_number(plate: RectangularPlate, label: Label) -> float:
+    """That of a free plate's bending with these nodal lines (1/m): 0 for fewer than two."""
+    spans = (plate.length, plate.width)
+    return math.hypot(
+        *((n - 0.5) * math.pi / span for n, span in zip(label, spans, strict=True) if n > 1)
+    )
 
-    Of several with these nodal lines the one whose shape is most nearly that of straight lines:
-    strips mix neighbours, and a mixture may count the same lines. None where the shear plate knows
-    no such mode: then the caller's own guess must do.
+
+def screened_frequency(plate: RectangularPlate, label: Label) -> si.Hertz | None:
+    """The frequency of a mode by the shear plate (Hz), searched around that of a wave in the bare
+    plate: see `shear_mode`. None where the shear plate knows no such mode: then the caller's own
+    guess must do.
     """
-    bare = bare_frequency(plate, label)
-    if bare == 0:
+    wave = _wave_number(plate, label)
+    if wave == 0:
         return None
-    layout = shear_layout(plate)
+    bare = timoshenko_frequency(math.pi / wave, section_with(plate, "plane_strain", 0.0, 0.0))
     try:
-        modes = shear_modes(layout, bare, _NEAREST, parities=(layout.parity_of(label),))
+        return shear_mode(plate, label, float(bare)).frequency
     except (InputError, ConvergenceError):
         return None
-    found = [mode for mode in modes if not mode.is_rigid and _lines(mode) == label]
-    best = max(found, key=lambda mode: straightness(mode.deflection), default=None)
-    return None if best is None else best.frequency
-
-
-def _lines(mode: ShearMode) -> Label:
-    """Nodal lines counted as the solved plate counts them: on the shape's dominant product."""
-    along, across, _ = profiles(mode.deflection)
-    return zero_crossings(mode.x, along).size, zero_crossings(mode.y, across).size
-
-
-def straightness(deflection: si.FloatArray) -> si.Dimensionless:
-    """The share of a shape's square that is one profile along x times one along y: 1 for straight
-    nodal lines. `deflection` on a grid, shape (x, y)."""
-    size = np.linalg.svd(deflection, compute_uv=False)
-    return float(size[0] ** 2 / np.sum(size**2))

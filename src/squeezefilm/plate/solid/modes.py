@@ -12,7 +12,12 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY, require_within
 from squeezefilm.plate.elements.again import SolvedAgain
-from squeezefilm.plate.elements.nodal_lines import line_distance, zero_crossings
+from squeezefilm.plate.elements.nodal_lines import (
+    line_counts,
+    line_distance,
+    profiles,
+    zero_crossings,
+)
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.layers import COARSE, NORMAL, Resolution
 from squeezefilm.plate.solid.model import PlateModel
@@ -149,12 +154,6 @@ class PlateModes(SolvedAgain):
         return line_distance(self.nodal_positions(mode))
 
 
-def profiles(shape: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, float]:
-    """The product X(x) Y(y) nearest to a shape, and its share of the shape's square."""
-    U, s, V = np.linalg.svd(shape, full_matrices=False)
-    return U[:, 0] * s[0], V[0], float(s[0] ** 2 / np.sum(s**2)) if s[0] > 0 else 0.0
-
-
 _POINTS = (97, 65)
 
 
@@ -174,8 +173,7 @@ def label_of(surface: si.FloatArray, x: si.FloatArray, y: si.FloatArray) -> Labe
     in_plane = float(np.mean(surface[:, :, 0] ** 2 + surface[:, :, 1] ** 2))
     if float(np.mean(w**2)) < 0.3 * in_plane:
         return None
-    X, Y, _ = profiles(w)
-    return zero_crossings(x, X).size, zero_crossings(y, Y).size
+    return line_counts(w, x, y)
 
 
 def tracked(before: PlateModes, after: PlateModes) -> list[tuple[int, float]]:

@@ -15,7 +15,8 @@ from scipy.linalg import eigh
 
 from squeezefilm import quantities as si
 from squeezefilm.blas_threads import one_blas_thread
-from squeezefilm.plate.solid.modes import Label, label_of, profiles, surface_shapes
+from squeezefilm.plate.elements.nodal_lines import profiles
+from squeezefilm.plate.solid.modes import Label, label_of, surface_shapes
 from squeezefilm.plate.solid.reduced import ReducedClass
 from squeezefilm.plate.solid.symmetry import Symmetry
 
