@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from tests.e2e.program import run
 from tests.pictures import picture_bytes
+from tests.unit.formats.read_parquet import table_in_parquet
 
 from squeezefilm import presets
 from squeezefilm.formats.hjif_read import read_hjif
-from squeezefilm.formats.traces import table_from_csv, table_from_parquet
+from squeezefilm.formats.traces import table_from_csv
 from squeezefilm.formats.wav import read_wav
 
 STATOR = ("--display", "biet2008-stator")
@@ -138,7 +139,7 @@ def test_a_map_under_a_free_stroke(tmp_path: Path) -> None:
         "--out", tmp_path / "out", "--table", "parquet",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    trace = table_from_parquet(tmp_path / "out" / "trace.parquet")
+    trace = table_in_parquet((tmp_path / "out" / "trace.parquet").read_bytes())
     x, y = trace.column("position_x_m"), trace.column("position_y_m")
     assert np.hypot(x - 0.025, y - 0.015) == pytest.approx(np.full(x.size, 0.01), rel=2e-3)
     assert np.ptp(trace.column("relative_friction_asked")) > 0.2
