@@ -99,7 +99,7 @@ def test_curves_pass_through_their_marked_points(plate: Analysis) -> None:
 
 def test_the_verdict_speaks_of_validation_and_of_assumptions(plate: Analysis) -> None:
     text = " ".join(finding.text for finding in plate.verdict)
-    assert "not validated against measurements" in text
+    assert "refutes the default model" in text
     assert "assumed" in text
     assert any(finding.kind == "doubt" for finding in plate.verdict)
 

@@ -90,8 +90,8 @@ def verdict(
             yield Finding("doubt", doubt)
         yield Finding(
             "doubt",
-            "Friction against amplitude is not validated against measurements: no measured curve "
-            "of an ultrasonic display could be read anywhere.",
+            "Published friction against amplitude, of people on glass, refutes the default model: "
+            "it falls too fast with the amplitude (squeezefilm reproduce --data published).",
         )
 
     yield from (held_back(finding, why) for finding in found())

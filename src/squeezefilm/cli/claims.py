@@ -18,13 +18,17 @@ def reproduce(
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Compare the measured friction curves in a folder with every model instead.",
+            help="Compare measured friction with every model instead: a folder, or "
+            "'published' for the published curves that come with the program.",
         ),
     ] = None,
     as_json: AsJson = False,
     write_docs: Annotated[
         bool,
-        typer.Option("--write-docs", help="In a checkout: rewrite docs/reference/validation.md."),
+        typer.Option(
+            "--write-docs",
+            help="In a checkout: rewrite docs/reference/validation.md, or published-friction.md.",
+        ),
     ] = False,
 ) -> None:
     """Recompute every published claim: what the paper printed, what its formula gives, a verdict.
@@ -32,14 +36,13 @@ def reproduce(
     Exit code 1 if a verdict differs from the one on record.
     """
     if data is not None:
-        if write_docs:
-            raise InputError("--data writes no documentation; leave --write-docs out, or --data")
-        _measured_curves(data, out, as_json)
+        _measured_curves(data, out, as_json, write_docs)
         return
     from squeezefilm.analysis.claims.command import reproduce as run
     from squeezefilm.measure.prototype.explanations import prototype_study
-    from squeezefilm.report.claims.page import checkout, write_reproduction, write_validation_docs
+    from squeezefilm.report.claims.page import write_reproduction, write_validation_docs
     from squeezefilm.report.claims.terminal import show_claims
+    from squeezefilm.report.kit.docs import checkout
 
     if write_docs:
         # Minutes of work lie before the writing.
@@ -63,16 +66,24 @@ def reproduce(
         raise typer.Exit(1)
 
 
-def _measured_curves(data: Path, out: Path | None, as_json: bool) -> None:
+def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bool) -> None:
     """What `reproduce --data` does."""
-    from squeezefilm.measure.fits.friction.friction_curve import compare_folder
+    published = str(data) == "published" and not data.exists()
+    if write_docs and not published:
+        raise InputError("--write-docs writes a page of --data published, of no other data")
+    from squeezefilm import presets
+    from squeezefilm.measure.fits.friction.friction_folder import compare_folder
     from squeezefilm.report.measured.curves import show_comparisons, write_comparisons
 
     with working(as_json) as step:
-        compared = compare_folder(data, step)
+        compared = compare_folder(presets.friction_folder() if published else data, step)
         written = None if out is None else write_comparisons(compared, out)
+    if write_docs:
+        from squeezefilm.report.measured.friction_docs import write_friction_docs
+
+        typer.echo(f"wrote {write_friction_docs(compared)}", err=True)
     if as_json:
-        print_json({"curves": [one.summary() for one in compared]})
+        print_json(compared.summary())
         return
     show_comparisons(compared)
     if written is not None:

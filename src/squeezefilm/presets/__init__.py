@@ -16,6 +16,7 @@ __all__ = [
     "actuator_names",
     "claims_path",
     "display_names",
+    "friction_folder",
     "materials",
     "path",
     "requirement_names",
@@ -36,6 +37,11 @@ _NOT_DISPLAYS = {"claims", "materials"}
 def display_names() -> tuple[str, ...]:
     """The names of all preset displays, sorted."""
     return tuple(name for name in _names(_FOLDER) if name not in _NOT_DISPLAYS)
+
+
+def friction_folder() -> Path:
+    """The folder of published friction measurements."""
+    return _FOLDER / "friction"
 
 
 def actuator_names() -> tuple[str, ...]:

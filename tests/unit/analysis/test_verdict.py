@@ -246,8 +246,8 @@ def test_the_last_word_is_that_nothing_is_validated(point: Prediction) -> None:
     last = said(point)[-1]
     assert last == Finding(
         "doubt",
-        "Friction against amplitude is not validated against measurements: no measured curve of an "
-        "ultrasonic display could be read anywhere.",
+        "Published friction against amplitude, of people on glass, refutes the default model: it "
+        "falls too fast with the amplitude (squeezefilm reproduce --data published).",
     )
     # With what is said of the friction, and that no file says where these values are from.
     assert len(said(point, relative_friction=0.5)) == 3

@@ -23,6 +23,7 @@ from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import predict
 from squeezefilm.cli.measure import check, fit
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
+from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
 
 StandsIn = Callable[..., Any]
 
@@ -108,16 +109,17 @@ def test_where_a_fit_is_refused_the_doubts_are_said(
 def test_measured_curves_are_compared_in_place_of_the_claims(
     stands_in: StandsIn, tmp_path: Path
 ) -> None:
-    asked = stands_in("measure.fits.friction.friction_curve:compare_folder", (), tells=False)
+    nothing = FolderComparison((), (), ())
+    asked = stands_in("measure.fits.friction.friction_folder:compare_folder", nothing, tells=False)
     page = stands_in("report.measured.curves:write_comparisons", tmp_path / "page.html")
     done = run("reproduce", "--data", str(tmp_path), "--out", str(tmp_path / "out"))
     assert done.returncode == 0, done.stderr
     assert asked.given[0] == tmp_path
-    assert page.given == ((), tmp_path / "out")
+    assert page.given == (nothing, tmp_path / "out")
     as_json = run("reproduce", "--data", str(tmp_path), "--json")
-    assert json.loads(as_json.stdout) == {"curves": []}
+    assert json.loads(as_json.stdout)["curves"] == []
     refused = run("reproduce", "--data", str(tmp_path), "--write-docs")
-    assert "--data writes no documentation" in refused.stderr
+    assert "a page of --data published, of no other data" in refused.stderr
 
 
 def test_a_folder_without_curves_is_refused_before_any_work(tmp_path: Path) -> None:

@@ -1,7 +1,8 @@
 """The one set of parameters that every claim on friction under vibration shares, and its models.
 
-Nothing here is fitted: no published friction curve could be read. The set is the same for all
-claims and all models; a claim changes only the quantity that its statement is about.
+Nothing here is fitted: published curves are compared by `measure.fits.friction.friction_folder`.
+The set is the same for all claims and all models; a claim changes only the quantity that its
+statement is about.
 """
 
 from __future__ import annotations

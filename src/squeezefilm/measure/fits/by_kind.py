@@ -76,6 +76,11 @@ def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None
     a recording that its fit refuses.
     """
     known = FITS.get(type(recording))
+    if isinstance(recording, kinds.FrictionDecays | kinds.FingertipImpedances):
+        raise InputError(
+            f"'{recording.told.name}' holds numbers of many people, which are compared and not "
+            "fitted: squeezefilm reproduce --data FOLDER"
+        )
     if known is None:
         raise InputError(
             f"{type(recording).__name__} is no kind of recording; give the path of a file, or what "

@@ -9,15 +9,12 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings import assembled_friction, kinds
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
-from squeezefilm.measure.recordings.description import (
-    Column,
-    Description,
-    ImpedanceColumns,
-)
+from squeezefilm.measure.recordings.described import Column
+from squeezefilm.measure.recordings.description import Description, ImpedanceColumns
 from squeezefilm.measure.recordings.motions import moment_by_moment, motion_of, motion_per_volt
-from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
+from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.measure.recordings.rows import both_rows, require_rising, rising_order
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
@@ -80,7 +77,7 @@ def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
         value = 1 / value
     value = _corrected(reading, value)
     frequency, value = _rising(reading, "frequency", frequency, value)
-    return kinds.ImpedanceSweep(frequency, value, _told(reading), _ceramic(reading))
+    return kinds.ImpedanceSweep(frequency, value, reading.told(), _ceramic(reading))
 
 
 def _ceramic(reading: Reading) -> CeramicBar | CeramicDisc | None:
@@ -122,7 +119,7 @@ def _response(reading: Reading) -> kinds.FrequencyResponse:
         motion[order],
         volts,
         None if coherence is None else coherence[order],
-        _told(reading),
+        reading.told(),
         _place(reading),
     )
 
@@ -153,7 +150,7 @@ def _line(reading: Reading) -> kinds.LineScan:
         )
     given = None if said.voltage is None else reading.given_voltage(said.voltage)
     reading.facts.append(("frequency", quantity(said.frequency, _HZ)))
-    return kinds.LineScan(position[order], motion[order], said.frequency, given, _told(reading))
+    return kinds.LineScan(position[order], motion[order], said.frequency, given, reading.told())
 
 
 def _grid(reading: Reading) -> kinds.GridScan:
@@ -167,14 +164,14 @@ def _grid(reading: Reading) -> kinds.GridScan:
         seen[place] = row
     given = None if said.voltage is None else reading.given_voltage(said.voltage)
     reading.facts.append(("frequency", quantity(said.frequency, _HZ)))
-    return kinds.GridScan(x, y, motion, said.frequency, given, _told(reading))
+    return kinds.GridScan(x, y, motion, said.frequency, given, reading.told())
 
 
 def _ring_down(reading: Reading) -> kinds.RingDown:
     time = reading.take("time")
     motion = moment_by_moment(reading, time)
     _, motion = _rising(reading, "time", time, motion)
-    return kinds.RingDown(time, motion, _told(reading))
+    return kinds.RingDown(time, motion, reading.told())
 
 
 def _signals(reading: Reading) -> kinds.RawSignals:
@@ -194,7 +191,7 @@ def _signals(reading: Reading) -> kinds.RawSignals:
             row,
         )
     motion = moment_by_moment(reading, even)
-    return kinds.RawSignals(even, voltage, motion, _told(reading))
+    return kinds.RawSignals(even, voltage, motion, reading.told())
 
 
 def _sweeps(reading: Reading) -> kinds.VoltageSweeps:
@@ -221,14 +218,14 @@ def _sweeps(reading: Reading) -> kinds.VoltageSweeps:
                 motion[rows][step],
                 float(voltage[start]),
                 None,
-                _told(reading),
+                reading.told(),
             )
         )
         directions.append("up" if up else "down")
     told = (f"{quantity(float(one.voltage or 0), si.Unit('V'))} {way}"
             for one, way in zip(found, directions, strict=True))  # fmt: skip
     reading.facts.append(("sweeps", ", ".join(told)))
-    return kinds.VoltageSweeps(tuple(found), tuple(directions), _told(reading))
+    return kinds.VoltageSweeps(tuple(found), tuple(directions), reading.told())
 
 
 def joined_sweeps(
@@ -254,59 +251,6 @@ def _runs(frequency: si.HertzArray, voltage: si.VoltArray) -> list[tuple[int, in
     return list(zip(starts, [*starts[1:], frequency.size], strict=True))
 
 
-def _bench(reading: Reading) -> kinds.FrictionBench:
-    said: Any = reading.description.said
-    time = reading.take("time")
-    require_rising(reading, "time", time)
-    normal, tangential, position = (
-        reading.take(name) for name in ("normal_force", "tangential_force", "position")
-    )
-    if reading.has("vibration_amplitude"):
-        vibration = reading.take("vibration_amplitude", amplitude=True)
-    elif reading.has("voltage") and said.amplitude_per_volt is not None:
-        vibration = said.amplitude_per_volt * reading.take("voltage", amplitude=True)
-        shown = quantity(said.amplitude_per_volt, si.Unit("m/V"))
-        reading.facts.append(("vibration amplitude", f"the voltage times {shown}, as told"))
-    else:
-        raise reading.wanting(
-            "vibration_amplitude", "it is needed, or the voltage with amplitude_per_volt beside"
-        )
-    if said.frequency is not None:
-        reading.facts.append(("frequency", quantity(said.frequency, _HZ)))
-    return kinds.FrictionBench(
-        time, normal, tangential, position, vibration, _told(reading), said.frequency
-    )
-
-
-def _curve(reading: Reading) -> kinds.FrictionCurve:
-    said: Any = reading.description.said
-    amplitude = reading.take("vibration_amplitude", amplitude=True)
-    friction, spread = reading.take("relative_friction"), reading.take("spread")
-    order = np.argsort(amplitude, kind="stable")
-    given = (("frequency", "Hz"), ("normal_force", "N"), ("speed", "m/s"))
-    for name, unit in given:
-        reading.facts.append((words(name), quantity(getattr(said, name), si.Unit(unit))))
-    return kinds.FrictionCurve(
-        amplitude[order],
-        friction[order],
-        spread[order],
-        said.frequency,
-        said.normal_force,
-        said.speed,
-        _told(reading),
-        _display(reading),
-    )
-
-
-def _display(reading: Reading) -> str:
-    """The display that is named, the path of a file from where the description stands."""
-    said: Any = reading.description.said
-    path = reading.description.path
-    if said.display.endswith(".toml") and path is not None:
-        return str(path.parent / said.display)
-    return str(said.display)
-
-
 def _one_of(reading: Reading, pairs: tuple[tuple[str, str], ...]) -> tuple[str, str]:
     """The pair of quantities that are both named, and no other is."""
     named = {name for pair in pairs for name in pair if reading.has(name)}
@@ -328,10 +272,6 @@ def _rising(
     return values[order], other[order]
 
 
-def _told(reading: Reading) -> kinds.Told:
-    return reading.description.said.told(reading.table.file)
-
-
 _OF_KIND: Mapping[str, Callable[[Reading], kinds.Recording]] = {
     "impedance": _impedance,
     "frequency response": _response,
@@ -340,6 +280,8 @@ _OF_KIND: Mapping[str, Callable[[Reading], kinds.Recording]] = {
     "ring-down": _ring_down,
     "voltage sweeps": _sweeps,
     "raw signals": _signals,
-    "friction bench": _bench,
-    "friction curve": _curve,
+    "friction bench": assembled_friction.bench,
+    "friction curve": assembled_friction.curve,
+    "friction decays": assembled_friction.decays,
+    "fingertip impedances": assembled_friction.touches,
 }

@@ -15,73 +15,17 @@ from squeezefilm.config import load_text
 from squeezefilm.config.lines import locate
 from squeezefilm.config.scan import require_quick_toml
 from squeezefilm.errors import ConfigError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES, FINGER_SPEED, FORCE, FREQUENCY, PLACE
+from squeezefilm.hard_limits import DESCRIPTION_BYTES, FREQUENCY, PLACE
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
-from squeezefilm.measure.recordings.kinds import Told
+from squeezefilm.measure.recordings.described import Column, Described, Given
+from squeezefilm.measure.recordings.described_friction import (
+    DescribedBench,
+    DescribedCurve,
+    DescribedDecays,
+    DescribedTouches,
+)
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 from squeezefilm.regular_file import read_regular_text
-
-MOST_VOLTAGE: si.Volt = 1e4
-"""Of a drive: past any amplifier for a plate."""
-
-Convention = Literal["zero-to-peak", "peak-to-peak", "rms"]
-"""How the amplitude of a vibration is given; inside, all amplitudes are zero-to-peak."""
-CONVENTIONS: Mapping[Convention, float] = {
-    "zero-to-peak": 1.0,
-    "peak-to-peak": 0.5,
-    "rms": 2**0.5,
-}
-"""What makes each a zero-to-peak amplitude, of a sine."""
-
-
-@dataclass(frozen=True)
-class Column:
-    """Which column of the file holds a quantity, and in which unit.
-
-    `column` is its name or its number from 1; `given_as` says how an amplitude is given; `scale`
-    is what one recorded unit stands for, "125 mm/s/V", where an instrument's output was recorded.
-    """
-
-    column: str | int
-    unit: str
-    given_as: Convention | None = None
-    scale: str | None = None
-
-
-@si.checked_numbers
-@dataclass(frozen=True)
-class Given:
-    """A voltage that was the same throughout, and how its amplitude is given."""
-
-    amplitude: Annotated[si.Volt, si.Above(0.0), si.AtMost(MOST_VOLTAGE)]
-    given_as: Convention
-
-
-@si.checked_numbers
-@dataclass(frozen=True, kw_only=True)
-class Described:
-    """What every description may say. `file` is the data's file, where it has another name;
-    `decimal` and `delimiter` are how its numbers are written, `header` the line of the columns'
-    names (0 for none), where that is not to be found out; `points` is how many rows there must
-    be."""
-
-    file: str = ""
-    name: str = ""
-    who: str = ""
-    when: str = ""
-    instrument: str = ""
-    licence: str = ""
-    source: str = ""
-    temperature: Annotated[si.AbsoluteKelvin, si.Above(0.0)] | None = None
-    decimal: Literal[".", ","] | None = None
-    delimiter: Literal["tab", "comma", "semicolon", "blank"] | None = None
-    header: Annotated[int, si.AtLeast(0)] | None = None
-    points: Annotated[int, si.AtLeast(1)] | None = None
-
-    def told(self, file: Path) -> Told:
-        """What is told of the recording itself."""
-        words = {one.name: getattr(self, one.name) for one in dataclasses.fields(Told)}
-        return Told(**words | {"file": file.name, "name": self.name or file.stem})
 
 
 @dataclass(frozen=True)
@@ -245,52 +189,6 @@ class DescribedSweeps(Described):
         )
 
 
-@dataclass(frozen=True)
-class BenchColumns:
-    """Time, both forces, place, and the vibration: its amplitude or the voltage of its drive."""
-
-    time: Column
-    normal_force: Column
-    tangential_force: Column
-    position: Column
-    vibration_amplitude: Column | None = None
-    voltage: Column | None = None
-
-
-@si.checked_numbers
-@dataclass(frozen=True, kw_only=True)
-class DescribedBench(Described):
-    """Strokes of a finger or probe; `frequency` is the vibration's."""
-
-    kind: Literal["friction bench"]
-    columns: BenchColumns
-    frequency: Annotated[si.Hertz, FREQUENCY] | None = None
-    amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)] | None = None
-
-
-@dataclass(frozen=True)
-class CurveColumns:
-    """Vibration amplitude, µ′/µ and its standard deviation."""
-
-    vibration_amplitude: Column
-    relative_friction: Column
-    spread: Column
-
-
-@si.checked_numbers
-@dataclass(frozen=True, kw_only=True)
-class DescribedCurve(Described):
-    """Friction against vibration amplitude; `display` is a preset or a file that describes what it
-    was measured on, with surface and finger."""
-
-    kind: Literal["friction curve"]
-    columns: CurveColumns
-    frequency: Annotated[si.Hertz, FREQUENCY]
-    normal_force: Annotated[si.Newton, FORCE]
-    speed: Annotated[si.MetrePerSecond, FINGER_SPEED]
-    display: str = ""
-
-
 KINDS: Mapping[str, type[Described]] = {
     "impedance": DescribedImpedance,
     "frequency response": DescribedResponse,
@@ -301,6 +199,8 @@ KINDS: Mapping[str, type[Described]] = {
     "raw signals": DescribedSignals,
     "friction bench": DescribedBench,
     "friction curve": DescribedCurve,
+    "friction decays": DescribedDecays,
+    "fingertip impedances": DescribedTouches,
 }
 """The kinds of recordings by the word for them."""
 

@@ -231,21 +231,26 @@ def _bench(bench: kinds.FrictionBench) -> Iterator[str]:
 
 
 def _curve(curve: kinds.FrictionCurve) -> Iterator[str]:
-    friction = curve.relative_friction
-    if np.max(friction) > 1.5:
-        yield (
-            f"µ′/µ goes up to {np.max(friction):.3g}: it is friction over that without vibration, "
-            "so "
-            'that 1 is usual where nothing vibrates (is the unit "%"?)'
-        )
+    friction = curve.friction
     if np.min(friction) < 0:
-        yield f"µ′/µ goes down to {np.min(friction):.3g}, below zero"
-    still = curve.vibration_amplitude == 0
-    if np.any(still) and abs(float(np.mean(friction[still])) - 1) > 0.1:
-        yield f"µ′/µ is {float(np.mean(friction[still])):.2f} where nothing vibrates, and 1 by its "
-        "meaning"
-    if np.all(curve.spread == 0):
+        yield f"the friction goes down to {np.min(friction):.3g}, below zero"
+    if curve.quantity == "relative_friction":
+        if np.max(friction) > 1.5:
+            yield (
+                f"µ′/µ goes up to {np.max(friction):.3g}: it is friction over that without "
+                'vibration, so that 1 is usual where nothing vibrates (is the unit "%"?)'
+            )
+        still = curve.vibration_amplitude == 0
+        if np.any(still) and abs(float(np.mean(friction[still])) - 1) > 0.1:
+            yield (
+                f"µ′/µ is {float(np.mean(friction[still])):.2f} where nothing vibrates, and 1 by "
+                "its meaning"
+            )
+    if curve.deviation is None or np.all(curve.deviation == 0):
         yield "no spread is given: how sure each point is stays unknown"
+    for name in ("normal_force", "speed"):
+        if getattr(curve, name) is None:
+            yield f"the {name.replace('_', ' ')} is not told: the display's own is taken"
     if not curve.display:
         yield (
             'no display is named: write display = "…" (a preset or a TOML file) to compare it with '
@@ -264,4 +269,6 @@ _OF_KIND: dict[type, Callable[[Any], Iterator[str]]] = {
     kinds.RawSignals: _signals,
     kinds.FrictionBench: _bench,
     kinds.FrictionCurve: _curve,
+    kinds.FrictionDecays: lambda _: iter(()),
+    kinds.FingertipImpedances: lambda _: iter(()),
 }

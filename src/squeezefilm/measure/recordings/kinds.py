@@ -8,6 +8,9 @@ places, times and frequencies of the points may not.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
@@ -164,28 +167,93 @@ class FrictionBench:
         )
 
 
+FrictionQuantity = Literal["friction_force", "friction_coefficient", "relative_friction"]
+"""What a friction curve holds: the force (N), µ, or µ′/µ."""
+
+
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionCurve:
-    """µ′/µ with its spread (one standard deviation) against `vibration_amplitude` (m), all
-    (points,), at one `frequency` (Hz), `normal_force` (N) and `speed` (m/s); `display` is the
-    preset or file that describes plate, surface and finger."""
+    """Friction against `vibration_amplitude` (m), both (points,), as it was measured: `friction` is
+    a force in newtons, a coefficient or µ′/µ, as `quantity` says.
+
+    `spread` is one standard deviation in the same unit, None where it is not known. `frequency`
+    (Hz), `normal_force` (N) and `speed` (m/s) are one number or (points,); force and speed are None
+    where they are not told. `display` is the preset or file that describes plate, surface and
+    finger, `finger` says in words which finger it was, and `reading_error` is that of numbers read
+    off a figure, in the unit of the friction.
+    """
 
     vibration_amplitude: si.MetreArray
-    relative_friction: si.DimensionlessArray
-    spread: si.DimensionlessArray
+    friction: si.FloatArray
+    frequency: si.HertzLike
+    normal_force: si.NewtonLike | None = None
+    speed: si.MetrePerSecondLike | None = None
+    spread: si.FloatArray | None = None
+    quantity: FrictionQuantity = "relative_friction"
+    told: Told = field(default_factory=Told)
+    display: str = ""
+    finger: str = ""
+    reading_error: float = 0.0
+
+    def __post_init__(self) -> None:
+        alike = {"vibration_amplitude": self.vibration_amplitude, "friction": self.friction}
+        conditions = ("frequency", "normal_force", "speed", "spread")
+        alike |= {name: getattr(self, name) for name in conditions}
+        si.require_alike(**{name: of for name, of in alike.items() if np.ndim(of)})
+
+    @property
+    def deviation(self) -> si.FloatArray | None:
+        """Standard deviation of each point: its spread and the reading error together, (points,);
+        None where neither is known."""
+        if self.spread is None and not self.reading_error:
+            return None
+        spread = np.zeros(self.friction.size) if self.spread is None else self.spread
+        return np.asarray(np.hypot(spread, self.reading_error))
+
+    @property
+    def unit(self) -> str:
+        """What counts once in statistics: a finger of a source, a source whose fingers are not told
+        apart, or the recording itself."""
+        return f"{self.told.source}: {self.finger or 'all'}" if self.told.source else self.told.name
+
+
+@si.checked_numbers
+@dataclass(frozen=True, eq=False)
+class FrictionDecays:
+    """Fits of µ = `friction_coefficient` exp(−a²/2τ²) over the amplitude a, as they were published:
+    τ is `decay_amplitude` (m), both (strokes,). Force (N) and speed (m/s) are None where they are
+    not told."""
+
+    decay_amplitude: si.MetreArray
+    friction_coefficient: si.DimensionlessArray
     frequency: si.Hertz
-    normal_force: si.Newton
-    speed: si.MetrePerSecond
+    normal_force: si.Newton | None = None
+    speed: si.MetrePerSecond | None = None
     told: Told = field(default_factory=Told)
     display: str = ""
 
     def __post_init__(self) -> None:
         si.require_alike(
-            vibration_amplitude=self.vibration_amplitude,
-            relative_friction=self.relative_friction,
-            spread=self.spread,
+            decay_amplitude=self.decay_amplitude, friction_coefficient=self.friction_coefficient
         )
+
+
+@si.checked_numbers
+@dataclass(frozen=True, eq=False)
+class FingertipImpedances:
+    """`damping` (N s/m) and moving `mass` (kg) of fingertips on a vibration, both (touches,), at a
+    `frequency` (Hz) and a `normal_force` (N), without sliding."""
+
+    damping: Annotated[si.FloatArray, si.Unit("N*s/m")]
+    mass: Annotated[si.FloatArray, si.Unit("kg")]
+    frequency: si.Hertz
+    normal_force: si.Newton
+    told: Told = field(default_factory=Told)
+    display: str = ""
+
+    def __post_init__(self) -> None:
+        si.require_alike(damping=self.damping, mass=self.mass)
 
 
 Recording = (
@@ -198,4 +266,6 @@ Recording = (
     | RawSignals
     | FrictionBench
     | FrictionCurve
+    | FrictionDecays
+    | FingertipImpedances
 )

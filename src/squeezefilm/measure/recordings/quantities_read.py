@@ -12,14 +12,17 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError, QuantityError
-from squeezefilm.hard_limits import FORCE, FREQUENCY, SIDE, TOUCHED_VIBRATION, VIBRATION
-from squeezefilm.measure.recordings.description import (
-    CONVENTIONS,
-    MOST_VOLTAGE,
-    Column,
-    Description,
-    Given,
+from squeezefilm.hard_limits import (
+    FINGER_SPEED,
+    FORCE,
+    FREQUENCY,
+    SIDE,
+    TOUCHED_VIBRATION,
+    VIBRATION,
 )
+from squeezefilm.measure.recordings.described import CONVENTIONS, MOST_VOLTAGE, Column, Given
+from squeezefilm.measure.recordings.description import Description
+from squeezefilm.measure.recordings.kinds import Told
 from squeezefilm.measure.recordings.raw_table import RawTable
 
 _SCALE = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)\s*")
@@ -38,6 +41,7 @@ class Quantity(NamedTuple):
 
 
 _M, _HZ, _S, _N, _V = (si.Unit(symbol) for symbol in ("m", "Hz", "s", "N", "V"))
+_KG, _DAMPING = si.Unit("kg"), si.Unit("N*s/m")
 _OHM, _SIEMENS, _RAD, _ONE = (si.Unit(symbol) for symbol in ("ohm", "S", "rad", "1"))
 _SPEED, _PER_VOLT, _SPEED_PER_VOLT = si.Unit("m/s"), si.Unit("m/V"), si.Unit("m/s/V")
 
@@ -64,8 +68,14 @@ QUANTITIES: dict[str, Quantity] = {
     "normal_force": Quantity(_N, FORCE.most),
     "tangential_force": Quantity(_N, FORCE.most),
     "vibration_amplitude": Quantity(_M, TOUCHED_VIBRATION.most, 0.0),
+    "decay_amplitude": Quantity(_M, TOUCHED_VIBRATION.most, 0.0),
+    "friction_force": Quantity(_N, FORCE.most),
+    "friction_coefficient": Quantity(_ONE, 1e3),
     "relative_friction": Quantity(_ONE, 1e3),
     "spread": Quantity(_ONE, 1e3, 0.0),
+    "speed": Quantity(_SPEED, FINGER_SPEED.most, FINGER_SPEED.least),
+    "damping": Quantity(_DAMPING, 1e4),
+    "mass": Quantity(_KG, 1.0),
 }
 _PER_VOLT_OF = {
     "displacement": Quantity(_PER_VOLT, VIBRATION.most),
@@ -90,6 +100,10 @@ class Reading:
         """Whether the description names a column for a quantity."""
         return getattr(self.columns, name, None) is not None
 
+    def told(self) -> Told:
+        """What the description tells of the recording itself."""
+        return self.description.said.told(self.table.file)
+
     def wanting(self, name: str, why: str) -> ConfigError:
         """The error of a quantity for which no column is named."""
         unit = QUANTITIES[name].unit.symbol
@@ -109,9 +123,9 @@ class Reading:
         _, dimension = self._scale(name)
         return name in _PER_VOLT_OF and dimension == _PER_VOLT_OF[name].unit.dimension
 
-    def take(self, name: str, *, amplitude: bool = False) -> si.FloatArray:
+    def take(self, name: str, *, amplitude: bool = False, like: str = "") -> si.FloatArray:
         """The SI values of a quantity, shape (rows,); with `amplitude` zero-to-peak ones, of which
-        the description must say how they are given.
+        the description must say how they are given. A spread is `like` the quantity it is of.
 
         Raises `ConfigError`: a column that is not there, a unit of another dimension or other than
         the file's own, a convention that is missing or has no place, a value that cannot be.
@@ -125,7 +139,7 @@ class Reading:
                 f"has {count} rows, too few for a recording; give the whole file"
             )
         scale, dimension = self._scale(name)
-        meant = QUANTITIES[name]
+        meant = QUANTITIES[like]._replace(least=0.0) if like else QUANTITIES[name]
         if self.per_volt(name):
             meant = _PER_VOLT_OF[name]
         if dimension != meant.unit.dimension:

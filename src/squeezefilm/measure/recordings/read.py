@@ -11,9 +11,9 @@ from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.measure.recordings.analysers import is_4294a, read_4294a
 from squeezefilm.measure.recordings.assembled import assembled, joined_sweeps
+from squeezefilm.measure.recordings.described import Described
 from squeezefilm.measure.recordings.description import (
     KINDS,
-    Described,
     DescribedImpedance,
     DescribedSweeps,
     Description,

@@ -19,7 +19,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError, QuantityError
 from squeezefilm.hard_limits import RECORDING_BYTES
-from squeezefilm.measure.recordings.description import Described
+from squeezefilm.measure.recordings.described import Described
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.regular_file import read_regular
 

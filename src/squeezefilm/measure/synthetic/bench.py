@@ -350,10 +350,10 @@ class _Bench:
         return kinds.FrictionCurve(
             self._levels,
             exact[0] * noise,
-            self.options.stroke_spread * exact[0],
             self.mode.resonance_frequency,
             finger.normal_force,
             finger.speed,
+            self.options.stroke_spread * exact[0],
             told=self.told("friction curve"),
         )
 

@@ -203,11 +203,16 @@ def _bench(one: kinds.FrictionBench) -> _File:
 def _curve(one: kinds.FrictionCurve) -> _File:
     columns = [
         _Column("vibration_amplitude", "um", 1e6 * one.vibration_amplitude, _AMPLITUDE),
-        _Column("relative_friction", "1", one.relative_friction),
-        _Column("spread", "1", one.spread),
+        _Column("relative_friction", "1", one.friction),
+        _Column("spread", "1", np.asarray(one.spread)),
     ]
-    force, speed = f'normal_force = "{one.normal_force:.9g} N"', f'speed = "{one.speed:.9g} m/s"'
-    return _File("friction curve", columns, [_frequency(one.frequency), force, speed])
+    conditions = (
+        ("frequency", one.frequency, "Hz"),
+        ("normal_force", one.normal_force, "N"),
+        ("speed", one.speed, "m/s"),
+    )
+    lines = [f'{name} = "{value:.9g} {unit}"' for name, value, unit in conditions]
+    return _File("friction curve", columns, lines)
 
 
 _OF_KIND: Mapping[type, Callable[[Any], _File]] = {

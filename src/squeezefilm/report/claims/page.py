@@ -8,7 +8,6 @@ from pathlib import Path
 
 from squeezefilm.analysis.claims.command import ClaimResult, Reproduction
 from squeezefilm.analysis.claims.procedure import Design
-from squeezefilm.errors import InputError
 from squeezefilm.measure.prototype.explanations import PrototypeStudy
 from squeezefilm.report.claims.directions import (
     direction_table,
@@ -25,13 +24,13 @@ from squeezefilm.report.claims.prototype import (
     comparison,
     explanation_table,
     identifiability,
-    markdown_table,
     prototype_markdown,
     sensitivity_table,
     sentences,
     separation_table,
 )
 from squeezefilm.report.kit import style
+from squeezefilm.report.kit.docs import checkout, markdown_table
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.page_style import bullets, page_head
 from squeezefilm.report.plate.sensitivity_figures import tornado
@@ -44,11 +43,10 @@ is named: Biet, Giraud, Lemaire-Semail, *The implementation of tactile feedback 
 effect devices*. Claims on friction by others were read in abstracts, and are compared at one frozen
 set of assumed parameters (`analysis/claims/frozen.py`).
 
-**Friction against amplitude is not validated against measurements**: no measured curve of an
-ultrasonic display could be read anywhere ([a curve of yours](measured-data.md) can be compared with
-every model). What follows compares with what the paper printed, and says where and why the numbers
-differ. "Printed formula" is what the formula gives as it stands in the paper, where that differs
-from the corrected one.
+**Published measurements of friction against amplitude refute the default model**: see [Published
+friction](published-friction.md), every data set beside every model. What follows compares with what
+the paper printed, and says where and why the numbers differ. "Printed formula" is what the formula
+gives as it stands in the paper, where that differs from the corrected one.
 """
 
 _OBSERVED = "Directions of friction that others observed, model by model"
@@ -65,17 +63,6 @@ def write_validation_docs(result: Reproduction, root: Path | None = None) -> Pat
     path = checkout(root) / "docs" / "reference" / "validation.md"
     write_whole(path, validation_markdown(result))
     return path
-
-
-def checkout(root: Path | None = None) -> Path:
-    """The checkout that this package runs from, or `root`. Raises `InputError` if it is none."""
-    top = root or Path(__file__).parents[4]
-    if not (top / "docs").is_dir() or not (top / "pyproject.toml").is_file():
-        raise InputError(
-            "--write-docs needs a checkout of the source, and this is an installed package; "
-            "clone the repository and run it there"
-        )
-    return top
 
 
 def validation_markdown(result: Reproduction) -> str:
@@ -206,7 +193,8 @@ def _page(result: Reproduction, figures: list[str]) -> str:
     return f"""{page_head(title, images="")}<header>
 <h1>{title}</h1>
 <p>Source: Biet, Giraud, Lemaire-Semail, <em>The implementation of tactile feedback using squeeze
-film effect devices</em>. Friction against amplitude is not validated against measurements.</p>
+film effect devices</em>. Published friction against amplitude is compared by
+<code>squeezefilm reproduce --data published</code>; it refutes the default model.</p>
 </header><main>
 <section><h2>What the verdicts say</h2>{_table(verdict_table(result.results))}</section>
 <section><h2>Claims</h2>{_table(((*_HEAD, "why"), claims))}</section>

@@ -23,6 +23,7 @@ from squeezefilm.measure.prototype.explanations import (
     RATIO_ACCURACY,
 )
 from squeezefilm.report.kit import style
+from squeezefilm.report.kit.docs import markdown_table
 from squeezefilm.report.kit.numbers import changed
 
 if TYPE_CHECKING:
@@ -175,16 +176,6 @@ def prototype_markdown(study: PrototypeStudy) -> list[str]:
     lines += ["", *markdown_table(explanation_table(study)), ""]
     lines += ["Distance of each pair, in units of what could be measured:", ""]
     return [*lines, *markdown_table(separation_table(study))]
-
-
-def markdown_table(table: Table) -> list[str]:
-    """A table as lines of Markdown."""
-    head, rows = table
-    return [
-        "| " + " | ".join(head) + " |",
-        "|" + "---|" * len(head),
-        *("| " + " | ".join(row) + " |" for row in rows),
-    ]
 
 
 @style.drawn

@@ -69,7 +69,7 @@ def _models(
     said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
     figure = style.new_figure(
         f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(p.surface.name, 20)} {said}: the "
-        "model decides, and no measured curve has settled it",
+        "model decides, and measured curves refute the default",
         f"as in the legend; {shown(p.normal_force, N)}",
         5.4,
     )

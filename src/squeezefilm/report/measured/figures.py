@@ -139,16 +139,43 @@ def _bench(figure: Figure, bench: kinds.FrictionBench) -> None:
 def _curve(figure: Figure, curve: kinds.FrictionCurve) -> None:
     axes = figure.subplots()
     measured_points(axes, curve)
-    top = max(1.04, 1.1 * float(np.max(curve.relative_friction + curve.spread)))
-    style.friction_axes(axes, top=top)
+
+
+FRICTION_WORDS: Mapping[str, str] = {
+    "friction_force": "friction force (N)",
+    "friction_coefficient": "coefficient of friction",
+    "relative_friction": "µ′/µ",
+}
+"""What a friction curve holds, as an axis says it."""
 
 
 def measured_points(axes: Axes, curve: kinds.FrictionCurve) -> None:
-    """The points of a measured friction curve with their spread (one standard deviation)."""
+    """The points of a measured friction curve, with one standard deviation where that is known."""
+    deviation = curve.deviation
+    label = "measured" if deviation is None else "measured, ± one deviation"
     axes.errorbar(
-        1e6 * curve.vibration_amplitude, curve.relative_friction, yerr=curve.spread, fmt="o",
-        color=style.INK, ecolor=style.MUTED, ms=5, zorder=4, label="measured, ± one deviation",
+        1e6 * curve.vibration_amplitude, curve.friction, yerr=deviation, fmt="o",
+        color=style.INK, ecolor=style.MUTED, ms=5, zorder=4, label=label,
     )  # fmt: skip
+    top = 1.1 * float(np.max(curve.friction + (0.0 if deviation is None else deviation)))
+    style.friction_axes(axes, top=top)
+    axes.set_ylabel(FRICTION_WORDS[curve.quantity])
+
+
+def _scatter(figure: Figure, x: si.FloatArray, y: si.FloatArray, words: tuple[str, str]) -> None:
+    axes = figure.subplots()
+    axes.plot(x, y, "o", color=style.INK, ms=4)
+    axes.set(xlabel=words[0], ylabel=words[1], xlim=(0, None), ylim=(0, None))
+
+
+def _decays(figure: Figure, decays: kinds.FrictionDecays) -> None:
+    words = ("τ (µm): µ = µ0 exp(−a²/2τ²)", "coefficient of friction at rest µ0")
+    _scatter(figure, 1e6 * decays.decay_amplitude, decays.friction_coefficient, words)
+
+
+def _touches(figure: Figure, touches: kinds.FingertipImpedances) -> None:
+    words = ("damping (N s/m)", "moving mass (g)")
+    _scatter(figure, touches.damping, 1e3 * touches.mass, words)
 
 
 def _signal(axes: Axes, time: si.SecondArray, values: si.FloatArray) -> None:
@@ -172,4 +199,6 @@ _OF_KIND: Mapping[type, tuple[str, Callable[[Figure, Any], None]]] = {
     kinds.RawSignals: ("raw signals", _signals),
     kinds.FrictionBench: ("a friction bench", _bench),
     kinds.FrictionCurve: ("a friction curve", _curve),
+    kinds.FrictionDecays: ("published fits of friction", _decays),
+    kinds.FingertipImpedances: ("impedances of fingertips", _touches),
 }

@@ -32,7 +32,11 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, module: str, **functions: Any) -> 
 
 
 def test_every_kind_of_recording_has_its_fit() -> None:
-    assert set(typing.get_args(kinds.Recording)) == set(FITS)
+    compared = {kinds.FrictionDecays, kinds.FingertipImpedances}
+    assert set(typing.get_args(kinds.Recording)) == set(FITS) | compared
+    touches = kinds.FingertipImpedances(np.ones(3), np.ones(3) * 1e-4, 30e3, 0.5)
+    with pytest.raises(InputError, match="reproduce --data"):
+        fit_recording(touches)
     assert sf.fit_recording is fit_recording
 
 
@@ -114,7 +118,7 @@ def test_a_line_scan_is_given_the_shape_of_a_plate_and_a_curve_its_display(
     assert fit_recording(scan) is None
     assert fit_recording(scan, "biet2008-stator") is None
     one = np.ones(1)
-    curve = kinds.FrictionCurve(one, one, one, 33.6e3, 0.5, 0.06)
+    curve = kinds.FrictionCurve(one, one, 33.6e3, 0.5, 0.06)
     found: Any = fit_recording(curve, "biet2008-stator")
     assert found.name == "biet2008-stator"
     assert fit_recording(replace(curve, display="biet2008-plate"), "biet2008-stator") is None

@@ -63,8 +63,8 @@ def test_friction_by_amplitude_speed_and_force_with_what_may_be_used_of_it() -> 
     at = fit.friction_at(1e-6, 0.07, 0.5)
     assert at.interval[0] < 0.8 * RELATIVE[2] < at.interval[1]
     assert fit.curve is not None
-    assert fit.curve.relative_friction[0] == 1.0
-    assert fit.curve.spread == pytest.approx(fit.curve.relative_friction * fit.between_strokes)
+    assert fit.curve.friction[0] == 1.0
+    assert fit.curve.spread == pytest.approx(fit.curve.friction * fit.between_strokes)
     first, second = fit.observations[:2]
     assert first.answer == "friction_coefficient"
     assert second.answer == "relative_friction"

@@ -10,20 +10,22 @@ import pytest
 
 from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import predict
+from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison, compare_friction_curve
+from squeezefilm.measure.fits.friction.friction_scores import BASELINES
 from squeezefilm.measure.recordings.kinds import FrictionCurve, Told
 
 AMPLITUDE = np.linspace(0.0, 2e-6, 9)
 BARE = FrictionCurve(
     AMPLITUDE,
     np.ones(9),
-    np.full(9, 0.02),
     30e3,
     0.5,
     0.02,
-    Told(name="synthetic"),
-    "biet2008-plate",
+    np.full(9, 0.02),
+    told=Told(name="synthetic"),
+    display="biet2008-plate",
 )
 
 
@@ -35,17 +37,17 @@ def compared() -> CurveComparison:
     ).law
     noise = 0.02 * np.random.default_rng(3).standard_normal(9)
     made = law.by("partial-levitation").curve(AMPLITUDE) + noise
-    return compare_friction_curve(replace(BARE, relative_friction=made))
+    return compare_friction_curve(replace(BARE, friction=made))
 
 
 @pytest.mark.slow
 def test_every_model_is_compared_and_the_maker_is_nearest(compared: CurveComparison) -> None:
-    assert {one.model for one in compared.models} == set(MODEL_KINDS)
+    assert {score.model for score in compared.models} == {*MODEL_KINDS, *BASELINES}
     assert compared.nearest.model == "partial-levitation"
-    for one in compared.models:
-        off = compared.curve.relative_friction - one.relative_friction
-        assert one.difference == pytest.approx(np.sqrt(np.mean(off**2)))
-        assert one.in_spreads == pytest.approx(one.difference / 0.02)
+    for score in compared.models:
+        off = np.sqrt(np.mean((compared.curve.friction - score.friction) ** 2))
+        assert score.difference == pytest.approx(off / compared.at_rest)
+        assert score.in_spreads == pytest.approx(off / 0.02)
     assert compared.nearest.in_spreads == pytest.approx(1.0, abs=0.5)
 
 
@@ -57,9 +59,9 @@ def test_the_default_is_said_to_miss_it_and_points_are_counted_in_our_interval(
     assert "does not describe the curve" in compared.adequacy.sentence
     assert compared.adequacy.where in compared.adequacy.sentence
     low, high = compared.band.low, compared.band.high
-    friction = compared.curve.relative_friction
+    friction = compared.curve.friction / compared.at_rest
     expected = [bool(a <= x <= b) for a, x, b in zip(low, friction, high, strict=True)]
-    # Where nothing vibrates friction is 1 by its meaning, and no point can be judged.
+    # Where nothing vibrates no model can be wrong, and no point is judged.
     assert list(compared.inside) == [None, *expected[1:]]
     assert compared.points_inside == (sum(expected[1:]), 8)
     # The law that made it is one of those drawn.
@@ -69,8 +71,8 @@ def test_the_default_is_said_to_miss_it_and_points_are_counted_in_our_interval(
 
 @pytest.mark.slow
 def test_a_curve_of_the_default_is_described(compared: CurveComparison) -> None:
-    own = compared.default.relative_friction
-    found = compare_friction_curve(replace(compared.curve, relative_friction=own))
+    own = compared.default.friction
+    found = compare_friction_curve(replace(compared.curve, friction=own))
     assert found.nearest.model == found.default.model
     assert found.adequacy.adequate
     assert "within its spread" in found.adequacy.sentence
@@ -78,6 +80,33 @@ def test_a_curve_of_the_default_is_described(compared: CurveComparison) -> None:
     first = found.observations[2]
     assert (first.answer, first.standard_error) == ("relative_friction", 0.02)
     assert first.conditions["vibration_amplitude"] == AMPLITUDE[3]
+
+
+@pytest.mark.slow
+def test_newtons_without_spread_or_rest_and_conditions_in_columns_are_compared(
+    compared: CurveComparison,
+) -> None:
+    """As it is typed off a figure: no spread, no point at rest, a force and speed a point."""
+    bare = replace(compared.curve, friction=0.4 * compared.curve.friction, spread=None)
+    part = slice(2, None)
+    newtons = replace(
+        bare,
+        vibration_amplitude=AMPLITUDE[part],
+        friction=bare.friction[part],
+        quantity="friction_force",
+        normal_force=np.full(7, 0.5),
+        speed=np.full(7, 0.02),
+    )
+    found = compare_friction_curve(newtons)
+    assert found.nearest.model == "partial-levitation"
+    assert found.nearest.in_spreads is None
+    assert not found.adequacy.adequate
+    assert "no spread" in found.adequacy.sentence
+    assert found.observations == ()
+    assert found.band.low == pytest.approx(compared.band.low[part], abs=1e-9)
+    untold = compare_friction_curve(replace(newtons, speed=None))
+    assert untold.assumed == ("speed",)
+    assert untold.speed == load_display("biet2008-plate").finger.speed
 
 
 def test_a_curve_must_name_its_display() -> None:

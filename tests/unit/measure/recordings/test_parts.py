@@ -13,7 +13,8 @@ from squeezefilm.errors import ConfigError
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.analysers import is_4294a, read_4294a
 from squeezefilm.measure.recordings.assembled import assembled
-from squeezefilm.measure.recordings.description import CONVENTIONS, KINDS, load_description
+from squeezefilm.measure.recordings.described import CONVENTIONS
+from squeezefilm.measure.recordings.description import KINDS, load_description
 from squeezefilm.measure.recordings.doubts import doubts_of
 from squeezefilm.measure.recordings.motions import motion_of, moved_quantity
 from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
@@ -104,7 +105,7 @@ def test_every_kind_may_be_doubted() -> None:
     f = np.linspace(29e3, 31e3, 5)
     few = doubts_of(kinds.ImpedanceSweep(f, (1e-6 + 1e-3j) * np.ones(5)))
     assert few == ("5 points are few for a resonance; sweep more finely",)
-    assert len(KINDS) == 9
+    assert len(KINDS) == 11
     f = np.linspace(29e3, 31e3, 51)
     h = 1e-7 / (1 - (f / 30e3) ** 2 + 1j * f / 30e3 / 60)
     assert doubts_of(kinds.FrequencyResponse(f, h)) == ()

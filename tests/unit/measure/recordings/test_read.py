@@ -292,7 +292,7 @@ def test_a_friction_curve_names_what_it_was_measured_on(tmp_path: Path) -> None:
     found = check_recording(written(tmp_path, data, CURVE))
     curve = found.recording
     assert isinstance(curve, kinds.FrictionCurve)
-    assert np.allclose(curve.relative_friction, 1 - 0.3 * a)
+    assert np.allclose(curve.friction, 1 - 0.3 * a)
     assert (curve.normal_force, curve.speed) == (0.5, 0.02)
     assert curve.display == str(tmp_path / "own.toml")
     assert found.doubts == ()

@@ -72,7 +72,7 @@ def test_the_fits_find_what_the_bench_is_made_of(stator: SyntheticBench) -> None
     assert isinstance(strokes, kinds.FrictionBench)
     assert isinstance(curve, kinds.FrictionCurve)
     found = fit_friction_bench(strokes).relative_friction
-    assert [one.value for one in found] == pytest.approx(curve.relative_friction[1:], abs=0.25)
+    assert [one.value for one in found] == pytest.approx(curve.friction[1:], abs=0.25)
 
 
 @pytest.mark.slow

@@ -53,7 +53,7 @@ def test_every_kind_is_written_with_its_units_and_conventions(tmp_path) -> None:
         "f": kinds.VoltageSweeps((response, response), ("up", "up")),
         "g": kinds.RawSignals(row, row, row),
         "h": kinds.FrictionBench(row, row, row, row, row),
-        "i": kinds.FrictionCurve(row, row, row, 30e3, 0.5, 0.1),
+        "i": kinds.FrictionCurve(row, row, 30e3, 0.5, 0.1, row),
     }
     display = load_display("biet2008-stator")
     truth = SyntheticTruth(display, 1, SyntheticOptions())

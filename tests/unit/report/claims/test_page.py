@@ -17,12 +17,12 @@ from squeezefilm.analysis.claims.record import Claim, Erratum
 from squeezefilm.errors import InputError
 from squeezefilm.report.claims import figures, page
 from squeezefilm.report.claims.page import (
-    checkout,
     design_sentences,
     validation_markdown,
     write_reproduction,
     write_validation_docs,
 )
+from squeezefilm.report.kit.docs import checkout
 from squeezefilm.report.kit.page_style import bullets
 
 DESIGN = Design(
@@ -89,7 +89,7 @@ def test_the_document_has_a_row_for_each_claim() -> None:
 def test_the_document_says_why_and_in_which_order() -> None:
     text = validation_markdown(FOUND)
     assert text.startswith("# Validation\n\nWritten by `squeezefilm reproduce --write-docs`")
-    assert "**Friction against amplitude is not validated against measurements**" in text
+    assert "refute the default model**" in text
     said = [line for line in text.splitlines() if line.startswith("* **")]
     assert said == [
         "* **statement 1 <b>** (misprint): why 1.",
@@ -207,7 +207,7 @@ def test_the_page_has_claims_figures_procedure_and_errata(
     assert "Directions" not in text
     places = [text.index(one) for one in ("<h2>Claims", "5 &lt; 6", "<h2>The paper", "<h2>Errata")]
     assert places == sorted(places)
-    assert "not validated against measurements" in text
+    assert "it refutes the default model" in text
     # Nothing may be loaded from elsewhere.
     assert "default-src 'none'; style-src 'unsafe-inline'\"" in text
     data = json.loads((tmp_path / "new" / "claims.json").read_text(encoding="utf-8"))

@@ -15,7 +15,10 @@ from tests.unit.report.printed import printed
 from squeezefilm.analysis.uncertainty import FrictionBand
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.friction.friction_curve import CurveComparison, ModelDifference
+from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
+from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
+from squeezefilm.measure.fits.friction.friction_scores import ModelScore, TotalScore
+from squeezefilm.measure.fits.friction.populations import PopulationComparison
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck, Refused
 from squeezefilm.report.kit import style
@@ -38,7 +41,14 @@ H = (1e-7 / (1 - (F / 30e3) ** 2 + 1j * F / 30e3 / 60)).astype(complex)
 TOLD = kinds.Told(name="synthetic", licence="none needed")
 RESPONSE = kinds.FrequencyResponse(F, H, 10.0, told=TOLD)
 CURVE = kinds.FrictionCurve(
-    np.linspace(0, 2e-6, 3), np.array([1.0, 0.7, 0.5]), np.full(3, 0.05), 30e3, 0.5, 0.02, TOLD, "a"
+    np.linspace(0, 2e-6, 3),
+    np.array([1.0, 0.7, 0.5]),
+    30e3,
+    0.5,
+    0.02,
+    np.full(3, 0.05),
+    told=TOLD,
+    display="a",
 )
 RECORDINGS: dict[str, kinds.Recording] = {
     "impedance": kinds.ImpedanceSweep(F, 1e-3 * (1 + 1j) * ONES, TOLD),
@@ -50,6 +60,8 @@ RECORDINGS: dict[str, kinds.Recording] = {
     "raw signals": kinds.RawSignals(T, np.sin(1e5 * T), np.sin(1e5 * T) * 1e-6, TOLD),
     "friction bench": kinds.FrictionBench(T, ONES[0] + T, T, T, T * 1e-4, TOLD),
     "friction curve": CURVE,
+    "friction decays": kinds.FrictionDecays(ONES * 1e-6, ONES, 30e3, told=TOLD),
+    "fingertip impedances": kinds.FingertipImpedances(ONES, ONES * 1e-4, 30e3, 0.5, TOLD),
 }
 
 
@@ -202,28 +214,47 @@ def compared() -> CurveComparison:
         curve=CURVE,
         display="biet2008-plate",
         models=(
-            ModelDifference("partial-levitation", np.array([1, 0.71, 0.49]), 0.008, 0.2),
-            ModelDifference("partial-levitation-shear", np.array([1, 0.4, 0.2]), 0.24, 4.9),
-            ModelDifference("film-open", np.full(3, np.nan), None, None),
+            ModelScore("partial-levitation", 1, np.array([1, 0.71, 0.49]), 0.008, 0.2),
+            ModelScore("partial-levitation-shear", 1, np.array([1, 0.4, 0.2]), 0.24, 4.9),
+            ModelScore("film-open", 1, np.full(3, np.nan), None, None),
         ),
+        at_rest=1.0,
+        normal_force=0.5,
+        speed=0.02,
+        assumed=("speed",),
         band=band,
         inside=(None, True, True),
         adequacy=replace(GOOD, adequate=False, sentence="The default is off."),
     )
 
 
+def folder() -> FolderComparison:
+    """Two curves and one number of many people, made up for showing."""
+    people = PopulationComparison(
+        TOLD, "a", "30 kHz", "decay amplitude τ", "m", np.array([1e-6, 2e-6, 3e-6]),
+        (("partial-levitation-shear", 1.5e-6), ("film-open", None)),
+    )  # fmt: skip
+    total = TotalScore("partial-levitation", 1, 2, 0.008, 1.5, None)
+    return FolderComparison((compared(), compared()), (total,), (people,))
+
+
 def test_curves_are_shown_beside_all_models(tmp_path: Path) -> None:
-    lines = printed(lambda: show_comparisons([compared()]))
-    assert "partial-levitation 0.008 0.2 3 of 3" in lines
-    assert "partial-levitation-shear (the default) 0.240 4.9 3 of 3" in lines
-    assert "film-open – – 0 of 3" in lines
-    assert any(line.startswith("2 of 2 points that vibrate lie in our 90 %") for line in lines)
-    assert any("Nothing was fitted" in line for line in lines)
-    text = write_comparisons([compared()], tmp_path).read_text(encoding="utf-8")
+    lines = printed(lambda: show_comparisons(folder()))
+    assert "partial-levitation 0.008 0.2 3 of 3 1" in lines
+    assert "partial-levitation-shear (the default) 0.240 4.9 3 of 3 1" in lines
+    assert "film-open – – 0 of 3 1" in lines
+    assert any(line.startswith("2 of 2 points that vibrate lie in the 90 %") for line in lines)
+    assert any("20 mm/s (assumed)" in line for line in lines)
+    assert "partial-levitation 0.008 1.50 1" in lines
+    assert "partial-levitation-shear (the default) 1.5 µm 33 %" in lines
+    assert any("1 of 1 fingers or papers lie in the interval" in line for line in lines)
+    assert any("friction at rest is fitted to each curve" in line for line in lines)
+    text = write_comparisons(folder(), tmp_path).read_text(encoding="utf-8")
     assert "The default is off." in text
     assert "licence: none needed" in text
     names = {one.name for one in tmp_path.iterdir()}
-    assert names == {"curves.json", "curve-1.png", "measured-curves.html"}
+    pictures = {f"curve-{number}.png" for number in (1, 2, 3)}
+    assert names == {"curves.json", "measured-curves.html"} | pictures
     summary = json.loads((tmp_path / "curves.json").read_text(encoding="utf-8"))
     assert summary["curves"][0]["interval"]["points_inside"] == 2
     assert summary["curves"][0]["models"][2]["rms_difference"] is None
@@ -231,4 +262,4 @@ def test_curves_are_shown_beside_all_models(tmp_path: Path) -> None:
     assert found["comparison"]["display"] == "biet2008-plate"
     assert fit_figure(checked("friction curve"), compared()) is not None
     lines = printed(lambda: show_fit(checked("friction curve"), compared()))
-    assert "partial-levitation 0.008 0.2 3 of 3" in lines
+    assert "partial-levitation 0.008 0.2 3 of 3 1" in lines

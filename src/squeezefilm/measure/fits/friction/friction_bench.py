@@ -72,7 +72,7 @@ class FrictionBenchFit:
         values = np.array([1.0, *(one.value for one in self.relative_friction)])
         return FrictionCurve(
             vibration_amplitude=self.amplitudes,
-            relative_friction=values,
+            friction=values,
             spread=values * self.between_strokes,
             frequency=self.recording.frequency,
             normal_force=self.normal_force,

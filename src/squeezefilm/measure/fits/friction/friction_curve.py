@@ -1,24 +1,30 @@
-"""A measured friction curve beside every model of friction, and beside the interval."""
+"""Measured friction beside every model of friction, and beside the interval."""
 
 from __future__ import annotations
 
 import contextlib
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.intervals import LEVEL
 from squeezefilm.analysis.uncertainty import FrictionBand, friction_band
 from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
+from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.measure.fits.estimate import Adequacy, Observation
+from squeezefilm.measure.fits.friction.friction_scores import (
+    BASELINES,
+    ModelScore,
+    baseline_scores,
+    rest_friction,
+    scored,
+)
 from squeezefilm.measure.recordings.kinds import FrictionCurve
-from squeezefilm.measure.recordings.read import check_folder
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
 
@@ -26,46 +32,36 @@ _SAMPLES = 64
 
 
 @dataclass(frozen=True, eq=False)
-class ModelDifference:
-    """One model beside a curve: its µ′/µ at the curve's amplitudes, shape (points,), NaN where it
-    refuses one; the root mean square of measured less computed over those it answers, and the same
-    in units of the measured spread (None where it answers none, or no spread is known)."""
-
-    model: FrictionModel
-    relative_friction: si.DimensionlessArray
-    difference: si.Dimensionless | None
-    in_spreads: si.Dimensionless | None
-
-    @property
-    def answered(self) -> int:
-        """At how many amplitudes the model has a friction."""
-        return int(np.count_nonzero(np.isfinite(self.relative_friction)))
-
-
-@dataclass(frozen=True, eq=False)
 class CurveComparison:
-    """A measured curve beside all models, nothing of which was fitted to it.
+    """A measured curve beside all models and baselines, of which its friction at rest alone was
+    fitted to it (of a baseline the decay too).
 
-    `models` have the nearest first; `band` is the interval in which our default expects µ′/µ with
-    everything but the amplitude uncertain, `inside` says of each measured point whether it lies
-    there (where the band is not known it does not; None where nothing vibrates, and µ′/µ is 1 by
-    its meaning). `adequacy` is the default model's.
+    `models` have the nearest first; `at_rest` is the friction at rest that knows no model, in the
+    curve's unit, by which `band`, the interval in which our default expects µ′/µ with everything
+    but the amplitude uncertain, is compared: `inside` says of each measured point whether it lies
+    there (where the band is not known it does not; None where nothing vibrates). `adequacy` is the
+    default model's. `normal_force` and `speed` are those that were computed with, `assumed` names
+    the ones that the recording does not tell.
     """
 
     curve: FrictionCurve
     display: str
-    models: tuple[ModelDifference, ...]
+    models: tuple[ModelScore, ...]
+    at_rest: float
+    normal_force: si.NewtonLike
+    speed: si.MetrePerSecondLike
+    assumed: tuple[str, ...]
     band: FrictionBand
     inside: tuple[bool | None, ...]
     adequacy: Adequacy
 
     @property
-    def nearest(self) -> ModelDifference:
+    def nearest(self) -> ModelScore:
         """The model with the least difference among those that answer at every amplitude."""
-        return self.models[0]
+        return next(score for score in self.models if score.model not in BASELINES)
 
     @property
-    def default(self) -> ModelDifference:
+    def default(self) -> ModelScore:
         """The default model's."""
         return next(one for one in self.models if one.model == DEFAULT_MODEL)
 
@@ -76,25 +72,34 @@ class CurveComparison:
         return sum(asked), len(asked)
 
     @property
+    def covered(self) -> bool:
+        """Whether as many points lie in the interval as its level says."""
+        within, asked = self.points_inside
+        return within >= self.band.level * asked
+
+    @property
     def observations(self) -> tuple[Observation, ...]:
-        """Each measured point, for a calibration, but one without vibration (µ′/µ is 1 by its
-        meaning); none where its spread is not known."""
+        """Each measured point, for a calibration, but one without vibration; none of a curve that
+        is not in µ′/µ, or whose spread is not known."""
         c = self.curve
+        if c.quantity != "relative_friction" or c.deviation is None:
+            return ()
+        force, speed = (
+            np.broadcast_to(of, c.friction.shape) for of in (self.normal_force, self.speed)
+        )
         return tuple(
             Observation(
                 "relative_friction",
-                float(friction),
-                float(spread),
+                float(c.friction[k]),
+                float(c.deviation[k]),
                 {
-                    "vibration_amplitude": float(amplitude),
-                    "normal_force": c.normal_force,
-                    "finger_speed": c.speed,
+                    "vibration_amplitude": float(c.vibration_amplitude[k]),
+                    "normal_force": float(force[k]),
+                    "finger_speed": float(speed[k]),
                 },
             )
-            for amplitude, friction, spread in zip(
-                c.vibration_amplitude, c.relative_friction, c.spread, strict=True
-            )
-            if spread > 0 and amplitude > 0
+            for k in range(c.friction.size)
+            if c.deviation[k] > 0 and c.vibration_amplitude[k] > 0
         )
 
     def summary(self) -> dict[str, Any]:
@@ -103,12 +108,16 @@ class CurveComparison:
         return {
             "recording": to_json(c.told),
             "display": self.display,
-            "frequency_Hz": c.frequency,
-            "normal_force_N": c.normal_force,
-            "speed_m_per_s": c.speed,
+            "finger": c.finger,
+            "frequency_Hz": to_json(c.frequency),
+            "normal_force_N": to_json(self.normal_force),
+            "speed_m_per_s": to_json(self.speed),
+            "assumed": list(self.assumed),
             "vibration_amplitude_m": to_json(c.vibration_amplitude),
-            "measured": to_json(c.relative_friction),
-            "spread": to_json(c.spread),
+            "quantity": c.quantity,
+            "measured": to_json(c.friction),
+            "deviation": to_json(c.deviation),
+            "friction_at_rest": self.at_rest,
             "interval": {
                 "level": self.band.level,
                 "low": to_json(self.band.low),
@@ -120,10 +129,11 @@ class CurveComparison:
             "models": [
                 {
                     "model": one.model,
+                    "fitted": one.fitted,
                     "rms_difference": one.difference,
                     "rms_difference_in_spreads": one.in_spreads,
                     "answered": one.answered,
-                    "relative_friction": to_json(one.relative_friction),
+                    "friction": to_json(one.friction),
                 }
                 for one in self.models
             ],
@@ -131,79 +141,79 @@ class CurveComparison:
         }
 
 
+def display_of(recording: str, display: str) -> Display:
+    """The display that a recording names. Raises `InputError` where it names none."""
+    if not display:
+        raise InputError(
+            f"the recording '{recording}' names no display; write display = \"…\" into "
+            "its description: a preset, or a TOML file that describes plate, surface and finger",
+            quantity="display",
+        )
+    return load_display(display)
+
+
 def compare_friction_curve(
     curve: FrictionCurve, progress: SayProgress | None = None, display: Display | None = None
 ) -> CurveComparison:
     """A measured curve beside every model of friction at its frequency, force and speed, on the
-    `display` that was given, or the one that it names; nothing is fitted.
+    `display` that was given, or the one that it names; the friction at rest alone is fitted.
 
-    The interval is that of `friction_band`: 90 % of draws over parameters, laws and mechanisms.
-    Raises `InputError` for a curve without a display, and what `predict` raises for its display at
-    its largest amplitude.
+    A force or speed that the recording does not tell is the display's. The interval is that of
+    `friction_band`: 90 % of draws over parameters, laws and mechanisms. Raises `InputError` for a
+    curve without a display, and what `predict` raises for its display at its largest amplitude.
     """
-    if display is None and not curve.display:
-        raise InputError(
-            f"the friction curve '{curve.told.name}' names no display; write display = \"…\" into "
-            "its description: a preset, or a TOML file that describes plate, surface and finger",
-            quantity="display",
-        )
     tell = progress or (lambda _: None)
-    display = load_display(curve.display) if display is None else display
-    tell(f"{curve.told.name}: the working mode of {display.name}")
-    amplitude = curve.vibration_amplitude
-    prediction = predict(
-        display,
-        vibration_amplitude=float(amplitude[-1]),
-        frequency=curve.frequency,
-        normal_force=curve.normal_force,
-        speed=curve.speed,
-    )
-    found = []
-    for model in MODEL_KINDS:
-        tell(f"{curve.told.name}: {model}")
-        found.append(_difference(curve, model, _answers(prediction.law.by(model), amplitude)))
-    tell(f"{curve.told.name}: the interval")
-    band = friction_band(display, prediction, amplitude, samples=_SAMPLES)
-    measured = curve.relative_friction
+    display = display_of(curve.told.name, curve.display) if display is None else display
+    at_rest = rest_friction(curve)
+    finger = display.finger
+    assumed = tuple(name for name in ("normal_force", "speed") if getattr(curve, name) is None)
+    force = finger.normal_force if curve.normal_force is None else curve.normal_force
+    speed = finger.speed if curve.speed is None else curve.speed
+    amplitude, count = curve.vibration_amplitude, curve.friction.size
+    friction = {model: np.full(count, np.nan) for model in MODEL_KINDS}
+    low, high = np.full(count, np.nan), np.full(count, np.nan)
+    at = np.stack([np.broadcast_to(of, count) for of in (curve.frequency, force, speed)])
+    for condition in np.unique(at, axis=1).T:
+        here = np.flatnonzero((at == condition[:, None]).all(axis=0))
+        tell(f"{curve.told.name}: the working mode of {display.name}")
+        frequency, normal_force, own_speed = map(float, condition)
+        prediction = predict(
+            display,
+            vibration_amplitude=float(amplitude[here].max()),
+            frequency=frequency,
+            normal_force=normal_force,
+            speed=own_speed,
+        )
+        for model in MODEL_KINDS:
+            tell(f"{curve.told.name}: {model}")
+            friction[model][here] = relative_friction(prediction.law.by(model), amplitude[here])
+        tell(f"{curve.told.name}: the interval")
+        band = friction_band(display, prediction, amplitude[here], samples=_SAMPLES)
+        low[here], high[here] = band.low, band.high
+    scores = [scored(model, friction[model], curve) for model in MODEL_KINDS]
+    scores += baseline_scores(curve)
+    scores.sort(key=lambda score: (score.answered < count, score.difference or 0.0))
+    relative = curve.friction / at_rest
     inside = tuple(
-        None if a == 0 else bool(low <= x <= high)
-        for a, x, low, high in zip(amplitude, measured, band.low, band.high, strict=True)
+        None if a == 0 else bool(low[k] <= relative[k] <= high[k]) for k, a in enumerate(amplitude)
     )
-    found.sort(key=lambda one: (one.answered < amplitude.size, one.difference or 0.0))
-    default = next(one for one in found if one.model == DEFAULT_MODEL)
+    default = next(score for score in scores if score.model == DEFAULT_MODEL)
     return CurveComparison(
         curve=curve,
         display=display.name,
-        models=tuple(found),
-        band=band,
+        models=tuple(scores),
+        at_rest=at_rest,
+        normal_force=force,
+        speed=speed,
+        assumed=assumed,
+        band=FrictionBand(amplitude, low, high, LEVEL, _SAMPLES),
         inside=inside,
-        adequacy=_adequacy(curve, default),
+        adequacy=_adequacy(curve, default, at_rest),
     )
 
 
-def compare_folder(
-    folder: str | Path, progress: SayProgress | None = None
-) -> tuple[CurveComparison, ...]:
-    """`compare_friction_curve` for every friction curve that a folder's TOML files describe.
-
-    Recordings of other kinds are passed over. Raises `InputError` for a folder that has none, and
-    for a file that cannot be read, before anything is computed.
-    """
-    found = check_folder(folder)
-    if found.refused:
-        raise InputError(found.refused[0].why)
-    curves = [one.recording for one in found.checks if isinstance(one.recording, FrictionCurve)]
-    if not curves:
-        raise InputError(
-            f"{folder} holds no friction curve, only: "
-            + ", ".join(sorted({one.kind for one in found.checks}))
-            + '; write kind = "friction curve" into the description of one'
-        )
-    return tuple(compare_friction_curve(curve, progress) for curve in curves)
-
-
-def _answers(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
-    """µ′/µ at each amplitude, NaN where the law refuses it."""
+def relative_friction(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
+    """µ′/µ of a law at each amplitude (m), NaN where it refuses one."""
     with contextlib.suppress(SqueezefilmError):
         return law.curve(amplitude)
     friction = np.full(amplitude.size, np.nan)
@@ -213,48 +223,33 @@ def _answers(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArra
     return friction
 
 
-def _difference(
-    curve: FrictionCurve, model: FrictionModel, friction: si.DimensionlessArray
-) -> ModelDifference:
-    off = curve.relative_friction - friction
-    known = np.isfinite(off)
-    if not known.any():
-        return ModelDifference(model, friction, None, None)
-    rms = float(np.sqrt(np.mean(off[known] ** 2)))
-    sure = known & (curve.spread > 0)
-    spreads = None
-    if sure.any():
-        spreads = float(np.sqrt(np.mean((off[sure] / curve.spread[sure]) ** 2)))
-    return ModelDifference(model, friction, rms, spreads)
-
-
-def _adequacy(curve: FrictionCurve, default: ModelDifference) -> Adequacy:
+def _adequacy(curve: FrictionCurve, default: ModelScore, at_rest: float) -> Adequacy:
     """Whether the default model describes the curve within what its spread alone leaves.
 
-    With n points of independent errors the mean square in spreads is chi-square over n; what
-    exceeds its 99 % quantile is more than chance.
+    With n points of independent errors and one number fitted the sum of squares in spreads is
+    chi-square with n − 1 degrees; what exceeds its 99 % quantile is more than chance.
     """
     from scipy.stats import chi2
 
-    off = np.abs(curve.relative_friction - default.relative_friction)
+    off = np.abs(curve.friction - default.friction) / at_rest
     if not np.isfinite(off).any():
         words = f"{default.model} has no friction at any of these amplitudes"
         return Adequacy(False, float("nan"), float("nan"), "everywhere", words)
     worst = int(np.nanargmax(off))
     where = f"at {1e6 * curve.vibration_amplitude[worst]:.3g} µm"
-    size = np.maximum(np.abs(curve.relative_friction), 1e-12)
-    residual, noise = float(np.nanmean(off / size)), float(np.mean(curve.spread / size))
-    count = np.count_nonzero((curve.spread > 0) & np.isfinite(off))
+    deviation = np.zeros(off.size) if curve.deviation is None else curve.deviation / at_rest
+    count = np.count_nonzero((deviation > 0) & np.isfinite(off))
     adequate = bool(
         default.in_spreads is not None
-        and default.in_spreads**2 * count <= chi2.ppf(0.99, count)
+        and count > 1
+        and default.in_spreads**2 * count <= chi2.ppf(0.99, count - 1)
         and np.isfinite(off).all()
     )
     said = "describes the curve within its spread" if adequate else "does not describe the curve"
     if default.in_spreads is None:
         said = "cannot be judged, since the curve has no spread"
     sentence = (
-        f"{default.model} {said}: it is off by {default.difference:.3f} (r.m.s. of µ′/µ), most "
-        f"{where}, by {off[worst]:.3f}; nothing was fitted"
+        f"{default.model} {said}: it is off by {default.difference:.3f} (r.m.s., over the friction "
+        f"at rest), most {where}, by {off[worst]:.3f}; the friction at rest alone was fitted"
     )
-    return Adequacy(adequate, residual, noise, where, sentence)
+    return Adequacy(adequate, float(np.nanmean(off)), float(np.mean(deviation)), where, sentence)

@@ -1,0 +1,106 @@
+"""All friction in a folder beside every model: curves, published fits and fingertips."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.friction.friction_curve import (
+    CurveComparison,
+    compare_friction_curve,
+    display_of,
+)
+from squeezefilm.measure.fits.friction.friction_scores import (
+    TotalScore,
+    rest_friction,
+    total_scores,
+)
+from squeezefilm.measure.fits.friction.populations import (
+    PopulationComparison,
+    compare_decays,
+    compare_impedances,
+)
+from squeezefilm.measure.recordings.kinds import (
+    FingertipImpedances,
+    FrictionCurve,
+    FrictionDecays,
+)
+from squeezefilm.measure.recordings.read import check_folder
+from squeezefilm.progress import SayProgress
+from squeezefilm.results import to_json
+
+
+@dataclass(frozen=True, eq=False)
+class FolderComparison:
+    """All friction that a folder holds beside every model: curves with their total scores, and the
+    numbers of many people."""
+
+    curves: tuple[CurveComparison, ...]
+    totals: tuple[TotalScore, ...]
+    populations: tuple[PopulationComparison, ...]
+
+    @property
+    def units_covered(self) -> tuple[int, int, tuple[float, float]]:
+        """How many units (fingers or papers) have their curves in the default's interval, of how
+        many, and the 95 % interval of that share (Clopper and Pearson)."""
+        from scipy.stats import binomtest
+
+        covered: dict[str, bool] = {}
+        for compared in self.curves:
+            unit = compared.curve.unit
+            covered[unit] = covered.get(unit, True) and compared.covered
+        if not covered:
+            return 0, 0, (0.0, 1.0)
+        ends = binomtest(sum(covered.values()), len(covered)).proportion_ci(0.95)
+        return sum(covered.values()), len(covered), (float(ends.low), float(ends.high))
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints; keys carry units."""
+        within, units, ends = self.units_covered
+        return {
+            "curves": [compared.summary() for compared in self.curves],
+            "totals": to_json(self.totals),
+            "units_covered": {"covered": within, "units": units, "share_interval": list(ends)},
+            "populations": [compared.summary() for compared in self.populations],
+        }
+
+
+def compare_folder(folder: str | Path, progress: SayProgress | None = None) -> FolderComparison:
+    """`compare_friction_curve` for every friction curve that a folder's TOML files describe, and
+    the same for published fits and fingertips.
+
+    Recordings of other kinds are passed over. Raises `InputError` for a folder that has none, and
+    for a file that cannot be read, before anything is computed.
+    """
+    found = check_folder(folder)
+    if found.refused:
+        raise InputError(found.refused[0].why)
+    recordings = [check.recording for check in found.checks]
+    kinds = (FrictionCurve, FrictionDecays, FingertipImpedances)
+    if not any(isinstance(recording, kinds) for recording in recordings):
+        raise InputError(
+            f"{folder} holds no friction curve, only: "
+            + ", ".join(sorted({check.kind for check in found.checks}))
+            + '; write kind = "friction curve" into the description of one'
+        )
+    for recording in recordings:
+        if isinstance(recording, FrictionCurve):
+            rest_friction(recording)
+        if isinstance(recording, kinds):
+            display_of(recording.told.name, recording.display)
+    curves: list[CurveComparison] = []
+    populations: list[PopulationComparison] = []
+    for recording in recordings:
+        if isinstance(recording, FrictionCurve):
+            curves.append(compare_friction_curve(recording, progress))
+        elif isinstance(recording, FrictionDecays):
+            populations += compare_decays(recording, progress)
+        elif isinstance(recording, FingertipImpedances):
+            populations += compare_impedances(recording, progress)
+    totals: tuple[TotalScore, ...] = ()
+    if curves:
+        scores = [compared.models for compared in curves]
+        totals = total_scores([compared.curve for compared in curves], scores)
+    return FolderComparison(tuple(curves), totals, tuple(populations))

@@ -1,0 +1,187 @@
+"""How near a model comes to measured friction: a score that no normalisation decides, and
+baselines without physics.
+
+The friction at rest is fitted to each curve, whatever the model: an extrapolated one differs by
+25 to 35 % between models and would decide in place of the shape. Differences are over one friction
+at rest that knows no model, so that curves in newtons and in µ can be averaged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import InputError
+from squeezefilm.measure.recordings.kinds import FrictionCurve
+
+_FIRST_POINTS = 3
+BASELINES: Mapping[str, Callable[[si.FloatArray], si.FloatArray]] = {
+    "gaussian": lambda over: np.exp(-(over**2) / 2),
+    "exponential": lambda over: np.exp(-over),
+}
+"""Shapes without physics over the amplitude in units of a decay amplitude, which is fitted."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModelScore:
+    """One model beside a curve, with `fitted` numbers fitted to it: the friction at rest, and of a
+    baseline the decay amplitude too.
+
+    `friction` is the model's at the curve's amplitudes and in its unit, shape (points,), NaN where
+    the model refuses one. `difference` is the root mean square of measured less computed over the
+    friction at rest of `rest_friction`, `in_spreads` the same in standard deviations of the points;
+    None where the model answers nowhere, or no deviation is known.
+    """
+
+    model: str
+    fitted: int
+    friction: si.FloatArray
+    difference: si.Dimensionless | None
+    in_spreads: si.Dimensionless | None
+
+    @property
+    def answered(self) -> int:
+        """At how many amplitudes the model has a friction."""
+        return int(np.count_nonzero(np.isfinite(self.friction)))
+
+
+@dataclass(frozen=True)
+class TotalScore:
+    """One model over several units (a finger, or a paper whose fingers are not told apart), each
+    counted once.
+
+    `difference` is the root mean square over units; `log_score` the mean of the logarithmic density
+    of a point, in units of the friction at rest, with the spread of the model's error over the
+    *other* units, `log_score_error` its standard error over units. None where the model does not
+    answer everywhere, or with fewer than two units (of the error fewer than three).
+    """
+
+    model: str
+    fitted: int
+    units: int
+    difference: si.Dimensionless | None
+    log_score: si.Dimensionless | None
+    log_score_error: si.Dimensionless | None
+
+
+def rest_friction(curve: FrictionCurve) -> float:
+    """Friction at rest in the curve's unit: the line through its three smallest amplitudes, at
+    zero.
+
+    Raises `InputError` where that is not above 0.
+    """
+    amplitude = curve.vibration_amplitude[:_FIRST_POINTS]
+    friction = curve.friction[:_FIRST_POINTS]
+    at_rest = float(np.mean(friction))
+    if np.ptp(amplitude) > 0:
+        at_rest = float(np.polynomial.Polynomial.fit(amplitude, friction, 1)(0.0))
+    if at_rest <= 0:
+        raise InputError(
+            f"the friction of '{curve.told.name}' at rest is {at_rest:.3g} by the line through its "
+            "first three points; it must be above 0: give points in the order of the amplitude, "
+            "and friction with its sign"
+        )
+    return at_rest
+
+
+def scored(
+    model: str, relative_friction: si.DimensionlessArray, curve: FrictionCurve
+) -> ModelScore:
+    """The score of µ′/µ of a model at a curve's amplitudes, shape (points,), NaN where refused."""
+    return _score(model, 1, _scaled(relative_friction, curve.friction), curve)
+
+
+def baseline_scores(curve: FrictionCurve) -> tuple[ModelScore, ...]:
+    """The scores of `BASELINES`."""
+    return tuple(
+        _score(name, 2, _scaled(shape, curve.friction), curve)
+        for name in BASELINES
+        for shape in (fitted_shape(name, curve.vibration_amplitude, curve.friction)[1],)
+    )
+
+
+def fitted_shape(
+    baseline: str, amplitude: si.MetreArray, friction: si.FloatArray
+) -> tuple[si.Metre, si.DimensionlessArray]:
+    """The decay amplitude (m) of a baseline by least squares, with the friction at rest free, and
+    the shape (points,) that it gives."""
+    shape, largest = BASELINES[baseline], float(np.max(amplitude))
+
+    def error(log_decay: float) -> float:
+        model = _scaled(shape(amplitude / np.exp(log_decay)), friction)
+        return float(np.sum((friction - model) ** 2))
+
+    # Coarse first: the sum of squares is flat far from the best decay.
+    coarse = np.log(largest * np.geomspace(0.02, 50.0, 60))
+    near = int(np.argmin([error(log_decay) for log_decay in coarse]))
+    ends = coarse[max(near - 1, 0)], coarse[min(near + 1, coarse.size - 1)]
+    decay = float(np.exp(minimize_scalar(error, bounds=ends, method="bounded").x))
+    return decay, shape(amplitude / decay)
+
+
+def total_scores(
+    curves: Sequence[FrictionCurve], scores: Sequence[Sequence[ModelScore]]
+) -> tuple[TotalScore, ...]:
+    """The scores of each model over all curves, the least difference first; those that do not
+    answer everywhere last."""
+    by_unit: dict[str, list[int]] = {}
+    for number, curve in enumerate(curves):
+        by_unit.setdefault(curve.unit, []).append(number)
+    totals = []
+    for model in (score.model for score in scores[0]):
+        own = [next(score for score in row if score.model == model) for row in scores]
+        totals.append(_total(own, curves, list(by_unit.values())))
+    totals.sort(key=lambda total: (total.difference is None, total.difference or 0.0))
+    return tuple(totals)
+
+
+def _total(
+    scores: Sequence[ModelScore], curves: Sequence[FrictionCurve], units: Sequence[Sequence[int]]
+) -> TotalScore:
+    model, fitted = scores[0].model, scores[0].fitted
+    if any(score.answered < score.friction.size for score in scores):
+        return TotalScore(model, fitted, len(units), None, None, None)
+    errors = [
+        np.concatenate(
+            [(curves[k].friction - scores[k].friction) / rest_friction(curves[k]) for k in unit]
+        )
+        for unit in units
+    ]
+    squares = np.array([np.mean(error**2) for error in errors])
+    difference = float(np.sqrt(np.mean(squares)))
+    if len(units) < 2:
+        return TotalScore(model, fitted, len(units), difference, None, None)
+    others = (squares.sum() - squares) / (len(units) - 1)
+    # A model that fits all other units exactly says nothing of its error on this one.
+    others = np.maximum(others, 1e-12)
+    log_scores = -0.5 * (np.log(2 * np.pi * others) + squares / others)
+    error = None
+    if len(units) > 2:
+        error = float(np.std(log_scores, ddof=1) / np.sqrt(len(units)))
+    return TotalScore(model, fitted, len(units), difference, float(np.mean(log_scores)), error)
+
+
+def _scaled(shape: si.DimensionlessArray, friction: si.FloatArray) -> si.FloatArray:
+    """A shape times the friction at rest that is nearest to a curve by least squares; NaN where it
+    is unknown."""
+    known = np.isfinite(shape)
+    square = float(np.sum(shape[known] ** 2))
+    if square == 0:
+        return np.full(shape.size, np.nan)
+    return np.asarray(shape * float(np.sum(shape[known] * friction[known])) / square)
+
+
+def _score(model: str, fitted: int, friction: si.FloatArray, curve: FrictionCurve) -> ModelScore:
+    off = curve.friction - friction
+    known = np.isfinite(off)
+    if not known.any():
+        return ModelScore(model, fitted, friction, None, None)
+    difference = float(np.sqrt(np.mean(off[known] ** 2))) / rest_friction(curve)
+    in_spreads = None
+    if curve.deviation is not None and (sure := known & (curve.deviation > 0)).any():
+        in_spreads = float(np.sqrt(np.mean((off[sure] / curve.deviation[sure]) ** 2)))
+    return ModelScore(model, fitted, friction, difference, in_spreads)

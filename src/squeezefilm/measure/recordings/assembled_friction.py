@@ -1,0 +1,124 @@
+"""Recordings of friction out of tables and descriptions, one function a kind."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
+from squeezefilm.measure.recordings.rows import require_rising
+
+
+def bench(reading: Reading) -> kinds.FrictionBench:
+    """Strokes of a finger or probe. Raises `ConfigError` at its key or column."""
+    said: Any = reading.description.said
+    time = reading.take("time")
+    require_rising(reading, "time", time)
+    normal, tangential, position = (
+        reading.take(name) for name in ("normal_force", "tangential_force", "position")
+    )
+    if reading.has("vibration_amplitude"):
+        vibration = reading.take("vibration_amplitude", amplitude=True)
+    elif reading.has("voltage") and said.amplitude_per_volt is not None:
+        vibration = said.amplitude_per_volt * reading.take("voltage", amplitude=True)
+        shown = quantity(said.amplitude_per_volt, si.Unit("m/V"))
+        reading.facts.append(("vibration amplitude", f"the voltage times {shown}, as told"))
+    else:
+        raise reading.wanting(
+            "vibration_amplitude", "it is needed, or the voltage with amplitude_per_volt beside"
+        )
+    if said.frequency is not None:
+        reading.facts.append(("frequency", quantity(said.frequency, si.Unit("Hz"))))
+    return kinds.FrictionBench(
+        time, normal, tangential, position, vibration, reading.told(), said.frequency
+    )
+
+
+_CONDITIONS = ("frequency", "normal_force", "speed")
+_FRICTIONS = get_args(kinds.FrictionQuantity)
+
+
+def curve(reading: Reading) -> kinds.FrictionCurve:
+    """Friction over the vibration amplitude. Raises `ConfigError` at its key or column."""
+    said: Any = reading.description.said
+    named = [name for name in _FRICTIONS if reading.has(name)]
+    if len(named) != 1:
+        raise reading.description.error(
+            f"a friction curve has one column of {', '.join(_FRICTIONS)}; named are "
+            f"{', '.join(named) or 'none'} (the file has {reading.table.columns_in_words})",
+            ["columns"],
+        )
+    amplitude = reading.take("vibration_amplitude", amplitude=True)
+    order = np.argsort(amplitude, kind="stable")
+    friction = reading.take(named[0])
+    spread = None
+    if reading.has("spread"):
+        spread = reading.take("spread", like=named[0])[order]
+    conditions = {name: _condition(reading, name, order) for name in _CONDITIONS}
+    if conditions["frequency"] is None:
+        raise reading.description.error(
+            "the key 'frequency' is missing; write frequency = \"30 kHz\", or name its column",
+            ["frequency"],
+        )
+    for name in ("finger", "surface", "moisture"):
+        if getattr(said, name):
+            reading.facts.append((name, getattr(said, name)))
+    return kinds.FrictionCurve(
+        amplitude[order],
+        friction[order],
+        spread=spread,
+        quantity=named[0],
+        told=reading.told(),
+        display=_display(reading),
+        finger=said.finger,
+        reading_error=said.reading_error * float(np.max(np.abs(friction))),
+        **conditions,
+    )
+
+
+def _condition(reading: Reading, name: str, order: si.IntArray) -> Any:
+    """A condition of a friction curve: a column's values in an order, one value, or None."""
+    value = getattr(reading.description.said, name)
+    if reading.has(name):
+        if value is not None:
+            raise reading.description.error(
+                f"the {words(name)} has a column and a value; delete one of them", [name]
+            )
+        return reading.take(name)[order]
+    if value is not None:
+        reading.facts.append((words(name), quantity(value, QUANTITIES[name].unit)))
+    return value
+
+
+def decays(reading: Reading) -> kinds.FrictionDecays:
+    """Published fits of friction over the amplitude. Raises `ConfigError` at its key or column."""
+    return kinds.FrictionDecays(
+        reading.take("decay_amplitude", amplitude=True),
+        reading.take("friction_coefficient"),
+        told=reading.told(),
+        display=_display(reading),
+        **{name: _condition(reading, name, np.arange(0)) for name in _CONDITIONS},
+    )
+
+
+def touches(reading: Reading) -> kinds.FingertipImpedances:
+    """Published impedances of fingertips. Raises `ConfigError` at its key or column."""
+    return kinds.FingertipImpedances(
+        reading.take("damping"),
+        reading.take("mass"),
+        told=reading.told(),
+        display=_display(reading),
+        **{name: _condition(reading, name, np.arange(0)) for name in _CONDITIONS[:2]},
+    )
+
+
+def _display(reading: Reading) -> str:
+    """The display that is named, the path of a file from where the description stands."""
+    said: Any = reading.description.said
+    path = reading.description.path
+    if said.display.endswith(".toml") and path is not None:
+        return str(path.parent / said.display)
+    return str(said.display)
