@@ -1,16 +1,20 @@
 """The analysis as a whole and the paper's design procedure."""
 
+import dataclasses
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.analyze import Analysis, analyze
+from squeezefilm.analysis.analyze import KEPT, Analysis, analyze
 from squeezefilm.analysis.claims.procedure import design_plate, friction_criterion
 from squeezefilm.analysis.curves import pressure_profiles
+from squeezefilm.analysis.drawn import description_of
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
+from squeezefilm.kept.folder import CACHE_VARIABLE
 from squeezefilm.plate.laminate import plate_laminate
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.results import to_json
@@ -46,6 +50,26 @@ def test_response_peaks_at_the_resonance_with_the_stated_amplitude(plate: Analys
         response.amplitude_per_volt > response.amplitude_per_volt[top] / np.sqrt(2)
     ]
     assert np.ptp(half_power) == pytest.approx(p.mode.resonance_frequency / 60, rel=0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["biet2008-plate", "biet2008-stator", "winfield2007-tpad"])
+def test_what_takes_long_beside_an_analysis_is_found_on_disk(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = analyze(load_display(name), samples=0)
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    first.compute(KEPT, lambda _: None)
+    again, steps = dataclasses.replace(first), list[str]()
+    again.compute(KEPT, steps.append)
+    assert steps == []
+    direct = dataclasses.replace(first)
+    for part in KEPT:
+        assert to_json(getattr(again, part)) == to_json(getattr(direct, part))
+    pressed = dataclasses.replace(first.prediction, normal_force=0.4)
+    asked = {description_of(first.display, p, more) for p in (first.prediction, pressed)
+             for more in ("quick", "solved")}  # fmt: skip
+    assert len(asked) == 4
 
 
 @pytest.mark.slow

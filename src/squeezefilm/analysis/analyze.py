@@ -6,7 +6,7 @@ import dataclasses
 import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, get_args
+from typing import Any, ClassVar, get_args, get_type_hints
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from squeezefilm.analysis.curves import (
     friction_curve,
     model_curves,
 )
+from squeezefilm.analysis.drawn import description_of
 from squeezefilm.analysis.ears import EarExposure, ear_exposure
 from squeezefilm.analysis.felt import DRAWS as FELT_DRAWS
 from squeezefilm.analysis.felt import FeltGratings, felt_gratings
@@ -61,6 +62,7 @@ from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.wanted_voltage import WantedFriction
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.from_text import reads_text
+from squeezefilm.kept.store import Kept
 from squeezefilm.plate.electronics import ElectricalLoad, load_of_mode
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.progress import Deadline, Pace, SayProgress, said_with_time_left
@@ -68,13 +70,18 @@ from squeezefilm.render.fidelity.survival import FidelityTable
 from squeezefilm.render.fidelity.trace import FrictionTrace
 from squeezefilm.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.results import Result, stamp, to_json
-from squeezefilm.second_process import Piece, later, values
+from squeezefilm.second_process import later, values
 
 BAND_POINTS, BAND_SAMPLES = 9, 64
 """Amplitudes at which the band of the friction is computed, and draws at each."""
 
 BAND_REACH = 1.5
 """How far the band goes, in vibration amplitudes: beyond, draws are pressed through."""
+
+KEPT = ("film_models", "sensitivities", "ears", "friction_curves", "model_curves", "other_models")
+"""Properties that take tenths of a second to seconds, kept on disk (`Analysis.compute`)."""
+
+_GRATINGS: Kept[FidelityTable] = Kept("gratings", FidelityTable)
 
 # What these steps take (s), measured on the presets; a budget without room for one leaves it out.
 _INTERVAL, _FILMS = 6.0, 4.0
@@ -217,16 +224,23 @@ class Analysis(Result):
         """Which grating survives at which speed; None where no voltage makes an amplitude."""
         return survival_by_drive(self.display, self.prediction)
 
-    def begin(self, names: Sequence[str]) -> dict[str, Piece]:
-        """Properties that are asked for in any case, by their `names`, for whichever process is
-        free; the longest first."""
-        return {name: later(getattr, self, name) for name in names}
-
-    def compute(self, begun: dict[str, Piece], tell: SayProgress) -> None:
-        """Wait for what was begun, or compute it here."""
+    def compute(self, names: Sequence[str], tell: SayProgress) -> None:
+        """Compute the properties of some names, the longest first, with a second process where
+        there is one; those that take long are kept on disk. `tell` is told each."""
+        dear = [name for name in names if name in KEPT]
+        types = tuple(get_type_hints(getattr(Analysis, name).func)["return"] for name in dear)
+        kept: Kept[tuple[Any, ...]] = Kept("beside", tuple[types], large=True)  # type: ignore[valid-type]
+        unsure = None if self.uncertainty is None else self.uncertainty.summary()
+        more = (dear, self.effort, self.with_films, unsure)
+        asked = description_of(self.display, self.prediction, more)
+        known = kept.get(asked)
+        vars(self).update(zip(dear, known or (), strict=False))
+        begun = {name: later(getattr, self, name) for name in names if name not in vars(self)}
         for name, piece in reversed(begun.items()):
             tell(name.replace("_", " "))
             vars(self)[name] = values(piece)[0]
+        if known is None:
+            kept.put(asked, tuple(vars(self)[name] for name in dear))
 
     def finest_period(self) -> dict[str, float]:
         """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""
@@ -368,7 +382,9 @@ def _what_follows(
     """What one decides from, of a prediction; what a deadline leaves no room for is left out."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
-    survives = later(what_survives, prediction, tau)
+    asked = description_of(display, prediction)
+    table = _GRATINGS.get(asked)
+    survives = None if table is not None else later(what_survives, prediction, tau)
     tell("friction against amplitude")
     own = friction_curve(prediction, prediction.surface, prediction.model)
     tell("how sure the friction is")
@@ -380,7 +396,10 @@ def _what_follows(
     tell("friction over the active area")
     area = judged_area(display, prediction, samples=0 if unsure is None else samples)
     tell("verdict")
-    (table,) = values(survives)
+    if survives is not None:
+        (table,) = values(survives)
+        if table is not None:
+            _GRATINGS.put(asked, table)
     return Analysis(
         display=display,
         prediction=prediction,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import io
+import json
 import pickle
 from collections.abc import Callable
 from hashlib import blake2b
@@ -16,9 +17,12 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.draws import Mixture, Outcome, Refusals, Tally, as_drawn
+from squeezefilm.chain.prediction import Prediction
+from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.kept.store import Kept
 from squeezefilm.progress import SayProgress
+from squeezefilm.results import to_json
 from squeezefilm.second_process import is_present, later, start_second_process, values
 
 _Found = TypeVar("_Found")
@@ -75,6 +79,13 @@ def evaluate(
     found[new], tally = made
     mixture.learn(points[new], found[new])
     return Outcome(*found.T), tally.found(len(points))
+
+
+def description_of(display: Display, prediction: Prediction, more: object = None) -> str:
+    """All that follows from a display at a prediction's working point is kept under: both with
+    every number in full, and whatever `more` it depends on."""
+    sources = sorted(display.provenance.items())
+    return json.dumps(to_json([display, sources, prediction.summary(), prediction.law.slip, more]))
 
 
 def _asked(mixture: Mixture, points: si.DimensionlessArray, more: object = None) -> str:

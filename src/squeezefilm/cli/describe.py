@@ -180,7 +180,7 @@ def analyze(asked: AnalyzeOptions) -> None:
             shown = SHOWN_WITH_ALL if asked.whole else SHOWN
             if with_shifts and "sensitivities" not in shown:
                 shown = (*shown, "sensitivities")
-            result.compute(result.begin(shown), step)
+            result.compute(shown, step)
         if asked.out is not None:
             with loading():
                 from squeezefilm.report.display.page import write_analysis

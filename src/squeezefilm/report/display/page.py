@@ -93,7 +93,7 @@ def write_analysis(
     disk. Raises `InputError` where the folder cannot be written to.
     """
     folder, tell = require_folder(folder), progress or (lambda _: None)
-    analysis.compute(analysis.begin(_BESIDE), tell)
+    analysis.compute(_BESIDE, tell)
     summary = analysis.summary()
     data = result_data(analysis, summary)
     tell("figures")
