@@ -48,6 +48,30 @@ def test_every_point_is_what_the_verb_says_there() -> None:
         found.column("relative_fricton")
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [STATOR, "winfield2007-tpad"])
+def test_what_a_sweep_answers_put_in_as_a_question_returns_itself(name: str) -> None:
+    volts = [0.5 * sf.load_display(name).drive.voltage, sf.load_display(name).drive.voltage]
+    numbers = "vibration_amplitude", "relative_friction"
+    driven = sweep(name, vary={"voltage": [f"{v!r} V" for v in volts]}, ask=numbers)
+    amplitude, friction = (driven.column(one) for one in driven.names)
+    given = sweep(name, vary={"vibration_amplitude": [f"{a!r} m" for a in amplitude.tolist()]},
+                  ask=numbers)  # fmt: skip
+    wanted = sweep(
+        name,
+        vary={"wanted_friction": [repr(value) for value in friction.tolist()]},
+        ask=("wanted.voltage", "wanted.vibration_amplitude", "wanted.relative_friction"),
+    )
+    for found, expected in (
+        (given.column("vibration_amplitude_m"), amplitude),
+        (given.column("relative_friction"), friction),
+        (wanted.column("wanted.voltage_V"), volts),
+        (wanted.column("wanted.vibration_amplitude_m"), amplitude),
+        (wanted.column("wanted.relative_friction"), friction),
+    ):
+        assert found.tolist() == pytest.approx(list(expected), rel=1e-9, abs=0.0)
+
+
 def test_a_point_that_cannot_be_is_a_row_with_its_reason() -> None:
     found = sweep(
         STATOR, vary={"actuator.radial_width": ["10 mm", "60 mm"]}, ask=["relative_friction"]
