@@ -221,7 +221,8 @@ def is_kernel(item: Any) -> bool:
     return hasattr(item, "py_func") or type(item).__module__.startswith("numba")
 
 
-def _hints(function: Callable[..., Any], home: object) -> dict[str, Any]:
+def annotations_of(function: Callable[..., Any], home: object) -> dict[str, Any]:
+    """The annotations of what a function takes, by name; `home` is its module."""
     # What a module imports for types only is not there at run time; it is no number either.
     names = typing.cast(dict[str, Any], dict(vars(home)))
     for _ in range(20):
@@ -241,15 +242,15 @@ def _hints(function: Callable[..., Any], home: object) -> dict[str, Any]:
 def _calls_of_class(cls: type[Any], home: object) -> Iterator[PublicCall]:
     name = f"{cls.__module__}.{cls.__qualname__}".removeprefix("squeezefilm.")
     if "__init__" in vars(cls) and not getattr(cls, "_is_protocol", False):
-        yield PublicCall(name, cls, None, _hints(cls.__init__, home))
+        yield PublicCall(name, cls, None, annotations_of(cls.__init__, home))
     for key, member in vars(cls).items():
         if key.startswith("_") and key != "__call__":
             continue
         if isinstance(member, classmethod | staticmethod):
             made = getattr(cls, key)
-            yield PublicCall(f"{name}.{key}", made, None, _hints(made, home))
+            yield PublicCall(f"{name}.{key}", made, None, annotations_of(made, home))
         elif inspect.isfunction(member):
-            yield PublicCall(f"{name}.{key}", member, cls, _hints(member, home))
+            yield PublicCall(f"{name}.{key}", member, cls, annotations_of(member, home))
 
 
 @functools.cache
@@ -267,7 +268,7 @@ def public_calls() -> dict[str, PublicCall]:
                 calls = list(_calls_of_class(item, home))
             elif inspect.isroutine(inspect.unwrap(item)) and not is_kernel(item):
                 name = f"{module.name}.{key}".removeprefix("squeezefilm.")
-                calls = [PublicCall(name, item, None, _hints(inspect.unwrap(item), home))]
+                calls = [PublicCall(name, item, None, annotations_of(inspect.unwrap(item), home))]
             else:
                 calls = []
             found.update({call.name: call for call in calls if call.numbers})

@@ -74,6 +74,7 @@ class PlayResult(Result):
         }
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayRequest:
     """What `play_texture` is asked for."""

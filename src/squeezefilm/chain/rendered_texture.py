@@ -213,6 +213,7 @@ class RenderAnalysis(Result):
         }
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class RenderRequest:
     """What `render_texture` is asked for."""

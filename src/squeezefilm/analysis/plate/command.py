@@ -125,6 +125,7 @@ def parse_mode(text: str) -> tuple[int, int]:
     raise InputError(f"--mode '{text}' is no mode; write nodal lines across length, width: 8,0")
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class PlateRequest:
     """What `solve_plate` is asked for."""

@@ -105,6 +105,7 @@ class GridScan:
         si.require_alike(x=self.x, y=self.y, displacement=self.displacement)
 
 
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RingDown:
     """Displacement (m) against `time` (s) after the drive was switched off, both (points,)."""
@@ -128,6 +129,7 @@ class VoltageSweeps:
     told: Told = field(default_factory=Told)
 
 
+@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RawSignals:
     """Drive voltage (V) and displacement (m) against `time` (s), all (points,), evenly sampled."""

@@ -33,6 +33,7 @@ _TRIED = 40
 _UNEVEN = 0.12
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class SyntheticOptions:
     """How a synthetic bench errs.

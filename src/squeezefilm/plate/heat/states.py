@@ -25,9 +25,11 @@ from squeezefilm.plate.heat.kernel import (
 from squeezefilm.plate.heat.thermal import Cooling, Thermal, ThermalBody
 
 EMISSIVITIES = (0.1, 0.9)
-"""From bare metal to an adhesive film or glass (assumed range of a face that nobody measured)."""
+"""From bare metal to an adhesive film or glass: assumed range of faces of which none is told."""
+ASSUMED_EMISSIVITY: si.Dimensionless = 0.5
+"""Of faces of which none is told: the middle of `EMISSIVITIES`."""
 COEFFICIENT_SHARES = (0.5, 2.0)
-"""Of the described temperature coefficient of the resonance (assumed range)."""
+"""Of the described temperature coefficient of the resonance: assumed, with no source."""
 
 HOTTEST: si.Kelvin = 2000.0
 """Beyond it no state is looked for."""
@@ -79,7 +81,8 @@ def cooling_of(thermal: Thermal, body: ThermalBody) -> Cooling:
     measured = thermal.thermal_resistance
     fixed = 0.0 if measured is None else (math.inf if measured == 0 else 1 / measured)
     length = body.face_area / body.perimeter
-    return Cooling(fixed, body.face_area, length, thermal.emissivity, thermal.ambient_temperature)
+    emissivity = ASSUMED_EMISSIVITY if thermal.emissivity is None else thermal.emissivity
+    return Cooling(fixed, body.face_area, length, emissivity, thermal.ambient_temperature)
 
 
 def heat_capacity(thermal: Thermal, body: ThermalBody) -> si.JoulePerKelvin:
@@ -168,10 +171,10 @@ def warmth_ranges(
     source: HeatSource, thermal: Thermal, body: ThermalBody
 ) -> tuple[tuple[si.Kelvin, si.Kelvin] | None, tuple[si.Hertz, si.Hertz]]:
     """The least and the most that the tracked state is warm and has drifted over assumed ranges;
-    no range of the warmth with a measured resistance."""
-    measured = thermal.thermal_resistance is not None
+    no range of the warmth with a measured resistance or a known emissivity."""
+    is_known = thermal.thermal_resistance is not None or thermal.emissivity is not None
     nominal, states = drifts_of(thermal), []
-    for emissivity in (thermal.emissivity,) if measured else EMISSIVITIES:
+    for emissivity in (thermal.emissivity,) if is_known else EMISSIVITIES:
         changed = replace(thermal, emissivity=emissivity)
         for share in COEFFICIENT_SHARES:
             shifted = nominal._replace(frequency=share * nominal.frequency)
@@ -180,4 +183,4 @@ def warmth_ranges(
         sorted(getattr(state, name) for state in states)
         for name in ("temperature_rise", "resonance_drift")
     )
-    return None if measured else (rises[0], rises[-1]), (drifts[0], drifts[-1])
+    return None if is_known else (rises[0], rises[-1]), (drifts[0], drifts[-1])

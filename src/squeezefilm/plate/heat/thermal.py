@@ -36,7 +36,7 @@ class Thermal:
         thermal_time: time constant of warming (s), where it was measured; None computes it from
             mass and specific heat.
         emissivity: of both faces, for their radiation (1): an adhesive film has 0.9, bare metal
-            0.1. Used where the resistance is computed.
+            0.1. Used where the resistance is computed; None is not known, and 0.5 is assumed.
         ambient_temperature: of the room (K).
         temperature_coefficient: of the resonance frequency, relative (1/K).
         charge_temperature_coefficient: of the ceramic's charge coefficient, relative (1/K); 0 is
@@ -56,7 +56,7 @@ class Thermal:
 
     thermal_resistance: Annotated[si.KelvinPerWatt, si.AtLeast(0.0), si.AtMost(1e6)] | None = None
     thermal_time: Annotated[si.Second, si.Above(0.0), si.AtMost(1e7)] | None = None
-    emissivity: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 0.5
+    emissivity: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] | None = None
     ambient_temperature: Annotated[si.AbsoluteKelvin, si.AtLeast(230.0), si.AtMost(350.0)] = 293.15
     temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-2), si.Below(1e-2)] = -1e-4
     charge_temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-1), si.Below(1e-1)] = 0.0

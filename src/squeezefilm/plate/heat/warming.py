@@ -15,6 +15,7 @@ from squeezefilm import quantities as si
 from squeezefilm.plate.beam.response import patch_capacitance
 from squeezefilm.plate.heat.kernel import conductance, lost
 from squeezefilm.plate.heat.states import (
+    ASSUMED_EMISSIVITY,
     HOTTEST,
     HeatSource,
     WarmCase,
@@ -55,10 +56,10 @@ class Warming:
     reached from cold where it does not, `other_fixed` the further stable ones there.
     `thermal_resistance`, `thermal_time` and `biot_number` are at the tracked state.
     `rise_range` (K) and `drift_range` (Hz) are those of the tracked state over `EMISSIVITIES`
-    where the resistance is computed (else no `rise_range`) and over `COEFFICIENT_SHARES` of the
-    temperature coefficient, lower end first. `time_to_fall` is when the amplitude at the fixed
-    frequency has fallen by a tenth, None where it does not. `speed` (r.m.s.) and `field` are at the
-    resonance, cold. `assumed` and `doubts` are for people.
+    where neither resistance nor emissivity is told (else no `rise_range`) and over
+    `COEFFICIENT_SHARES` of the temperature coefficient, lower end first. `time_to_fall` is when
+    the amplitude at the fixed frequency has fallen by a tenth, None where it does not. `speed`
+    (r.m.s.) and `field` are at the resonance, cold. `assumed` and `doubts` are for people.
     """
 
     frequency: si.Hertz
@@ -189,8 +190,9 @@ def _assumed(thermal: Thermal, body: ThermalBody) -> tuple[str, ...]:
     said = []
     if thermal.thermal_resistance is None:
         said.append(
-            f"still air at both faces, an emissivity of {thermal.emissivity:g}, nothing through "
-            "supports and leads"
+            "still air at both faces, "
+            + (f"an emissivity of {ASSUMED_EMISSIVITY:g}, " if thermal.emissivity is None else "")
+            + "nothing through supports and leads"
         )
     if thermal.thermal_time is None:
         said += body.assumed

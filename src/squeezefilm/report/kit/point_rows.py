@@ -65,7 +65,8 @@ def heat_rows(heat: Warming | None) -> list[Row]:
     if heat.drift_range is not None:
         low, high = COEFFICIENT_SHARES
         between = _between(heat.drift_range, HZ)
-        drifts = f"assumed {between} (temperature coefficient {low:g} to {high:g} times, too); "
+        too = ", too" if rises else ""
+        drifts = f"assumed {between} (temperature coefficient {low:g} to {high:g} times{too}); "
     resistance = si.format_quantity(heat.thermal_resistance, si.Unit("K/W"), 3)
     return [
         (

@@ -18,6 +18,7 @@ from squeezefilm.study.conduct.trial_by_trial import Examiner
 from squeezefilm.study.record.store import utc_now
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class SessionRequest:
     """What `run_study` is asked for."""

@@ -151,6 +151,7 @@ class Tolerances:
 _TOUCH, _LIMITS, _TOLERANCES = Touch(), Limits(), Tolerances()
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class Requirements:
     """What a display must do, and what it may be built from. Read them with `load_requirements`.

@@ -67,6 +67,7 @@ class Glimpse:
     reference: Evaluated | None
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class SearchRequest:
     """What `search_designs` is asked for."""

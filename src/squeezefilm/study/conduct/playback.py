@@ -183,6 +183,7 @@ class Playback:
         return felt
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayingOptions:
     """What `play` is asked for."""

@@ -185,6 +185,7 @@ class IdentificationAnalysis(Result):
         ]
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class IdentificationRequest:
     """What `analyze_identification` is asked for."""

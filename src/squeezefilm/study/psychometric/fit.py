@@ -139,6 +139,7 @@ class PsychometricFit(Result):
         return {"intensity": self.intensity, "positive": self.positive, "trials": self.trials}
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FitRequest:
     """What `fit_psychometric` is asked for."""

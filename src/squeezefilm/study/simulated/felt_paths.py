@@ -137,6 +137,7 @@ class FeltPath(Result):
         return plain
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class FeltRequest:
     """What `felt_on_path` is asked for."""

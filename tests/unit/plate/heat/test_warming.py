@@ -208,6 +208,11 @@ def test_the_ranges_are_those_of_the_assumed_emissivity_and_coefficient() -> Non
     assert found.rise_range[0] < found.tracked.temperature_rise < found.rise_range[1]
     assert found.drift_range is not None
     assert found.drift_range[0] < found.tracked.resonance_drift < found.drift_range[1] < 0
-    measured = warming(SOURCE, PLATE, Thermal(thermal_resistance=9.0))
-    assert measured.rise_range is None
-    assert measured.drift_range is not None
+    # Where one is told, neither the range nor the list of assumptions knows another.
+    for told in (Thermal(thermal_resistance=9.0), Thermal(emissivity=0.3)):
+        known = warming(SOURCE, PLATE, told)
+        assert known.rise_range is None
+        assert known.drift_range is not None
+        assert not any("emissivity" in said for said in known.assumed)
+    # The warmth hardly depends on the drift, so that only the coefficient's share is left in it.
+    assert known.drift_range[0] / known.drift_range[1] == pytest.approx(4.0, rel=0.05)
