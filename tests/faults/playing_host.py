@@ -40,12 +40,15 @@ def own_plan() -> PlayPlan:
 
 
 def played(port: str, trace: Path, seconds: float) -> dict[str, object]:
-    """Play; how it ended, why, and how many rows were recorded."""
+    """Play; how it ended, why, how many rows were recorded, and whether it is usable."""
     with warnings.catch_warnings():
         # Real-time priority may not be granted where tests run.
         warnings.simplefilter("ignore")
         done = run_play(own_plan(), f"serial:{port}", trace, {}, duration=seconds)
-    return {"ending": done.ending.name, "message": done.message, "rows": done.rows}
+    return {
+        "ending": done.ending.name, "message": done.message, "rows": done.rows,
+        "usable": done.usable, "ticks": None if done.usability is None else done.usability.sentence,
+    }  # fmt: skip
 
 
 def tell_ending(tells: Connection, port: str, trace: Path, seconds: float) -> None:

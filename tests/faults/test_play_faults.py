@@ -130,6 +130,30 @@ def test_a_host_that_is_interrupted_and_one_that_is_killed(tmp_path: Path) -> No
 
 
 @pytest.mark.slow
+def test_a_host_that_is_stopped_for_5_s_with_its_children_was_not_usable(tmp_path: Path) -> None:
+    """As by a computer that is put to sleep: `play` ends with exit code 1 then."""
+    with observed_twin(tmp_path) as twin, playing_host(twin, tmp_path / "a.sqft") as host:
+        listed = subprocess.run(
+            ["ps", "-o", "pid=", "--ppid", str(host.pid)],
+            capture_output=True,
+            text=True,
+            check=True,
+        )  # fmt: skip
+        children = [int(pid) for pid in listed.stdout.split()]
+        assert children, "the loop runs in a process of its own"
+        for pid in (host.pid, *children):
+            os.kill(pid, signal.SIGSTOP)
+        time.sleep(5.0)
+        for pid in (*children, host.pid):
+            os.kill(pid, signal.SIGCONT)
+        out, error = host.communicate(timeout=_PATIENCE)
+        assert host.returncode == 0, error
+    said = json.loads(out)
+    assert not said["usable"]
+    assert said["message"] or said["ticks"]
+
+
+@pytest.mark.slow
 def test_a_host_that_is_stopped_for_5_s_and_one_that_is_unplugged(tmp_path: Path) -> None:
     with observed_twin(tmp_path) as twin:
         with playing_host(twin, tmp_path / "stopped.sqft") as host:

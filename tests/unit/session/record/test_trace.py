@@ -222,3 +222,22 @@ def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.sqft")
     with pytest.raises(InputError, match="no regular file"):
         read_trace(tmp_path / "pipe.sqft")
+
+
+@pytest.mark.slow
+def test_an_export_of_a_sparse_file_says_how_far_it_is(tmp_path: Path) -> None:
+    """A hole of 300 MB between two blocks, as a copy leaves one, is read through with a word."""
+    rows = recorded(tmp_path / "one.sqft")
+    whole = (tmp_path / "one.sqft").read_bytes()
+    with (tmp_path / "one.sqft").open("rb+") as trace:
+        trace.seek(300_000_000)
+        trace.write(whole)
+    said: list[str] = []
+    done = export_trace(tmp_path / "one.sqft", tmp_path / "one.csv", said.append)
+    assert done.rows >= len(rows)
+    assert done.damage
+    shares = [int(text.split("(")[1].split(" %")[0]) for text in said if " %" in text]
+    assert len(shares) >= 2
+    assert shares == sorted(set(shares))
+    assert all("reading the trace, 0.3 GB" in text for text in said[:-1])
+    assert said[-1] == f"writing {done.rows} rows"

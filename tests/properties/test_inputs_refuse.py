@@ -15,10 +15,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from tests.properties.public_calls import annotations_of, is_number
 
 import squeezefilm
 from squeezefilm.errors import InputError
+
+from .public_calls import annotations_of, is_number
 
 INPUTS = ("Request", "Options", "Requirements", "Description", "Settings")
 
