@@ -10,16 +10,25 @@ import numpy as np
 import pytest
 from tests.verification.random_plates import random_glass, random_plate
 
-from squeezefilm.analysis.plate.command import solve_plate
+from squeezefilm import quantities as si
+from squeezefilm.analysis.analyze import Analysis, analyze
+from squeezefilm.analysis.plate.command import PlateAnalysis, solve_plate
 from squeezefilm.analysis.plate.modes import list_modes
-from squeezefilm.chain.prediction import predict
+from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
+from squeezefilm.lab.designing.form import preset_text
+from squeezefilm.lab.designing.numbers import WorkingPoint, designed, predicted
 from squeezefilm.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.plate.electronics import load_of_mode
 from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.plate.working_mode import CROWDED, working_mode
+from squeezefilm.report.display.rows import friction_rows, vibration_rows
+from squeezefilm.search.answers import numbers_of
+from squeezefilm.search.design.criteria import numbers_of_prediction, numbers_of_solved
+from squeezefilm.search.design.requirements import load_requirements
+from squeezefilm.search.points import Point, answer_of
 
 GLASS = ElasticMaterial("soda-lime glass", 72e9, 0.23, 2500)
 CERAMIC = Piezoceramic("PZT", 61e9, 0.31, 21e9, 7750, -171e-12, 1700, 75)
@@ -81,6 +90,13 @@ def check(plate: RectangularPlate) -> None:
     load = load_of_mode(plate, mode, volts, mode.resonance_frequency)
     assert load is not None
     same(load.current, solve_plate(display).load.current)
+    analysis = analyze(display, samples=0)
+    # What stands beside these numbers, and takes seconds.
+    vars(analysis).update(ears=None, felt=None, sensitivities=None, survival=None)
+    vars(analysis).update(film_models=None, other_models=(), friction_curves=())
+    check_summaries(display, p, alone, analysis)
+    check_rows(analysis)
+    check_criteria(display, p, load.current)
     check_listed(display, mode, band)
     check_circuit(mode)
     given = predict(display, vibration_amplitude=p.vibration_amplitude)
@@ -90,6 +106,79 @@ def check(plate: RectangularPlate) -> None:
         found, amplitude = voltage_for_friction(display, p.relative_friction)
         same(volts, found)
         same(p.vibration_amplitude, amplitude)
+
+
+SHARED = (
+    "resonance_frequency_Hz", "amplitude_per_volt_m_per_V", "quality_factor", "half_wavelength_m",
+    "vibration_amplitude_m", "relative_friction", "neighbour.frequency_Hz", "neighbour.share",
+    "heat.speed_m_per_s", "heat.tracked.amplitude_m", "heat.tracked.temperature_rise_K",
+)  # fmt: skip
+
+
+def check_summaries(
+    display: Display, p: Prediction, alone: PlateAnalysis, analysis: Analysis
+) -> None:
+    """Assert that the JSON of predict, analyze and plate, the points of a sweep that ask them, and
+    the lab have the same under the same names."""
+    plate = alone.summary()
+    swept = [answer_of(Point(display, {}, verb)) for verb in ("predict", "plate")]
+    assert [answer.reason for answer in swept] == ["", ""]
+    summaries = [
+        dict(numbers_of(summary))
+        for summary in (
+            p.summary(), analysis.summary(), plate | {"resonance_frequency_Hz": None},
+            predicted(display, "solved", WorkingPoint("")).summary(),
+        )
+    ] + [dict(answer.numbers) for answer in swept]  # fmt: skip
+    same(p.mode.resonance_frequency, plate["frequency_Hz"], swept[1].numbers["frequency_Hz"])
+    for name in SHARED:
+        there = [numbers.get(name, math.nan) for numbers in summaries]
+        known = [value for value in there if not math.isnan(value)]
+        if known or not name.startswith(("neighbour", "heat")):
+            same(*known)
+    best = analysis.active_area
+    if best is not None and best.area.best is not None:
+        # The map reads the law between knots.
+        assert p.summary()["place"]["is_best_of_area"]
+        assert p.relative_friction == pytest.approx(best.area.best, abs=2e-4)
+
+
+def check_rows(analysis: Analysis) -> None:
+    """Assert that the report's rows say, to the digits that they have, what the JSON has."""
+    p = analysis.prediction
+    rows = {label: (text, remark) for label, text, remark in vibration_rows(p)}
+    rows |= {label: (text, remark) for label, text, remark in friction_rows(analysis)}
+    metre, volts = si.Unit("m"), p.voltage
+    for label, value, unit in (
+        ("Resonance frequency", p.mode.resonance_frequency, si.Unit("Hz")),
+        ("Amplitude, free", volts * p.mode.amplitude_per_volt, metre),
+        ("Amplitude, finger on", p.vibration_amplitude, metre),
+        ("Relative friction µ′/µ", p.relative_friction, si.Unit("1")),
+    ):
+        told = si.parse_quantity(rows[label][0], unit)
+        assert told == pytest.approx(value, rel=5.1e-3, abs=5.1e-3 if unit.symbol == "1" else 0)
+    per_volt = si.parse_quantity(rows["Amplitude, free"][1].split(" × ")[0], si.Unit("m/V"))
+    assert per_volt == pytest.approx(p.mode.amplitude_per_volt, rel=5.1e-3)
+
+
+def check_criteria(display: Display, p: Prediction, current: float) -> None:
+    """Assert that what a search judges a design by is what the verbs say of it."""
+    wanted = load_requirements("biet2008-plate")
+    judged = numbers_of_prediction(wanted, display, p) | numbers_of_solved(wanted, display, p)
+    summary, beside = p.summary(), p.mode.neighbour
+    for key, name in (
+        ("relative_friction", "relative_friction"),
+        ("resonance_frequency", "resonance_frequency_Hz"),
+        ("vibration_amplitude", "vibration_amplitude_m"),
+        ("half_wavelength", "half_wavelength_m"),
+    ):
+        same(judged[key], summary[name])
+    same(judged["current"], current)
+    crowded = beside is not None and beside.share >= CROWDED
+    assert judged["neighbour"] == (abs(beside.distance) if crowded and beside else math.inf)
+    if p.heat is not None:
+        same(judged["temperature_rise"], summary["heat"]["tracked"]["temperature_rise_K"])
+        same(judged["power"], summary["heat"]["cold_power_W"])
 
 
 def check_listed(display: Display, mode: Any, band: tuple[float, float]) -> None:
@@ -136,6 +225,15 @@ def test_the_verbs_agree_on_a_mode_that_is_hardly_driven() -> None:
     assert "of the conductance at its resonance" in mode.solid.circuit_said
     assert mode.neighbour is not None
     assert mode.neighbour.name == "(1,2)"
+
+
+@pytest.mark.slow
+def test_the_lab_says_of_a_plate_what_predict_says() -> None:
+    shown = dict(numbers_of(designed(WorkingPoint(preset_text("biet2008-plate")), "solved")))
+    p = dict(numbers_of(predict("biet2008-plate").summary()))
+    for name in SHARED:
+        if not math.isnan(p.get(name, math.nan)):
+            same(shown[name], p[name])
 
 
 @pytest.mark.slow
