@@ -228,8 +228,6 @@ RECORDING_BYTES = HardLimit(
 )
 TABLE_BYTES = HardLimit("bytes of a table", 0, 2_000_000_000, "it is read into memory")
 KEPT_BYTES = HardLimit("bytes of a kept result", 0, 200_000_000, "the largest plates have 100 MB")
-HJIF_BYTES = HardLimit("bytes of an HJIF", 0, 50_000_000, "it is read into memory")
-WAVE_BYTES = HardLimit("bytes of a WAV file", 0, 2**32, "what the format can hold")
 TRACE_BYTES = HardLimit("bytes of a trace", 0, 1e12, "a month of the fastest loop")
 READING_MEMORY = HardLimit(
     "bytes of memory for a file", 0, 1.5e9, "a small file may unpack to any size"

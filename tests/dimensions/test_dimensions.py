@@ -58,7 +58,6 @@ MINIMUM = {
         "film.gap.squeeze_number",
         "film.gap.squeeze_number_printed",
         "film.gap.frequency_for_squeeze_number",
-        "film.closed.limits.asymptotic_load",
         "film.closed.limits.paper_mean_pressure",
         "film.closed.limits.paper_mean_pressure_printed",
         "film.closed.linear.relative_stiffness",

@@ -13,11 +13,11 @@ import pytest
 from tests.e2e.program import run
 from tests.pictures import picture_bytes
 from tests.unit.formats.read_parquet import table_in_parquet
+from tests.unit.formats.read_sound import read_sound
 
 from squeezefilm import presets
-from squeezefilm.formats.hjif_read import read_hjif
+from squeezefilm.formats.hjif import friction_along
 from squeezefilm.formats.traces import table_from_csv
-from squeezefilm.formats.wav import read_wav
 
 STATOR = ("--display", "biet2008-stator")
 GRATING = "biet2008-square-4mm"
@@ -48,17 +48,18 @@ def test_everything_is_written_and_belongs_together(tmp_path: Path) -> None:
     assert np.max(np.diff(trace.column("time_s"))) == pytest.approx(1 / 19_200)
     error = trace.column("relative_friction_rendered") - trace.column("relative_friction_asked")
     assert numbers["friction_rms_error"] == pytest.approx(math.sqrt(float(np.mean(error**2))))
-    envelope = read_wav(out / "envelope.wav")
+    envelope = read_sound((out / "envelope.wav").read_bytes())
     assert envelope.samples == pytest.approx(trace.column("amplitude_commanded_m"), abs=1e-12)
-    drive = read_wav(out / "drive.wav")
-    assert drive.sample_rate == 192_000
-    assert drive.unit == "V"
-    assert drive.full_scale == numbers["voltage_V"] == 140.0
+    drive = read_sound((out / "drive.wav").read_bytes())
+    assert drive.rate == 192_000
+    assert drive.note["unit"] == "V"
+    assert drive.note["full_scale"] == numbers["voltage_V"] == 140.0
     # The carrier's amplitude is the command's share of the limit, times the voltage.
     share = float(np.max(trace.column("amplitude_commanded_m"))) / numbers["largest_amplitude_m"]
     assert np.max(np.abs(drive.samples)) == pytest.approx(140.0 * share, rel=0.02)
-    back = read_hjif(out / "texture.hjif")
-    assert (back.texture.low, back.texture.high) == pytest.approx((0.7, 1.0))
+    line = json.loads((out / "texture.hjif").read_text())
+    friction = friction_along(line, np.linspace(0.02, 0.03, 1001))
+    assert (friction.min(), friction.max()) == pytest.approx((0.7, 1.0))
     page = (out / "index.html").read_text()
     for name in re.findall(r'(?:src|href)="([^"]+)"', page):
         assert (out / name).is_file(), name

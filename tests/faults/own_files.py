@@ -36,7 +36,6 @@ from squeezefilm.search.kept import Kept
 from squeezefilm.search.points import Answer, Point
 from squeezefilm.session.record.trace import export_trace
 from squeezefilm.session.record.trace_writer import TraceWriter
-from squeezefilm.study.identification.power import power_curve
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import LIST, export_study
 from squeezefilm.study.record.merge import merge
@@ -162,13 +161,6 @@ def _merged(folder: Path) -> None:
         merge(store, folder / "b.sqlite")
 
 
-def _power(folder: Path) -> None:
-    power_curve(
-        lambda people, random: random.random(people), lambda found: float(found.mean()),
-        (3,), studies=20, cache=folder, key="k",
-    )  # fmt: skip
-
-
 def _cache(folder: Path) -> None:
     before = os.environ.get(CACHE_VARIABLE)
     os.environ[CACHE_VARIABLE] = str(folder)
@@ -201,7 +193,6 @@ OWN_FILES = [
     OwnFile("mark of an export", "a.exports/csv/.squeezefilm-export.json", _study, _deleted),
     OwnFile("sittings", SITTINGS, _sittings, _sittings),
     OwnFile("another station's study", "b.sqlite", _stations, _merged),
-    OwnFile("count of studies", "*.json", _power, _power),
     OwnFile("kept result", "lines/*", _cache, _cache),
     OwnFile(
         "trace", "a.sqft", _trace,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning, QuantityError
+from squeezefilm.errors import InputError, QuantityError
 from squeezefilm.quantities import (
     CLOSED_FORMS,
     Metre,
@@ -18,7 +18,6 @@ from squeezefilm.quantities import (
     parse_quantity,
     require,
     require_alike,
-    require_valid,
     unit_of,
 )
 
@@ -116,13 +115,6 @@ def test_series_are_of_one_length() -> None:
     for y in (np.zeros(2), 0.5, np.zeros((3, 1)), [[1.0], [1.0, 2.0]]):
         with pytest.raises(InputError, match=r"x, y|x .* y"):
             require_alike(x=np.zeros(3), y=y)
-
-
-def test_validity_refuses_or_warns() -> None:
-    with pytest.raises(OutOfRangeError, match="strict=False"):
-        require_valid("squeeze number", 3.0, 10, 1e6, "the asymptote holds")
-    with pytest.warns(OutOfRangeWarning, match="squeeze number = 3"):
-        require_valid("squeeze number", 3.0, 10, 1e6, "the asymptote holds", strict=False)
 
 
 def test_closed_form_checks_its_arguments() -> None:

@@ -9,18 +9,14 @@ import pytest
 from squeezefilm.config.load import load
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.formats.hjif_read import read_hjif
 from squeezefilm.formats.pictures import read_picture
 from squeezefilm.formats.traces import text_of_file
-from squeezefilm.formats.wav import read_wav
 from squeezefilm.hard_limits import HardLimit
 from squeezefilm.regular_file import read_regular, read_regular_text
 from squeezefilm.session.record.trace import read_trace
 
 TEN = HardLimit("bytes of a test", 0, 10, "ten are enough")
-READERS = [
-    lambda path: load(Display, path), text_of_file, read_wav, read_hjif, read_picture, read_trace,
-]  # fmt: skip
+READERS = [lambda path: load(Display, path), text_of_file, read_picture, read_trace]
 
 
 @pytest.mark.parametrize("reader", READERS)

@@ -8,14 +8,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import j1, struve
+from tests.finger_stiffness import finger_stiffness, interface_stiffness
 
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.chain.touch import load_ratios, touch
-from squeezefilm.contact.finger.load import (
-    finger_impedance,
-    finger_stiffness,
-    interface_stiffness,
-)
+from squeezefilm.contact.finger.load import finger_impedance
 from squeezefilm.contact.finger.skin import PUBLISHED_IMPEDANCE, Skin
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError

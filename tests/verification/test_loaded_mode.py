@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.finger_stiffness import finger_stiffness, interface_stiffness
 
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.chain.touch import load_ratios, touch
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.finger.load import finger_stiffness, interface_stiffness
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError

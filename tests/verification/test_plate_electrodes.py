@@ -167,7 +167,7 @@ def test_power_is_conserved_with_two_kinds_of_foam() -> None:
     plate = small(supports=foams(2.0, 50.0))
     f = np.linspace(15e3, 21e3, 13)
     response = harmonic_response(plate, f)
-    assert response.input_power(10) == pytest.approx(response.dissipated_power(10), rel=1e-6)
+    assert 50 * response.admittance.real == pytest.approx(response.dissipated_power(10), rel=1e-6)
 
 
 def test_the_response_stands_at_the_extrapolated_frequency() -> None:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy import stats
@@ -77,39 +74,22 @@ def test_how_many_people_for_8_against_10_mm() -> None:
     assert before.size == 0 or before[-1] < 0.8
 
 
-def test_a_curve_is_the_same_in_pieces(tmp_path: Path) -> None:
+def test_a_curve_is_the_same_in_pieces() -> None:
     people = DirichletParticipants(ordered_observer(1.0), 2, 10.0)
-    calls = [0]
-
-    def test(counts: np.ndarray) -> float:
-        calls[0] += 1
-        return distinction(counts, 3, 4).p_value
-
     said: list[tuple[int, int]] = []
-    whole = power_curve(people, test, (4, 8, 12), studies=50)
-    part = power_curve(people, test, (8,), studies=50, cache=tmp_path, key="one")
-    before = calls[0]
-    again = power_curve(
-        people, test, (12, 8, 4), studies=50, cache=tmp_path, key="one",
+    whole = power_curve(
+        people, lambda counts: distinction(counts, 3, 4).p_value, (12, 4, 8), studies=50,
         progress=lambda done, of: said.append((done, of)),
     )  # fmt: skip
-    assert calls[0] == before + 100
-    assert whole.power.tolist() == again.power.tolist()
+    part = power_curve(people, lambda counts: distinction(counts, 3, 4).p_value, (8,), studies=50)
     assert part.power[0] == whole.power[1]
     assert said == [(1, 3), (2, 3), (3, 3)]
-    for file in tmp_path.iterdir():
-        assert json.loads(file.read_text())["key"] == "one"
-    other = power_curve(people, test, (8,), studies=50, cache=tmp_path, key="two", seed=1)
-    assert calls[0] == before + 150
-    assert other.studies == 50
 
 
-def test_what_cannot_be_simulated_is_refused(tmp_path: Path) -> None:
+def test_what_cannot_be_simulated_is_refused() -> None:
     people = DirichletParticipants(even_errors(0.4), 1, 10.0)
     with pytest.raises(InputError, match="at least 10 studies"):
         power_curve(people, _binomial, (4,), studies=5)
-    with pytest.raises(InputError, match="needs a key"):
-        power_curve(people, _binomial, (4,), cache=tmp_path)
     with pytest.raises(InputError, match="p value of 0 to 1"):
         power_curve(people, lambda _: 2.0, (4,), studies=10)
     with pytest.raises(InputError, match="two different ones"):

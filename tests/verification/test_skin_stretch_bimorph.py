@@ -30,10 +30,11 @@ def narrow(beam: Bimorph, field: bool = True) -> tuple[float, float]:
     own, shim = beam.ceramic_thickness, beam.shim_thickness
     stiffness = triple_layer.bending_stiffness(own, s11, shim, beam.shim.young_modulus)
     if field:
-        stiffness += triple_layer.field_stiffening(own, s11, beam.coupling)
+        # ∂D3/∂z = 0: the field follows the strain and stiffens each ceramic about its own middle.
+        stiffness += own**3 / (6 * s11) * beam.coupling / (1 - beam.coupling)
     moment = triple_layer.moment_per_volt(own, s11, shim, d31) * beam.ceramic_share
     return (
-        float(triple_layer.tip_deflection(moment, stiffness, beam.length)),
+        float(moment * beam.length**2 / (2 * stiffness)),
         float(triple_layer.tip_stiffness(stiffness, beam.width, beam.length)),
     )
 

@@ -153,7 +153,7 @@ class PadLaw:
     ) -> PascalPerMetreComplex:
         """What the plate feels of the finger per area of contact (Pa/m, complex) at an amplitude
         (m) of an even wave, wherever the pad is, in the model's limit: of `sharing` what the
-        vibration depends on, without the friction. See `interface_stiffness`."""
+        vibration depends on, without the friction. See `load_kernel.between`."""
         from squeezefilm.contact.finger.load_kernel import felt
         from squeezefilm.contact.sharing import kernel
 

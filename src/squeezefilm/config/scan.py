@@ -16,8 +16,6 @@ DEEPEST = 100
 """Tables and lists within each other, and parts of a key: far past any description."""
 MOST_LINES = 50_000
 """Lines of a TOML text, and its keys, tables and lists."""
-MOST_JSON_PARTS = 1_000_000
-"""Values, lists and objects of a JSON text."""
 
 # Every alternative ends, also where a quote is missing, so that no place is looked at twice.
 _STRING_OR_COMMENT = re.compile(
@@ -28,7 +26,6 @@ _STRING_OR_COMMENT = re.compile(
     r"|#[^\n]*+",
     re.DOTALL,
 )
-_JSON_STRING = re.compile(r'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
 _BETWEEN_KEYS = re.compile(r"[\[\]{}=,\n]")
 
 
@@ -56,16 +53,6 @@ def require_quick_toml(text: str, file: str | Path | None = None) -> None:
             f"is nested {longest} deep by one key; at most {DEEPEST} are read", file=file
         )
     _require_flat(bare, file)
-
-
-def require_quick_json(text: str) -> None:
-    """Refuse a JSON text of too many values, or nested too deeply. Raises `ConfigError`."""
-    bare = _JSON_STRING.sub("s", text)
-    if (parts := bare.count(",") + bare.count("[") + bare.count("{")) > MOST_JSON_PARTS:
-        raise ConfigError(
-            f"has {parts} values; at most {MOST_JSON_PARTS} are read: make it smaller"
-        )
-    _require_flat(bare)
 
 
 def _require_flat(bare: str, file: str | Path | None = None) -> None:

@@ -16,7 +16,7 @@ keyframes. ``perception_unit_exponent`` is 0.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Annotated, Any
@@ -315,10 +315,35 @@ def _document(
 def _errors(
     document: dict[str, Any], friction: Callable[..., si.FloatArray], start: si.Metre, end: si.Metre
 ) -> tuple[float, float]:
-    from squeezefilm.formats.hjif_read import friction_along
-
     # Irrational steps, so that samples don't fall on keyframes or edges in any regular way.
     count = 20_011
     inside: si.MetreArray = start + (end - start) * np.mod(np.arange(1, count) * 0.6180339887, 1.0)
     miss = np.abs(friction_along(document, inside) - friction(inside))
     return float(np.sqrt(np.mean(miss**2))), float(np.max(miss))
+
+
+@si.checked_numbers
+def friction_along(document: Mapping[str, Any], x: si.MetreArray) -> si.DimensionlessArray:
+    """Friction (1) of a document that `hjif_of` wrote, at places `x` (m), in the shape of `x`.
+
+    Evaluated as the reference software does: the keyframes of a `Curve` band joined by straight
+    lines, a `VectorialWave` with its amplitude linear between keyframes; 0 outside of the effects.
+    """
+    (perception,) = document["perceptions"]
+    unit = 10.0 ** perception["unit_exponent"]
+    total = np.zeros(np.shape(x))
+    for band in perception["channels"][0]["bands"]:
+        (effect,) = band["effects"]
+        keyframes = effect["keyframes"]
+        way = np.asarray(x) / unit - effect["position"]
+        places = [key["relative_position"] for key in keyframes]
+        level = np.interp(way, places, [key["amplitude_modulation"] for key in keyframes])
+        if band["band_type"] == "VectorialWave":
+            frequency = keyframes[0]["frequency_modulation"]
+            cycles = way * unit * frequency + effect["phase"] / (2 * math.pi)
+            sine = effect["base_signal"] == "Sine"
+            square = np.where(np.mod(cycles, 1.0) < 0.5, 1.0, -1.0)
+            level *= np.sin(2 * math.pi * cycles) if sine else square
+        # Ends that a division by the unit moved by a rounding error still belong to the effect.
+        total += np.where((way >= -1e-6) & (way <= places[-1] + 1e-6), level, 0.0)
+    return total

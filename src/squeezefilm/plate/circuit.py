@@ -35,26 +35,6 @@ class DrivenResponse:
         """The number of the frequency with the largest amplitude."""
         return int(np.argmax(self.maximum))
 
-    @property
-    def impedance(self) -> si.ComplexArray:
-        """Z = 1/Y (Ω)."""
-        return 1 / self.admittance
-
-    @si.checked_numbers
-    def current(self, voltage: si.Volt) -> si.FloatArray:
-        """The amplifier's current amplitude (A) at a voltage amplitude."""
-        return np.abs(self.admittance) * voltage
-
-    @si.checked_numbers
-    def apparent_power(self, voltage: si.Volt) -> si.FloatArray:
-        """Vrms · Irms (VA): what the amplifier must be able to give."""
-        return self.current(voltage) * voltage / 2
-
-    @si.checked_numbers
-    def input_power(self, voltage: si.Volt) -> si.FloatArray:
-        """Mean electrical power (W) taken at a voltage amplitude."""
-        return self.admittance.real * voltage**2 / 2
-
 
 @si.checked_numbers
 @dataclass(frozen=True)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import operator
-import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 
-from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
+from squeezefilm.errors import InputError
 from squeezefilm.quantities.units import FloatArray, Unit, did_you_mean, format_quantity
 
 __all__ = [
@@ -17,7 +16,6 @@ __all__ = [
     "require",
     "require_alike",
     "require_one_of",
-    "require_valid",
     "returned",
 ]
 
@@ -146,21 +144,3 @@ def returned(name: str, values: Any, given: Any, what: str) -> FloatArray:
             f"return {what}"
         )
     return array
-
-
-def require_valid(
-    name: str, value: Any, low: float, high: float, because: str, *, strict: bool = True
-) -> None:
-    """Refuse (strict) or warn of a dimensionless group outside the validity range of a model.
-
-    Raises `OutOfRangeError`, or warns `OutOfRangeWarning` if not `strict`.
-    """
-    array = np.ravel(real_numbers(name, value))
-    outside = ~((array >= low) & (array <= high))
-    if not np.any(outside):
-        return
-    offender = float(array[np.flatnonzero(outside)[0]])
-    message = f"{name} = {offender:.4g} is outside {low:.4g} to {high:.4g}, where {because}"
-    if strict:
-        raise OutOfRangeError(f"{message}; pass strict=False to compute it all the same")
-    warnings.warn(message, OutOfRangeWarning, stacklevel=3)

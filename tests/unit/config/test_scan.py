@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import itertools
-import json
 import sys
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,10 +13,9 @@ from squeezefilm import presets
 from squeezefilm.config import load_text
 from squeezefilm.config import scan as scanning
 from squeezefilm.config.lines import locate
-from squeezefilm.config.scan import DEEPEST, MOST_JSON_PARTS, require_quick_json, require_quick_toml
+from squeezefilm.config.scan import DEEPEST, require_quick_toml
 from squeezefilm.display import Display
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.formats.hjif_read import read_hjif
+from squeezefilm.errors import ConfigError
 from squeezefilm.texture_file import texture_from_text
 
 N = 100_000
@@ -50,7 +47,6 @@ def no_parser(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("the parser saw it")
 
     monkeypatch.setattr(tomllib, "loads", parse)
-    monkeypatch.setattr(json, "loads", parse)
 
 
 @pytest.mark.usefixtures("no_parser")
@@ -59,17 +55,6 @@ def test_what_takes_a_parser_long_is_refused_before_it(kind: str) -> None:
     for read in (lambda text: load_text(Display, text, file="x.toml"), texture_from_text):
         with pytest.raises(ConfigError, match=r"at most|larger"):
             read(SLOW[kind])
-
-
-@pytest.mark.usefixtures("no_parser")
-def test_a_json_text_of_too_many_values_or_too_deep_is_refused_before_it(tmp_path: Path) -> None:
-    for text in ("[" * 1000, "[" + "[]," * MOST_JSON_PARTS, '{"a":' * 1000):
-        with pytest.raises(ConfigError, match="at most"):
-            require_quick_json(text)
-        file = tmp_path / "a.hjif"
-        file.write_text(text)
-        with pytest.raises(InputError, match=r"a\.hjif .*at most"):
-            read_hjif(file)
 
 
 @pytest.mark.parametrize("name", [*presets.display_names(), *presets.texture_names()])
@@ -90,7 +75,6 @@ def test_what_stands_in_strings_and_comments_is_not_counted() -> None:
         f'c = """\n{brackets}"{dots}""{brackets}\\"""{brackets}"""\n'
         f"d = '''\n{brackets}''{dots}'''\n" + f"e = \"'''\" # {brackets}\n"
     )
-    require_quick_json(json.dumps({"a": brackets, 'b"': "\\" + brackets}))
 
 
 def test_depth_is_the_one_that_a_parser_makes() -> None:

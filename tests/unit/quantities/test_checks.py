@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
@@ -13,7 +12,7 @@ import numpy as np
 import pint
 import pytest
 
-from squeezefilm.errors import InputError, OutOfRangeError, OutOfRangeWarning
+from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.hard_limits import SIDE
 from squeezefilm.quantities import (
     ComplexArray,
@@ -26,7 +25,7 @@ from squeezefilm.quantities import (
 )
 from squeezefilm.quantities.bounds import Above, AtLeast, AtMost, Below, bounds_of
 from squeezefilm.quantities.checks import CLOSED_FORMS, checked_numbers, closed_form
-from squeezefilm.quantities.require import real_numbers, require, require_one_of, require_valid
+from squeezefilm.quantities.require import real_numbers, require, require_one_of
 
 M = Unit("m")
 
@@ -166,20 +165,6 @@ def test_the_number_of_axes_is_required() -> None:
     assert refusal(lambda: require("x", [1.0, 2.0], axes=2)) == (
         "x has the shape (2,); an array of 2 axes is wanted"
     )
-
-
-def test_a_group_is_valid_up_to_both_ends_of_its_range() -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        require_valid("Kn", [0.1, 1.0], 0.1, 1.0, "slip")
-    for outside in (0.099, 1.01, math.nan):
-        says = f"Kn = {outside:.4g} is outside 0.1 to 1, where slip"
-        with pytest.raises(OutOfRangeError) as caught:
-            require_valid("Kn", [0.5, outside, 7.0], 0.1, 1.0, "slip")
-        assert str(caught.value) == f"{says}; pass strict=False to compute it all the same"
-        with pytest.warns(OutOfRangeWarning) as warned:
-            require_valid("Kn", [0.5, outside], 0.1, 1.0, "slip", strict=False)
-        assert str(warned[0].message) == says
 
 
 def test_a_number_is_one_finite_float() -> None:

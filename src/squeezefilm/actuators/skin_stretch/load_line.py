@@ -31,7 +31,7 @@ in no text that could be read (the sentence breaks off after "0.075 mm and")."""
 
 IMPLIED_STIFFNESS: si.NewtonPerMetre = 500.0
 """The skin's stiffness that a linear actuator of the three figures above works against: derived,
-0.15 N (1 − 0.075/0.1) = 0.0375 N at 0.075 mm (`implied_stiffness` computes it)."""
+0.15 N (1 − 0.075/0.1) = 0.0375 N at 0.075 mm."""
 
 
 @si.closed_form(positive="free_deflection actuator_stiffness", nonnegative="load_stiffness")
@@ -46,16 +46,6 @@ def loaded_deflection(
     deflection or an actuator's stiffness not above 0, or a negative load. Source: statics.
     """
     return free_deflection * actuator_stiffness / (actuator_stiffness + load_stiffness)
-
-
-@si.closed_form(positive="free_deflection blocked_force loaded")
-def implied_stiffness(
-    free_deflection: si.MetreLike, blocked_force: si.NewtonLike, loaded: si.MetreLike
-) -> si.NewtonPerMetreLike:
-    """The stiffness of the load (N/m) at which a linear actuator moves by `loaded` (below its free
-    deflection): F (1/x − 1/δ). Arguments (m, N, m) broadcast. Raises `InputError` for any not above
-    0. Source: statics."""
-    return blocked_force * (1 / loaded - 1 / free_deflection)
 
 
 @si.checked_numbers

@@ -9,8 +9,8 @@ Sources: Smits and Choi 1991, 10.1109/58.84256, for what is derived and how; Wan
 10.1109/58.808857, for the symmetrical triple layer. Both take the field to be uniform across a
 ceramic. Where the beam is bent it is not: the charge that bending brings must be the same at every
 height, so the field follows the strain and stiffens each ceramic about its *own* middle by
-k31²/(1 − k31²). `field_stiffening` is that term; with 0 in its place the forms are the published
-ones, and for two thick ceramics of high coupling these are some 3 % too soft.
+k31²/(1 − k31²). That term is left out here, as in the published forms, which for two thick ceramics
+of high coupling are some 3 % too soft.
 """
 
 from __future__ import annotations
@@ -45,21 +45,6 @@ def coupling_squared(
     return charge_coefficient**2 / (compliance * permittivity)
 
 
-@si.closed_form(positive="ceramic_thickness compliance", nonnegative="coupling")
-def field_stiffening(
-    ceramic_thickness: si.MetreLike,
-    compliance: SquareMetrePerNewtonLike,
-    coupling: si.DimensionlessLike,
-) -> NewtonMetreLike:
-    """What the field that follows the strain adds to the bending stiffness per width (N·m), both
-    ceramics: 2 (t_p³/12 s11) k31²/(1 − k31²), `coupling` being k31² (below 1).
-
-    Follows from ∂D3/∂z = 0 with D3 = d31 T1 + εᵀ33 E3. Arguments (m, m²/N, 1) broadcast. Raises
-    `InputError` for a thickness or compliance not above 0, or a negative coupling.
-    """
-    return ceramic_thickness**3 / (6 * compliance) * coupling / (1 - coupling)
-
-
 @si.closed_form(positive="ceramic_thickness compliance", nonnegative="shim_thickness shim_modulus")
 def bending_stiffness(
     ceramic_thickness: si.MetreLike,
@@ -90,16 +75,6 @@ def moment_per_volt(
     broadcast. Source: Wang and Cross 1999. Raises `InputError` as `bending_stiffness`.
     """
     return charge_coefficient / compliance * (shim_thickness + ceramic_thickness)
-
-
-@si.closed_form(positive="stiffness length")
-def tip_deflection(
-    moment: si.NewtonLike, stiffness: NewtonMetreLike, length: si.MetreLike
-) -> si.MetreLike:
-    """δ = M L²/(2 G), the free deflection of the tip (m) under a moment per width M (N) that is the
-    same all along. Arguments (N, N·m, m) broadcast. Source: Euler's beam. Raises `InputError` for a
-    stiffness or length not above 0."""
-    return moment * length**2 / (2 * stiffness)
 
 
 @si.closed_form(positive="stiffness width length")

@@ -57,15 +57,6 @@ def triangles_of(part: Part) -> si.FloatArray:
     return np.concatenate(found)
 
 
-def enclosed_volume(triangles: si.FloatArray) -> si.CubicMetre:
-    """The volume within closed triangles (m³), by the divergence theorem; negative for a surface
-    that looks inwards."""
-    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
-    # About a corner of the body: far from the origin the terms would cancel.
-    origin = triangles[0, 0]
-    return float(np.einsum("ij,ij->i", a - origin, np.cross(b - origin, c - origin)).sum() / 6)
-
-
 def _steps(shape: Sector) -> int:
     share = (shape.end - shape.start) / WHOLE_TURN
     return max(2, math.ceil(share * facets_round(shape.outer_radius) * (1 - 1e-12)))

@@ -14,9 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.compiled import announce
 from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.rough_contact import ContactLaw
 from squeezefilm.film.gap import squeeze_number
 from squeezefilm.materials import Gas
 
@@ -24,29 +22,6 @@ if TYPE_CHECKING:
     from squeezefilm.contact.finger.load_kernel import CompiledFinger
 
 NewtonSecondPerMetreComplex = Annotated[complex, si.Unit("N*s/m")]
-
-
-@si.checked_numbers
-def interface_stiffness(
-    mean_gap: Annotated[si.Metre, si.Above(0.0)],
-    amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
-    plateau_width: si.Metre,
-    frequency: si.Hertz,
-    gas: Gas,
-    asperities: ContactLaw,
-) -> complex:
-    """Film and asperities between plate and a plateau: complex stiffness per area (Pa/m).
-
-    The film is the linear one of a strip at the mean gap, with first-order slip: within some tens
-    of percent up to an amplitude of half the gap, too soft beyond. The asperities' is the first
-    harmonic of their law over the swing, −2⟨p_a cos T⟩/a, exact at any amplitude. Raises
-    `InputError` for a gap, width or frequency not above 0, or a negative amplitude.
-    """
-    from squeezefilm.contact.finger import load_kernel as kernel
-
-    announce(kernel.felt, "stiffness under the finger", 5)
-    strip = compiled_finger(plateau_width, frequency, gas, Skin(), 1.0)
-    return complex(kernel.between(mean_gap, amplitude, strip, asperities.compiled()))
 
 
 @si.checked_numbers
@@ -72,23 +47,6 @@ def compiled_finger(
 
 
 @si.checked_numbers
-def finger_stiffness(
-    interface: complex,
-    skin: Skin,
-    frequency: si.Hertz,
-    plateau_share: Annotated[float, si.AtLeast(0.0), si.AtMost(1.0)],
-) -> complex:
-    """What the plate feels of a finger, per area of contact (Pa/m, complex): K_i D/(K_i + D) on the
-    plateaus, which are `plateau_share` (0 to 1) of the contact; grooves are left out.
-
-    Raises `InputError` for a share outside 0 to 1.
-    """
-    behind = skin.dynamic_stiffness(frequency)
-    felt: complex = plateau_share * interface * behind / (interface + behind)
-    return felt
-
-
-@si.checked_numbers
 def finger_impedance(
     stiffness_per_area: complex,
     area: Annotated[si.SquareMetre, si.Above(0.0)],
@@ -97,7 +55,7 @@ def finger_impedance(
 ) -> NewtonSecondPerMetreComplex:
     """The mechanical impedance of a whole finger, Z = K A ⟨cos²⟩/(iω) (N·s/m, complex).
 
-    K is `finger_stiffness` (Pa/m), A the area of contact, `mean_square` the mean of the square of
+    K is `load_kernel.felt` (Pa/m), A the area of contact, `mean_square` the mean of the square of
     the vibration's shape over it: Z is referred to the velocity v at an antinode, and the finger
     takes the power ½ Re Z |v|². A positive imaginary part is a mass, a negative one a spring. Both
     depend on the amplitude through the film and the asperities in K. Raises `InputError` unless

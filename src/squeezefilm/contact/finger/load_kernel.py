@@ -45,7 +45,12 @@ def strip_force(sigma: float) -> complex:
 @compiled(error_model="numpy")
 def between(u: float, swing: float, finger: CompiledFinger, law: CompiledAsperities) -> complex:
     """Film and asperities between plate and plateau at a mean gap and swing (m): complex stiffness
-    per area (Pa/m). See `load.interface_stiffness`."""
+    per area (Pa/m).
+
+    The film is the linear one of a strip at the mean gap, with first-order slip: within some tens
+    of percent up to a swing of half the gap, too soft beyond. The asperities' is the first harmonic
+    of their law over the swing, −2⟨p_a cos T⟩/a, exact at any swing.
+    """
     sigma = (finger.length / u) ** 2 / (1.0 + 6.0 * finger.free_path / u)
     film = finger.ambient_pressure / u * strip_force(sigma)
     a = max(swing, _LEAST_SWING)
@@ -54,6 +59,7 @@ def between(u: float, swing: float, finger: CompiledFinger, law: CompiledAsperit
 
 @compiled(error_model="numpy")
 def felt(u: float, swing: float, finger: CompiledFinger, law: CompiledAsperities) -> complex:
-    """What the plate feels per area of contact (Pa/m). See `load.finger_stiffness`."""
+    """What the plate feels of a finger per area of contact (Pa/m, complex): K_i D/(K_i + D) on the
+    plateaus' share of it, K_i from `between`, D of the skin; grooves are left out."""
     interface = between(u, swing, finger, law)
     return finger.plateau_share * interface * finger.skin / (interface + finger.skin)

@@ -21,31 +21,6 @@ from squeezefilm.film.gap import PaperGap
 PaperModel = Literal["paper2008", "paper2008-printed"]
 
 
-@si.closed_form(nonnegative="amplitude_ratio")
-def asymptotic_load(
-    amplitude_ratio: Annotated[si.DimensionlessLike, si.Below(1.0)],
-    polytropic_exponent: Annotated[si.Dimensionless, si.AtLeast(1), si.AtMost(5 / 3)] = 1.0,
-) -> si.DimensionlessLike:
-    """The mean load W over p0 A of a uniform film as σ → ∞ (dimensionless); broadcasts.
-
-    Isothermal, n = 1: W = √((1 + 1.5 ε²)/(1 − ε²)), any planform, ε = amplitude over mean gap below
-    1 (Salbu 1964, 10.1115/1.3653080). For n up to 5/3: Ψ = [⟨H³⟩/⟨H^(2−n)⟩]^(1/(n+1)) and
-    W = Ψⁿ ⟨H⁻ⁿ⟩ with H = 1 + ε cos T; the means are ⟨Hᵖ⟩ = ₂F₁(−p/2, (1−p)/2; 1; ε²). An upper
-    bound: see `film.validity.asymptotic_fraction`.
-    """
-    n, trapped = polytropic_exponent, 1 + 1.5 * amplitude_ratio**2
-    if n == 1:
-        return np.sqrt(trapped / (1 - amplitude_ratio**2))
-    from scipy.special import hyp2f1
-
-    def mean_power(p: float) -> Any:
-        return hyp2f1(-p / 2, (1 - p) / 2, 1, np.square(amplitude_ratio))
-
-    psi = (trapped / mean_power(2 - n)) ** (1 / (n + 1))
-    value: si.DimensionlessLike = psi**n * mean_power(-n)
-    return value
-
-
 @si.closed_form(nonnegative="amplitude_ratio ridge_ratio", positive="wave_number ridge_number")
 def paper_mean_pressure(
     X: si.DimensionlessLike,

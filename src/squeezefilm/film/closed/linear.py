@@ -11,14 +11,13 @@ Sources: Langlois 1962, Quarterly of Applied Mathematics 20, 131; Blech 1983, 10
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from squeezefilm import quantities as si
 
 Planform = Literal["strip", "disc", "rectangle"]
-PLANFORMS: tuple[Planform, ...] = get_args(Planform)
 _Exponent = Annotated[si.Dimensionless, si.AtLeast(1), si.AtMost(5 / 3)]
 
 # Below: continued fraction. Above: exponential (strip) or asymptotic (disc) form.

@@ -6,7 +6,7 @@ import dataclasses
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -105,18 +105,6 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
     def amplitude_at(self, x: si.Metre, y: si.Metre) -> si.FloatArray:
         """|w| per volt (m/V) at a point, for every frequency."""
         return np.abs(self.displacement(np.array([x]), np.array([y]))[:, 0, 0])
-
-    @si.checked_numbers
-    def line(
-        self, at: int, points: Annotated[int, si.AtLeast(1)] = 201, y: si.Metre | None = None
-    ) -> tuple[si.MetreArray, si.ComplexArray]:
-        """w per volt (m/V) along the plate's length at frequency number `at`; by default on the
-        centreline."""
-        si.require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
-        x = np.linspace(0, self.plate.length, points)
-        across = self.plate.width / 2 if y is None else y
-        values = surface_values(self._parts, x, np.array([across]), self.plate.thickness)[:, :, 0]
-        return x, self._coordinates[at] @ values
 
     @si.checked_numbers
     def at(self, frequencies: si.HertzArray) -> HarmonicResponse:

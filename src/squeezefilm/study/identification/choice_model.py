@@ -66,27 +66,6 @@ def choice_probabilities(similarity: ArrayLike, bias: ArrayLike) -> si.FloatArra
     return np.asarray(strength / strength.sum(axis=0, keepdims=True))
 
 
-def exact_choice(probabilities: ArrayLike) -> tuple[si.FloatArray, si.FloatArray]:
-    """Similarities and biases in closed form, for probabilities that obey the model.
-
-    η_ij = √(p_ij p_ji / (p_ii p_jj)); b_i/b_j = √(p_ij p_ii / (p_ji p_jj)), here as the geometric
-    mean over j. For probabilities that do not obey it these are an average without the weights
-    that counts have.
-
-    Raises:
-        InputError: probabilities that are not square, or some not above 0.
-    """
-    p = np.asarray(probabilities, dtype=float)
-    if p.ndim != 2 or p.shape[0] != p.shape[1]:
-        raise InputError(f"probabilities of shape {p.shape} are not square; (k, k) is wanted")
-    si.require("probabilities", p, above=0.0)
-    diagonal = np.diag(p)
-    similarity = np.sqrt(p * p.T / np.outer(diagonal, diagonal))
-    ratio = np.log(p * diagonal[:, None]) - np.log(p.T * diagonal[None, :])
-    bias = np.exp(0.5 * ratio.mean(axis=1))
-    return np.asarray(similarity), np.asarray(bias / bias.sum())
-
-
 def choice_model(counts: ArrayLike, pseudo_trials: si.Dimensionless = 0.0) -> ChoiceModel:
     """Fit the choice model by maximum likelihood.
 

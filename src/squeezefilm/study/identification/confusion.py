@@ -6,7 +6,6 @@ person may answer with, a column for each simulated spatial period, percentages 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -170,24 +169,6 @@ def participant_counts(
     flat = (person * answers + rows) * stimuli + columns
     counts = np.bincount(flat, minlength=names.size * answers * stimuli)
     return names, counts.reshape(names.size, answers, stimuli).astype(np.int64)
-
-
-def confusion_matrix(
-    stimulus: ArrayLike,
-    choice: ArrayLike,
-    answers: Sequence[str],
-    stimuli: Sequence[str] | None = None,
-) -> ConfusionMatrix:
-    """The confusion matrix of trials; `stimuli` are called as the answers are if not given.
-
-    Args and errors as in `participant_counts`.
-    """
-    columns = tuple(answers if stimuli is None else stimuli)
-    presented = np.asarray(stimulus)
-    _, counts = participant_counts(
-        np.zeros(presented.shape), presented, choice, len(answers), len(columns)
-    )
-    return ConfusionMatrix(counts[0], tuple(answers), columns)
 
 
 def _index(name: str, values: ArrayLike, count: int) -> si.IntArray:

@@ -7,11 +7,8 @@ people, so a curve can be cut short, resumed and refined, and gives the same num
 
 from __future__ import annotations
 
-import contextlib
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated, Any, Protocol
 
 import numpy as np
@@ -20,10 +17,7 @@ from scipy import stats
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import OWN_BYTES, STUDIES, require_within
-from squeezefilm.kept.computed_by import computed_by
-from squeezefilm.regular_file import read_json
-from squeezefilm.results import config_hash, write_whole
+from squeezefilm.hard_limits import STUDIES, require_within
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import proportion_interval
 
@@ -173,8 +167,6 @@ def power_curve(
     target: si.Dimensionless = 0.8,
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
-    cache: Path | None = None,
-    key: str = "",
 ) -> PowerCurve:
     """Simulate studies of several sizes and count those whose test is significant.
 
@@ -187,23 +179,18 @@ def power_curve(
         target: power asked for.
         seed: each number of people n draws from (seed, n), whatever else is simulated.
         progress: called with the sizes done and their number.
-        cache: folder that keeps each size's result; a later call takes it from there.
-        key: names simulator and test in the cache; wanted with `cache`, since functions have no
-            name there. Give another when their code changes; this package's own is seen to.
 
     Raises:
-        InputError: no sizes or one below 2, fewer than 10 studies, a share not between 0 and 1,
-            a cache without a key, or a p value that is not one.
+        InputError: no sizes or one below 2, fewer than 10 studies, a share not between 0 and 1, or
+            a p value that is not one.
     """
     sizes = _sizes(participants, studies)
     require_within(STUDIES, studies, "studies")
     si.require("alpha", alpha, above=0.0, below=1.0)
     si.require("target", target, above=0.0, below=1.0)
-    if cache is not None and not key:
-        raise InputError("a cache needs a key that names simulator and test; pass key=...")
     found = []
     for done, people in enumerate(sizes):
-        found.append(_significant(simulate, test, people, studies, alpha, seed, cache, key))
+        found.append(_significant(simulate, test, people, studies, alpha, seed))
         if progress is not None:
             progress(done + 1, len(sizes))
     bounds = [proportion_interval(number, studies, method="Clopper–Pearson") for number in found]
@@ -240,16 +227,8 @@ def _significant(
     studies: int,
     alpha: float,
     seed: int,
-    cache: Path | None,
-    key: str,
 ) -> int:
-    file = None
-    if cache is not None:
-        name: dict[str, Any] = {"key": key, "computed_by": computed_by()}
-        name |= {"people": people, "studies": studies, "alpha": alpha, "seed": seed}
-        file = Path(cache) / f"power-{config_hash(name)}.json"
-        if (known := _known_number(file, studies)) is not None:
-            return known
+    """Studies of so many people, out of `studies` simulated, with p below `alpha`."""
     random = np.random.default_rng([seed, people])
     number = 0
     for _ in range(studies):
@@ -257,19 +236,7 @@ def _significant(
         if not 0.0 <= p <= 1.0:
             raise InputError(f"the test returned p = {p}; it must return a p value of 0 to 1")
         number += p < alpha
-    if file is not None:
-        write_whole(file, json.dumps({**name, "significant": number}) + "\n")
     return number
-
-
-def _known_number(file: Path, studies: int) -> int | None:
-    """What a file kept of so many studies; None where there is none, or it was damaged."""
-    with contextlib.suppress(ValueError, KeyError, TypeError, OverflowError):
-        kept = read_json(file, OWN_BYTES, "a count of studies")
-        number = int(kept["significant"])
-        if kept["studies"] == studies and 0 <= number <= studies:
-            return number
-    return None
 
 
 def _first_lasting(sizes: tuple[int, ...], reached: NDArray[np.bool_]) -> int | None:

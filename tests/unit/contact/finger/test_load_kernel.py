@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.finger_stiffness import finger_stiffness, interface_stiffness
 
 from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.finger.load import (
-    compiled_finger,
-    finger_stiffness,
-    interface_stiffness,
-)
+from squeezefilm.contact.finger.load import compiled_finger
 from squeezefilm.contact.finger.load_kernel import felt, strip_force
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact

@@ -61,14 +61,6 @@ def test_a_circuits_admittance_at_its_resonance_and_far_away() -> None:
     assert high.real == pytest.approx(4e-9 - one.motional_capacitance / 1e6, rel=1e-6)
 
 
-def test_currents_and_powers_at_a_voltage() -> None:
-    one = answered(np.array([1e3, 2e3]), np.array([3e-3 + 4e-3j, 2e-3 - 1e-3j]))
-    assert one.impedance == pytest.approx(1 / one.admittance)
-    assert one.current(20.0) == pytest.approx([0.1, 20e-3 * np.sqrt(5)])
-    assert one.apparent_power(20.0) == pytest.approx([1.0, 200e-3 * np.sqrt(5)])
-    assert one.input_power(20.0) == pytest.approx([0.6, 0.4])
-
-
 class _Class:
     """What a response reads of a reduced class."""
 
@@ -123,15 +115,11 @@ def test_surface_amplitudes_are_read_off_the_modes(monkeypatch: pytest.MonkeyPat
     moved = one.displacement(np.array([1e-3, 2e-3]), np.array([0.0, 1e-3, 2e-3]))
     assert moved.shape == (2, 2, 3)
     assert moved[1, 1, 2] == pytest.approx(6e-3j + 8e-3)
-    x, w = one.line(0, points=5)
-    assert x == pytest.approx(np.linspace(0, a, 5))
-    assert w == pytest.approx(x + 7e-3j)
-    assert one.line(-1, points=3, y=1e-3)[1] == pytest.approx([4e-3, 36e-3j + 4e-3, 72e-3j + 4e-3])
+    line = one.motion(-1, np.array([0.0, a]), np.array([1e-3]))[:, 0]
+    assert line == pytest.approx([4e-3, 72e-3j + 4e-3])
     for at in (2, -3):
         with pytest.raises(InputError, match="at ="):
-            one.line(at)
-    with pytest.raises(InputError, match="points"):
-        one.line(0, points=0)
+            one.motion(at, np.zeros(1), np.zeros(1))
 
 
 def test_a_loads_points_integrate_over_its_rectangle() -> None:

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.unit.formats.read_sound import read_sound
 
 from squeezefilm.chain.rendered_texture import RenderAnalysis, render_texture
 from squeezefilm.errors import InputError
-from squeezefilm.formats.hjif_read import friction_along
+from squeezefilm.formats.hjif import friction_along
 from squeezefilm.formats.traces import csv_text, table_from_csv
-from squeezefilm.formats.wav import waveform_from
 from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.render.texture.shapes import SineWave
@@ -147,10 +147,10 @@ def test_all_files_are_written_with_what_they_are_named_after(
     # All but the first line, which has the time of writing.
     csv = csv_text(trace_table(felt)).partition("\n")[2]
     assert written["trace.csv"].decode().partition("\n")[2] == csv
-    assert waveform_from(written["envelope.wav"]).samples == pytest.approx(
+    assert read_sound(written["envelope.wav"]).samples == pytest.approx(
         felt.stroke.command, abs=1e-12
     )
-    volts = waveform_from(written["drive.wav"])
+    volts = read_sound(written["drive.wav"])
     assert volts.samples == pytest.approx(drive_waveform(felt).samples, abs=1e-5)
     data = json.loads(written["fidelity.json"])
     assert data["friction_rms_error"] == pytest.approx(felt.rms_error)

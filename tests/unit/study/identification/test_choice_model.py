@@ -11,7 +11,6 @@ from scipy import stats
 from squeezefilm.errors import InputError
 from squeezefilm.study.identification.choice_model import (
     choice_model,
-    exact_choice,
     perceptual_map,
 )
 
@@ -94,14 +93,6 @@ def test_counts_that_the_model_has_no_place_for(counts: np.ndarray, says: str) -
         choice_model(counts)
     with pytest.raises(InputError, match="pseudo_trials"):
         choice_model(np.diag([3, 3]), -1.0)
-
-
-def test_probabilities_that_are_not_square_or_none_are_refused() -> None:
-    for wrong in (np.full((2, 3), 0.5), np.full(2, 0.5)):
-        with pytest.raises(InputError, match="are not square"):
-            exact_choice(wrong)
-    with pytest.raises(InputError, match="probabilities"):
-        exact_choice([[1.0, 0.5], [0.0, 0.5]])
 
 
 @pytest.mark.parametrize("sign", [1, -1])

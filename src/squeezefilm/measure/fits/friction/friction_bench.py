@@ -61,7 +61,6 @@ class FrictionBenchFit:
     drift: Estimate | None
     between_strokes: si.Dimensionless
     adequacy: Adequacy
-    _fitted: _Fitted
 
     @property
     def curve(self) -> FrictionCurve | None:
@@ -102,26 +101,6 @@ class FrictionBenchFit:
                 for amplitude, one in zip(self.amplitudes[1:], self.relative_friction, strict=True)
             ),
         )
-
-    def friction_at(
-        self, amplitude: si.Metre, speed: si.MetrePerSecond, normal_force: si.Newton
-    ) -> Estimate:
-        """µ at an amplitude (m), speed (m/s) and force (N), its mean over strokes, with interval.
-
-        Linear between levels of amplitude, a power of speed and force; in the middle of the
-        session. Raises `InputError` outside the amplitudes, and for a speed or force beyond those
-        of the strokes by more than a fifth.
-        """
-        for name, value, known, unit in (
-            ("amplitude", amplitude, self.amplitudes, "m"),
-            ("speed", speed, self.strokes.column("speed"), "m/s"),
-            ("normal_force", normal_force, self.strokes.column("force"), "N"),
-        ):
-            slack = 1e-9 if name == "amplitude" else 0.2 * float(np.max(known))
-            low, high = float(np.min(known)) - slack, float(np.max(known)) + slack
-            si.require(name, value, si.Unit(unit), at_least=max(low, 0.0), at_most=high)
-        row = self._fitted.row(amplitude, speed, normal_force)
-        return self._fitted.exponential(row)
 
 
 @guarded_fit
@@ -256,26 +235,6 @@ class _Fitted:
             )
         return cls(design, _straight(design.matrix, data), data, level)
 
-    def row(self, amplitude: float, speed: float, force: float) -> si.FloatArray:
-        """The columns' values at a condition, in the middle of the session."""
-        design, row = self.design, np.zeros(self.design.matrix.shape[1])
-        count = design.levels.size
-        for i in range(count):
-            row[i] = np.interp(amplitude, design.levels, np.eye(count)[i])
-        at, share = count, amplitude / max(design.levels[-1], 1e-15)
-        for value, middle, varied in (
-            (speed, design.speed, design.speeds_vary),
-            (force, design.force, design.forces_vary),
-        ):
-            if varied:
-                deviation = np.log(value / middle)
-                row[at] = deviation
-                at += 1
-                if count > 1:
-                    row[at] = deviation * share
-                    at += 1
-        return row
-
     def straight(self, row: si.FloatArray) -> Estimate:
         """A weighted sum of the fitted numbers."""
         error = math.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
@@ -314,7 +273,6 @@ class _Fitted:
             drift=self._drift() if design.drift else None,
             between_strokes=spread,
             adequacy=self._adequacy(strokes),
-            _fitted=self,
         )
 
     def _drift(self) -> Estimate:

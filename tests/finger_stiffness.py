@@ -1,0 +1,23 @@
+"""A finger's stiffness: the interface as compiled, and the skin in series with it."""
+
+from __future__ import annotations
+
+from squeezefilm.contact.finger.load import compiled_finger
+from squeezefilm.contact.finger.load_kernel import between
+from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.rough_contact import ContactLaw
+from squeezefilm.materials import Gas
+
+
+def interface_stiffness(
+    gap: float, swing: float, width: float, frequency: float, gas: Gas, asperities: ContactLaw
+) -> complex:
+    """Film and asperities between plate and plateau, per area (Pa/m)."""
+    finger = compiled_finger(width, frequency, gas, Skin(), 1.0)
+    return complex(between(gap, swing, finger, asperities.compiled()))
+
+
+def finger_stiffness(interface: complex, skin: Skin, frequency: float, share: float) -> complex:
+    """Interface and skin in series on the plateaus' share of the contact, per area (Pa/m)."""
+    behind = skin.dynamic_stiffness(frequency)
+    return share * interface * behind / (interface + behind)
