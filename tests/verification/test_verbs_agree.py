@@ -195,7 +195,6 @@ def check_listed(display: Display, mode: Any, band: tuple[float, float]) -> None
     same(mode.resonance_frequency, row.frequency, listed.solved.resonance_frequency)
     same(mode.amplitude_per_volt, listed.solved.amplitude_per_volt)
     same(mode.solid.alone_per_volt, row.alone_per_volt)
-    same(mode.solid.largest_alone_per_volt, row.largest_alone_per_volt)
     beside = mode.neighbour
     if beside is not None:
         assert (row.neighbour, row.neighbour_share) == (beside.name, beside.share)

@@ -295,7 +295,6 @@ def mode_row(modes: PlateModes, index: int) -> ModeRow:
         frequency_error=float(modes.errors[index]),
         quality_factor=quality,
         alone_per_volt=answer * antinode(shape, label),
-        largest_alone_per_volt=answer * float(np.max(np.abs(shape))),
         coupling_coefficient=float(modes.couplings[index]),
         coupling_coefficient_error=float(modes.coupling_errors[index]),
         parallel_resonance_frequency=float(modes.open_frequencies[index]),

@@ -32,21 +32,19 @@ _STRAIGHT = 0.6
 class ListedMode:
     """One driven mode: its label, frequency, Q and amplitude per volt on the drive at resonance.
 
-    `alone_per_volt` is at its antinode, `largest_alone_per_volt` anywhere on the face; both of this
-    mode alone, zero to peak, without a finger. `neighbour` is the mode that adds
-    most at this one's resonance, `neighbour_distance` how far it lies in half-bandwidths f/2Q of
-    its own, `neighbour_share` how much it adds, over this mode's amplitude. `unique` is whether no
-    other mode of the list with at least a tenth of its amplitude has the label. `straightness` is
-    the share of the shape that has straight nodal lines, `choice` what to write into the display's
-    file to work in this mode; None where there is no such thing. A mode is `perhaps_audible` where
-    the error of its frequency reaches into the hearing range.
+    `alone_per_volt` is at its antinode, of this mode alone, zero to peak, without a finger.
+    `neighbour` is the mode that adds most at this one's resonance, `neighbour_distance` how far it
+    lies in half-bandwidths f/2Q of its own, `neighbour_share` how much it adds, over this mode's
+    amplitude. `unique` is whether no other mode of the list with at least a tenth of its amplitude
+    has the label. `straightness` is the share of the shape that has straight nodal lines, `choice`
+    what to write into the display's file to work in this mode; None where there is no such thing. A
+    mode is `perhaps_audible` where the error of its frequency reaches into the hearing range.
     """
 
     label: str
     frequency: si.Hertz
     quality_factor: si.Dimensionless
     alone_per_volt: si.MetrePerVolt
-    largest_alone_per_volt: si.MetrePerVolt
     symmetry: str
     audible: bool
     neighbour: str | None = None
@@ -88,7 +86,6 @@ def listed_mode(mode: DrivenMode) -> ListedMode:
         frequency=mode.frequency,
         quality_factor=mode.quality_factor,
         alone_per_volt=mode.alone_per_volt,
-        largest_alone_per_volt=mode.largest_alone_per_volt,
         symmetry=symmetry_in_words(mode.parity),
         audible=mode.frequency < HEARING,
         straightness=mode.straightness,
@@ -114,7 +111,6 @@ def with_working_mode(
         frequency=frequency,
         quality_factor=working.quality_factor,
         alone_per_volt=solid.alone_per_volt,
-        largest_alone_per_volt=solid.largest_alone_per_volt,
         symmetry=symmetry_in_words(solid.modes.parities[solid.index]),
         audible=frequency < HEARING,
         straightness=profiles(solid.modes.shapes[solid.index])[2],

@@ -230,7 +230,6 @@ def _of_ring(
                 frequency=row.frequency,
                 quality_factor=row.quality_factor,
                 alone_per_volt=row.alone_per_volt,
-                largest_alone_per_volt=row.largest_alone_per_volt,
                 symmetry="alike all round" if mode.harmonic == 0 else "one of a pair",
                 audible=row.frequency < HEARING,
                 choice=None

@@ -242,7 +242,6 @@ def mode_row(body: RingBody, mode: AnnularMode, capacitance: si.Farad) -> ModeRo
         frequency_error=mode.frequency_error,
         quality_factor=mode.quality_factor,
         alone_per_volt=lift * mode.amplitude_per_volt(body.drive),
-        largest_alone_per_volt=lift * mode.amplitude_per_volt(body.drive),
         coupling_coefficient=coupling,
         parallel_resonance_frequency=mode.frequency / math.sqrt(1 - coupling**2),
         modal_force=mode.modal_force(body.drive) / np.sqrt(mode.modal_mass),

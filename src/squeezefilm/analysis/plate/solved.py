@@ -22,17 +22,15 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class ModeRow:
     """One mode of the table: label by nodal lines across length and width, extrapolated frequency
-    with its estimated error, Q, amplitude per volt of this mode alone at its antinode and at the
-    largest point of the face, effective coupling √(1 − f²/f_p²) with the parallel resonance f_p
-    (terminals open, no losses), modal force (N/V for unit modal mass). Errors are None where nobody
-    estimates them."""
+    with its estimated error, Q, amplitude per volt of this mode alone at its antinode, effective
+    coupling √(1 − f²/f_p²) with the parallel resonance f_p (terminals open, no losses), modal force
+    (N/V for unit modal mass). Errors are None where nobody estimates them."""
 
     label: str
     frequency: si.Hertz
     frequency_error: si.Hertz
     quality_factor: si.Dimensionless
     alone_per_volt: si.MetrePerVolt
-    largest_alone_per_volt: si.MetrePerVolt
     coupling_coefficient: si.Dimensionless
     modal_force: float
     half_wavelength: si.Metre | None

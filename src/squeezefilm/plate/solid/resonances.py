@@ -28,8 +28,7 @@ class DrivenMode:
     `label` counts nodal lines across the length and across the width (None for motion in the
     plane) on the shape's dominant product, whose share of the shape's square is `straightness`.
     `parity` is the class of symmetry. Amplitudes are per volt on the drive at resonance, zero to
-    peak, of this mode alone: `alone_per_volt` at its antinode (see `antinode`),
-    `largest_alone_per_volt` anywhere on the upper face, edges and corners included.
+    peak, of this mode alone: `alone_per_volt` at its antinode (see `antinode`).
     `shape` is w on the upper face, (x, y) on the grid of `surface_shapes`, 1 at its largest.
     """
 
@@ -39,7 +38,6 @@ class DrivenMode:
     straightness: si.Dimensionless
     parity: Symmetry
     alone_per_volt: si.MetrePerVolt
-    largest_alone_per_volt: si.MetrePerVolt
     shape: si.DimensionlessArray
 
     @property
@@ -132,7 +130,6 @@ def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[Dr
                 straightness=profiles(w)[2],
                 parity=part.solved.parity,
                 alone_per_volt=per_volt * antinode(w, label),
-                largest_alone_per_volt=per_volt * largest,
                 shape=w / max(largest, 1e-300),
             )
         )

@@ -80,8 +80,7 @@ class SolidMode:
     `resonance` is the number of the response's frequency, within the mode's bandwidth, at which the
     antinode answers most; `amplitude_per_volt` is that answer, all modes in, `largest_per_volt` the
     largest anywhere on the face at the same frequency, and `alone_per_volt` what this mode has of
-    the answer, Q F φ / ω²: much less where the drive moves its neighbours only;
-    `largest_alone_per_volt` is that at the largest point of the face.
+    the answer, Q F φ / ω²: much less where the drive moves its neighbours only.
     `amplitude_error` is the estimated error of `amplitude_per_volt`: of the discretisation, by
     what the mode's answer to the drive differs between the two meshes, and of the reduction.
     `modal_mass` is the mass that has the mode's kinetic energy if it moves as the lobe does.
@@ -97,7 +96,6 @@ class SolidMode:
     amplitude_per_volt: si.MetrePerVolt
     largest_per_volt: si.MetrePerVolt
     alone_per_volt: si.MetrePerVolt
-    largest_alone_per_volt: si.MetrePerVolt
     modal_mass: si.Kilogram
     amplitude_error: si.MetrePerVolt
     model: str = MODEL
@@ -322,7 +320,6 @@ def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: P
         amplitude_per_volt=per_volt,
         largest_per_volt=response.largest(resonance),
         alone_per_volt=alone * float(np.abs(line[at])),
-        largest_alone_per_volt=alone * float(np.max(np.abs(modes.shapes[index]))),
         modal_mass=float(1 / line[at] ** 2),
         amplitude_error=(doubt + response.truncation_error) * per_volt,
     )

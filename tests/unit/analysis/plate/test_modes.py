@@ -31,7 +31,7 @@ PAPER = load_display("biet2008-plate")
 def row(label: str, frequency: float, per_volt: float, **changes: Any) -> ListedMode:
     """A mode of Q 50: half-bandwidths of a hundredth of the frequency."""
     one = ListedMode(
-        label, frequency, 50.0, per_volt, per_volt, "", frequency < HEARING, None, None, 0.0, True,
+        label, frequency, 50.0, per_volt, "", frequency < HEARING, None, None, 0.0, True,
         0.9, f"nodal_lines = {label[1]}",
     )  # fmt: skip
     return dataclasses.replace(one, **changes)

@@ -23,8 +23,8 @@ FILM = FilmAnswer(
     iterations=3, residual=0.0,
     status="converged", model="a-model", film=None,  # type: ignore[arg-type]
 )  # fmt: skip
-WORKING = ModeRow("(8,0)", 33581.26, 12.345, 212.34, 1.2e-7, 1.7e-7, 0.1234, 1.0, 10e-3)
-ASIDE = ModeRow("(7,1)", 30000.0, 12.0, 200.0, 1e-13, 1e-13, 0.0, 0.0, None)
+WORKING = ModeRow("(8,0)", 33581.26, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 10e-3)
+ASIDE = ModeRow("(7,1)", 30000.0, 12.0, 200.0, 1e-13, 0.0, 0.0, None)
 CIRCUIT = EquivalentCircuit(40e3, 200.0, 5.4321e-9, 123.45, 0.098765, 1.2345e-10)
 
 

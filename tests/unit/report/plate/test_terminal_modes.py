@@ -49,9 +49,7 @@ def test_the_guidance_is_told_with_where_it_is_from() -> None:
 
 
 def mode(label: str, alone_per_volt: float) -> ModeRow:
-    return ModeRow(
-        label, 33581.26, 12.345, 212.34, alone_per_volt, alone_per_volt, 0.1234, 1.0, None
-    )
+    return ModeRow(label, 33581.26, 12.345, 212.34, alone_per_volt, 0.1234, 1.0, None)
 
 
 def test_a_mode_ten_thousand_times_fainter_than_the_working_one_is_not_driven() -> None:

@@ -15,8 +15,8 @@ from squeezefilm.plate.circuit import EquivalentCircuit
 from squeezefilm.plate.ring.stator import StatorAssumptions
 from squeezefilm.report.plate.terminal import fit_sentences, show_plate
 
-WORKING = ModeRow("B(0,9)", 40523.4, 12.345, 212.34, 1.2e-7, 1.7e-7, 0.1234, 1.0, 9.3456e-3)
-ASIDE = ModeRow("T(0,2)", 41001.2, 12.0, 200.0, 1e-13, 1e-13, 0.0, 0.0, None)
+WORKING = ModeRow("B(0,9)", 40523.4, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 9.3456e-3)
+ASIDE = ModeRow("T(0,2)", 41001.2, 12.0, 200.0, 1e-13, 0.0, 0.0, None)
 GUIDANCE = SimpleNamespace(level_dB=100.0, source="somebody 1984", evidence="to be checked")
 CIRCUIT = EquivalentCircuit(40e3, 200.0, 5.4321e-9, 123.45, 0.098765, 1.2345e-10)
 
@@ -104,7 +104,7 @@ def test_a_disc_has_no_more_than_there_is() -> None:
         circles=np.array([]),
         circuit=None,
         circuit_said="none: the channel does not drive this mode",
-        working=ModeRow("B(1,0)", 40523.4, 12.0, 212.0, 1.2e-7, 1.7e-7, 0.1, 1.0, None),
+        working=ModeRow("B(1,0)", 40523.4, 12.0, 212.0, 1.2e-7, 0.1, 1.0, None),
         body=SimpleNamespace(fit=None, quality_factor=200.0),
         sound=SimpleNamespace(guidance=None, distances=(), sound_pressure_level_dB=np.array([])),
     )
