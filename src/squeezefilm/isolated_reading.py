@@ -139,7 +139,7 @@ class IsolatedReader:
             allowed = si.format_quantity(self._processor_time, si.Unit("s"))
             return (
                 f"cannot be read: reading it takes more than {allowed} ({READING_TIME.name}: "
-                f"{READING_TIME.reason}); export it again, with less in it"
+                f"{READING_TIME.reason}); export it again with less data"
             )
         code = -child.returncode
         name = signal.Signals(code).name if code in set(signal.Signals) else f"code {-code}"
@@ -213,7 +213,7 @@ def _answer(head: dict[str, Any], data: bytes) -> bytes:
         allowed = f"{READING_MEMORY.most / 1e9:g} GB ({READING_MEMORY.name}"
         refused = {
             "message": f"cannot be read: reading it takes more than {allowed}: "
-            f"{READING_MEMORY.reason}); export it again, with less in it"
+            f"{READING_MEMORY.reason}); export it again with less data"
         }
     shapes = [np.shape(array) for array in arrays]
     told = json.dumps({"facts": facts, "shapes": shapes, "refused": refused}).encode()

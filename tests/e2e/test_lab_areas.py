@@ -417,7 +417,7 @@ def test_a_device_that_is_gone_is_not_shown_playing(seen: Watched) -> None:
         assert shown.filter(has_text="position").inner_text().splitlines()[1] == "−4.00 mm"
         if state == "FAULT":
             # Held up, it may still play: what is shown is old, and says so.
-            page.locator(".results.older .age", has_text="heard 1 s ago").wait_for()
+            page.locator(".results.older .age", has_text="updated 1 s ago").wait_for()
         seen.told("device ended", failed=True, **ended)
         seen.told("playing", now=[])
         shown.filter(has_text=ended["message"]).wait_for()

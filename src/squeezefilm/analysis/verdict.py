@@ -263,11 +263,12 @@ def model_form(
         return Finding("doubt", f"{text}.")
     least, most = min(rivals, key=rivals.__getitem__), max(rivals, key=rivals.__getitem__)
     apart = max(unsure.nominal, rivals[most]) - min(unsure.nominal, rivals[least])
-    than = "wider than" if apart > high - low else "within the width of"
+    than = "more than" if apart > high - low else "no more than"
     return Finding(
         "doubt",
         f"{text}: rival models give {rivals[least]:.2f} ('{least}') to {rivals[most]:.2f} "
-        f"('{most}'), with this one {apart:.2f} apart, {than} the interval's {high - low:.2f}.",
+        f"('{most}'); together with this model they span {apart:.2f}, {than} the interval "
+        f"({high - low:.2f}).",
     )
 
 

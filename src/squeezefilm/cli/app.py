@@ -99,7 +99,7 @@ Force = Annotated[str | None, In("N"), typer.Option("--force", help='Normal forc
 Speed = Annotated[
     str | None,
     In("m/s"),
-    typer.Option("--speed", help='Of the finger that slides, like "80 mm/s"; else the display\'s.'),
+    typer.Option("--speed", help='Speed of the finger, like "80 mm/s"; default: the display\'s.'),
 ]
 OnSurface = Annotated[str | None, typer.Option("--surface", help="Which of its surfaces.")]
 OnPlace = Annotated[

@@ -124,9 +124,9 @@ class AnalyzeOptions(PointOptions):
     sensitivities: Annotated[
         str | None,
         typer.Option(
-            help="Print what each value does, and say how a plate with one thing different is "
-            "computed: quick (a beam, a second for all values; also what --all and the report "
-            "have) or solved (in three dimensions, two solves for each value)."
+            help="Print how much each value changes the result. quick: by a beam model, a second "
+            "for all values (as --all and the report have it); solved: in three dimensions, two "
+            "solves a value."
         ),
     ] = None
     theory: Annotated[
@@ -214,9 +214,9 @@ class FrictionOptions(PointOptions):
     ambient_pressure: Annotated[
         str | None,
         In("Pa"),
-        typer.Option(help='Of the air around, like "2 kPa" for a vacuum experiment.'),
+        typer.Option(help='Ambient pressure, like "2 kPa" for a vacuum experiment.'),
     ] = None
-    seed: Annotated[int, typer.Option(help="Of the samples.")] = 1
+    seed: Annotated[int, typer.Option(help="Seed of the random samples.")] = 1
     tell_apart: Annotated[
         bool,
         typer.Option(
@@ -274,7 +274,7 @@ class FilmOptions:
     ] = "0"
     slip: Annotated[str, typer.Option(help="first, second, fukui-kaneko or veijola.")] = "first"
     tolerance: Annotated[
-        str, In("1"), typer.Option(help='Relative, on the over-pressure, like "0.1 %".')
+        str, In("1"), typer.Option(help='Relative tolerance of the over-pressure, like "0.1 %".')
     ] = "0.001"
     sweep: Annotated[
         bool, typer.Option("--sweep", help="Draw the map over squeeze number and excursion.")
@@ -384,7 +384,7 @@ class ModesOptions:
     split: Annotated[
         str | None,
         In("Hz"),
-        typer.Option(help="Of rings: how far a mode's two orientations were measured apart."),
+        typer.Option(help="Rings only: measured difference of a mode's two frequencies."),
     ] = None
     out: Annotated[Path | None, written_to("Folder for modes.json and figures.")] = None
     as_json: AsJson = False

@@ -43,7 +43,7 @@ class DesignOptions:
     solved: Annotated[
         int, typer.Option(help="Plates that are solved in three dimensions, at most.")
     ] = 120
-    seed: Annotated[int, typer.Option(help="Of everything that is drawn.")] = 1
+    seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 1
     jobs: Jobs = None
     scheduler: Scheduler = None
     member: Annotated[

@@ -59,9 +59,10 @@ Design = Annotated[
 Store = Annotated[Path, typer.Argument(metavar="STUDY.sqlite", help="The study's file.")]
 NewStore = Annotated[Path, written_to("The study's file; made if not there.")]
 Consent = Annotated[bool, typer.Option("--consent", help="The participant has consented.")]
-Seed = Annotated[int, typer.Option(help="Of all orders.")]
+Seed = Annotated[int, typer.Option(help="Seed of the trial orders.")]
 SeedOfFile = Annotated[
-    int | None, typer.Option(help="Of all orders of a new file; one that is there has its own.")
+    int | None,
+    typer.Option(help="Seed of the trial orders of a new file; an existing file keeps its own."),
 ]
 Display = Annotated[
     str | None,
@@ -120,7 +121,7 @@ def drawing_by_two(out: Path | None) -> AbstractContextManager[object]:
 def simulate(
     design: Design,
     participants: Annotated[int, typer.Option(help="How many simulated people.")] = 12,
-    seed: Annotated[int, typer.Option(help="Of orders, people and noise.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of orders, people and noise.")] = 0,
     out: Annotated[
         Path | None,
         written_to("Folder for answers, tables, figures and a page."),
@@ -182,7 +183,7 @@ class PowerOptions:
     )
     studies: Annotated[int, typer.Option(help="Simulated per number of people.")] = 400
     observer: Observer = "fingertip"
-    seed: Annotated[int, typer.Option(help="Of people, answers and studies.")] = 0
+    seed: Annotated[int, typer.Option(help="Seed of people, answers and studies.")] = 0
     out: Annotated[Path | None, written_to("A PNG of the curve to write.")] = None
     as_json: AsJson = False
 
@@ -239,7 +240,9 @@ def gratings(
     design: Design,
     out: Annotated[Path, written_to("Folder for drawings and numbers.")],
     tolerance: Annotated[
-        str, In("m"), typer.Option(help="Of ridge and groove widths; the default is assumed.")
+        str,
+        In("m"),
+        typer.Option(help="Tolerance of ridge and groove widths; the default is assumed."),
     ] = "20 um",
 ) -> None:
     """Write what a workshop needs to make the real gratings that a study compares with: drawing,

@@ -114,7 +114,7 @@ def analyze(
             "them, like 199: seconds a person; 0 for none."
         ),
     ] = 0,
-    seed: Annotated[int, typer.Option(help="Of bootstraps and simulated runs.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of bootstraps and simulated runs.")] = 0,
     as_json: AsJson = False,
 ) -> None:
     """Analyse what was recorded: thresholds, sensitivity, exponents or confusions, with

@@ -50,7 +50,7 @@ class SweepOptions:
             '1 mm..3 mm", in place of a grid; more of them keep those before.'
         ),
     ] = None
-    seed: Annotated[int, typer.Option(help="Of the samples.")] = 0
+    seed: Annotated[int, typer.Option(help="Seed of the random samples.")] = 0
     jobs: Jobs = None
     scheduler: Scheduler = None
     out: Annotated[

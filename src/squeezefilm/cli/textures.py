@@ -46,7 +46,10 @@ class RenderOptions:
     ] = None
     compensation: Annotated[
         str,
-        typer.Option("--compensate", help="Of the resonator's slowness: none, inverse or preview."),
+        typer.Option(
+            "--compensate",
+            help="How the slow resonator is compensated: none, inverse or preview.",
+        ),
     ] = "none"
     braking: Annotated[
         bool, typer.Option("--braking", help="The drive may invert the carrier's phase.")
@@ -66,7 +69,7 @@ class RenderOptions:
     hjif: Annotated[
         bool, typer.Option("--hjif", help="Write the texture as MPEG haptics, texture.hjif.")
     ] = False
-    seed: Annotated[int, typer.Option(help="Of the sensor's noise.")] = 0
+    seed: Annotated[int, typer.Option(help="Seed of the sensor's noise.")] = 0
 
 
 @app.command()
@@ -149,11 +152,15 @@ class PlayOptions:
         str, typer.Option(help='The twin\'s finger, to and fro: "60 mm/s over 4 cm", or a CSV.')
     ] = "60 mm/s over 4 cm"
     duration: Annotated[str, In("s"), typer.Option(help='How long, like "10 s".')] = "4 s"
-    rate: Annotated[str, In("Hz"), typer.Option(help='Of the loop, like "5 kHz".')] = "5 kHz"
+    rate: Annotated[str, In("Hz"), typer.Option(help='Rate of the loop, like "5 kHz".')] = "5 kHz"
     voltage: LargestVoltage = None
     surface: OnSurface = None
     compensation: Annotated[
-        str, typer.Option("--compensate", help="Of the resonator's slowness: none or inverse.")
+        str,
+        typer.Option(
+            "--compensate",
+            help="How the slow resonator is compensated: none or inverse.",
+        ),
     ] = "none"
     amplitude_per_pickup: Pickup = None
     bench_only: Annotated[
@@ -162,7 +169,7 @@ class PlayOptions:
     out: Annotated[
         Path | None, written_to("Folder for the record, numbers, figures and a page.")
     ] = None
-    seed: Annotated[int, typer.Option(help="Of the twin's noise.")] = 0
+    seed: Annotated[int, typer.Option(help="Seed of the twin's noise.")] = 0
     as_json: AsJson = False
 
 
@@ -234,7 +241,7 @@ class CheckOptions:
     display: Annotated[
         str, typer.Option(help="The display on it: a preset's name or a TOML file.")
     ] = "biet2008-plate"
-    rate: Annotated[str, In("Hz"), typer.Option(help='Of the loop here, like "5 kHz".')] = "5 kHz"
+    rate: Annotated[str, In("Hz"), typer.Option(help='Rate of this loop, like "5 kHz".')] = "5 kHz"
     as_json: AsJson = False
 
 

@@ -117,7 +117,7 @@ def require_alike(**series: Any) -> None:
     if all(len(shape) == 1 for shape in shapes.values()) and len(set(shapes.values())) < 2:
         return
     shown = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
-    raise InputError(f"the shapes of {shown} differ; give one row of as many values of each")
+    raise InputError(f"the shapes of {shown} differ; give arrays of equal length")
 
 
 def require_one_of(name: str, value: Any, allowed: Iterable[Any]) -> None:

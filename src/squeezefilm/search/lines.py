@@ -106,7 +106,7 @@ class Lines:
                     file.write(b" " * len(line))
             kept = f"set aside in {place.name}"
         except (OSError, ConfigError) as error:
-            kept = f"passed over (they could not be set aside: {error})"
+            kept = f"skipped (they could not be saved: {error})"
         numbers = [str(number) for number, _, _ in damaged]
         which = ", ".join(numbers[:5]) + (f" and {len(numbers) - 5} more" if numbers[5:] else "")
         warnings.warn(

@@ -154,10 +154,9 @@ def _since_screening(display: Display, p: Prediction, point: WorkingPoint) -> st
     if all(abs(share - 1.0) <= _BEAM for share in shares):
         return ""
     return (
-        f"The screening said {before}; solved it is {after}, which holds. The screening takes the "
-        "plate as a beam that is alike all across: a plate that bends across as well, or has "
-        "another mode nearby, vibrates otherwise by more than the "
-        f"{si.percent(_BEAM)} within which such a beam's frequency is right."
+        f"The screening gave {before}; the full solution gives {after}; use the full solution. The "
+        "screening treats the plate as a uniform beam, which is right to "
+        f"{si.percent(_BEAM)}, and misses bending across the width and nearby modes."
     )
 
 

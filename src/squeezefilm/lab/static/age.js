@@ -5,7 +5,7 @@ import { element } from "./numbers.js";
 const LOOK = 500;
 
 export class Age {
-  /** Numbers that came as `verb` says ("computed", "heard"). Older than `most` (ms), they are grey. */
+  /** Numbers that came as `verb` says ("computed", "updated"). Older than `most` (ms), they are grey. */
   constructor(lab, verb, place = null, most = Infinity) {
     Object.assign(this, { verb, place, most, since: null });
     this.box = element("p", { class: "age muted" });

@@ -209,8 +209,8 @@ def too_hot(found: Warming) -> str | None:
     rise = max(found.tracked.temperature_rise, found.fixed.temperature_rise)
     if found.tracked.temperature_rise >= HOTTEST:
         return (
-            f"The plate finds no temperature below {HOTTEST:g} K at which it gives away what it "
-            "loses: driven for long it would be destroyed. Ask for a lower voltage."
+            f"There is no temperature below {HOTTEST:g} K at which the plate gives off the heat "
+            "that it generates: driven for long it would be destroyed. Ask for a lower voltage."
         )
     if rise > KNOWN_RISE:
         return (

@@ -120,8 +120,8 @@ def _show_sensitivities(console: Console, analysis: Analysis) -> None:
     head = ("value", "from, to", "frequency", "amplitude", "µ′/µ", "range")
     table(console, head, sensitivity_rows(shifts), fixed=(0,))
     console.print(
-        f"µ′/µ is {shifts.relative_friction:.2f} as described. Plates with one thing different "
-        f"by {shifts.plate_model}; the drive follows the resonance. --json has all "
+        f"µ′/µ is {shifts.relative_friction:.2f} as described. A plate with one value changed is "
+        f"computed by {shifts.plate_model}; the drive follows the resonance. --json has all "
         f"{len(shifts.rows)} values."
     )
 

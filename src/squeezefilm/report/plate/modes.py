@@ -133,8 +133,9 @@ def show_mode_list(result: ModeList) -> None:
 def _solved_said(mode: WorkingMode) -> str:
     """The display's own mode with all others in, as every other verb has it."""
     return (
-        f"{mode.label} as it is driven, all modes in: {shown(mode.amplitude_per_volt, _PER_VOLT)} "
-        f"at its antinode at {place_words(mode.lobe)}, as squeezefilm plate and analyze have it."
+        f"{mode.label} with the contribution of all other modes: "
+        f"{shown(mode.amplitude_per_volt, _PER_VOLT)} at its antinode ({place_words(mode.lobe)}); "
+        "squeezefilm plate and analyze give the same."
     )
 
 

@@ -63,7 +63,7 @@ def _ring_rows(result: RingAnalysis) -> list[Row]:
     rows, half = [], result.working.half_wavelength
     if result.computed_per_volt is not None:
         computed = shown(result.computed_per_volt, PER_VOLT)
-        rows.append(("", computed, "computed at that antinode; the first is as measured"))
+        rows.append(("", computed, "computed there (the value above is measured)"))
     if half is not None:
         rows.append(
             ("Half wavelength", shown(half, M), f"along the {result.half_wavelength_along}")

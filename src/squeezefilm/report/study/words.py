@@ -321,7 +321,9 @@ def _person_remark(person: PersonEstimate, scale: float, unit: str) -> str:
     said = ["not bounded by the answers alone"] if person.unbounded else []
     if (again := person.asked_again) is not None:
         low, high = scale * again.low, scale * again.high
-        said.append(f"asked again: {scale * again.value:.3g} ({low:.3g} to {high:.3g}){unit}")
+        said.append(
+            f"by simulated reruns: {scale * again.value:.3g} ({low:.3g} to {high:.3g}){unit}"
+        )
     return "; ".join(said)
 
 

@@ -46,8 +46,7 @@ def require_own_folder(folder: Path) -> None:
     if folder.is_symlink() or (os.path.lexists(folder) and not folder.is_dir()):
         what = "a link" if folder.is_symlink() else "a file"
         raise InputError(
-            f"{folder} is {what}, and nothing is written to where it leads; put a folder in its "
-            "place, with what belongs in it"
+            f"{folder} is {what}, and nothing is written to where it leads; replace it by a folder"
         )
 
 

@@ -60,7 +60,7 @@ def asked_again(
     """
     found = []
     for count, person in enumerate(persons, 1):
-        tell(f"asking again, person {count} of {len(persons)}: {reruns} simulated runs")
+        tell(f"simulated reruns, person {count} of {len(persons)}: {reruns} runs")
         mine = main.take(main.participant == main.people.index(person.person))
         found.append(dataclasses.replace(person, asked_again=_threshold(mine, reruns, level, seed)))
     return tuple(found)
@@ -85,7 +85,7 @@ def _threshold(mine: Answers, reruns: int, level: si.Dimensionless, seed: int) -
     ends = rerun_intervals(
         fit, procedures, level=level, replicates=reruns, seed=seed, parameters=("threshold",)
     )["threshold"]
-    return Estimate(fit.function.threshold, *ends, level, f"asked again, {reruns} simulated runs")
+    return Estimate(fit.function.threshold, *ends, level, f"{reruns} simulated reruns")
 
 
 def _procedure(mine: Answers, series: int, trials: int) -> Procedure:

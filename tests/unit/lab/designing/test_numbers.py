@@ -285,8 +285,8 @@ def test_a_solved_plate_that_was_screened_otherwise_says_why(
     display, point = display_of(preset_text("touchpad-glass")), WorkingPoint("")
     monkeypatch.setattr(numbers, "predicted", lambda *_: prediction(1.35e-6, 40e3))
     said = numbers._since_screening(display, prediction(5.77e-6, 39e3), point)
-    assert "said 1.35 µm at 40 kHz; solved it is 5.77 µm at 39 kHz" in said
-    assert "the 13 % within which such a beam" in said
+    assert "gave 1.35 µm at 40 kHz; the full solution gives 5.77 µm at 39 kHz" in said
+    assert "a uniform beam, which is right to 13 %" in said
     assert numbers._since_screening(display, prediction(1.5e-6, 39e3), point) == ""
     disc = display_of(preset_text("winfield2007-tpad"))
     assert numbers._since_screening(disc, prediction(5.77e-6, 39e3), point) == ""

@@ -45,14 +45,14 @@ def test_each_person_has_a_threshold_that_tells_them_apart(answers: Answers) -> 
     assert dull is not None
     for threshold, person in zip((sharp, dull), found.persons, strict=True):
         assert threshold.low <= threshold.value <= threshold.high
-        assert threshold.method == "asked again, 99 simulated runs"
+        assert threshold.method == "99 simulated reruns"
         # Two ways to the same person: neither estimate is outside of the other's interval.
         assert threshold.low < person.estimate.value < threshold.high
         assert person.estimate.low < threshold.value < person.estimate.high
     assert sharp.value < dull.value
-    assert any(step.startswith("asking again, person 2 of 2") for step in steps)
+    assert any(step.startswith("simulated reruns, person 2 of 2") for step in steps)
     said = person_rows(found)[0][-1]
-    assert f"asked again: {100 * sharp.value:.3g} (" in said
+    assert f"by simulated reruns: {100 * sharp.value:.3g} (" in said
     kept = found.summary()["persons"][0]["asked_again"]
     assert (kept["low"], kept["high"]) == (sharp.low, sharp.high)
     # The seed decides.

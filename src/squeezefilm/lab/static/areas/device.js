@@ -70,7 +70,7 @@ class DeviceView {
       new Scope(canvases[3].canvas, [{ label: "lateness", colour: "purple" }], { least: 1 }),
     ];
     this.results = element("section", { class: "card", hidden: true });
-    this.age = new Age(this.lab, "heard");
+    this.age = new Age(this.lab, "updated");
     this.place.append(element("div", { class: "columns device" },
       element("section", { class: "card side" }, element("h2", { text: "Device" }), this.display, field("drive", this.drive), field("texture", this.texture), field("mode", this.mode),
         field("compensation of the resonator", this.compensation), field("the twin's finger", this.stroke), field("for", this.duration), field("most voltage", this.voltage),

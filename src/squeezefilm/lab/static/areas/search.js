@@ -45,7 +45,7 @@ class SearchView {
     this.startError = element("p", { class: "error", role: "alert", hidden: true });
     this.stage = element("p", { class: "stage", role: "status", text: "No search has been started. The requirements say what the finger should feel, what a display may take and what it may be built from." });
     this.time = element("p", { class: "muted" });
-    this.age = new Age(this.lab, "heard");
+    this.age = new Age(this.lab, "updated");
     const bar = (text) => {
       const progress = element("progress", { max: 1, value: 0, "aria-label": `${text} so far` }), said = element("span", {});
       return { progress, said, box: element("p", { class: "far" }, said, progress) };

@@ -27,7 +27,7 @@ class StudyView {
     this.error = element("p", { class: "error", role: "alert", hidden: true });
     this.list = element("section", { class: "card side" });
     this.main = element("div", { class: "results" });
-    this.age = new Age(this.lab, "read");
+    this.age = new Age(this.lab, "loaded");
     this.place.append(element("div", { class: "columns study" }, this.list, this.main));
     this.lab.socket.on("study changed", ({ study }) => study === this.name && this.reload(true));
     this.lab.socket.on("connection", ({ open }) => open && this.begin());

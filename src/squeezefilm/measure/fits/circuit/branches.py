@@ -125,7 +125,7 @@ def poles(
     """
     si.require_alike(frequency=frequency, response=response)
     if frequency[-1] == frequency[0]:
-        raise InputError("poles are found in a band of frequencies", quantity="frequency")
+        raise InputError("the frequencies must span a band", quantity="frequency")
     if not np.all(response):
         raise InputError("a response of exactly zero has no phase", quantity="response")
     middle = (frequency[-1] + frequency[0]) / 2
