@@ -168,13 +168,13 @@ def test_a_population_lies_in_its_intervals(people, level):
         assert found.spread_low <= found.spread <= found.spread_high
 
 
-@given(st.floats(-2, 2), st.floats(0, 2), st.floats(0.1, 10))
-@example(0.0, 1.0, 1.0)
-@example(-1.0, 2.0, 1.0)
-def test_an_inverse_lies_in_its_interval(value, reach, factor):
+@given(st.floats(-2, 2), st.floats(0, 2))
+@example(0.0, 1.0)
+@example(-1.0, 2.0)
+def test_an_inverse_lies_in_its_interval(value, reach):
     assume(value == 0 or abs(value) > 1e-3)
     loss = Estimate(value, reach / 2, (value - reach, value + reach), "1")
-    found = inverse_of(loss, "1", factor)
+    found = inverse_of(loss)
     low, high = found.interval
     assert low <= found.value <= high
     assert not math.isnan(found.value)

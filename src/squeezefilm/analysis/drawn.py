@@ -50,13 +50,12 @@ class KeptDraws(Generic[_Found]):
     ) -> _Found:
         """What `make` makes of the draws at points of the unit cube, shape (n, inputs), and of
         whatever `more` there is to it: found where it was made before."""
-        asked = _asked(mixture, points, more)
-        kept = self._kept.get(asked)
-        if kept is None:
+
+        def made() -> _Found:
             start_second_process()
-            kept = make()
-            self._kept.put(asked, kept)
-        return kept
+            return make()
+
+        return self._kept.found(_asked(mixture, points, more), made)
 
 
 _KEPT: KeptDraws[tuple[si.FloatArray, Tally]] = KeptDraws("draws", tuple[si.FloatArray, Tally])

@@ -312,14 +312,13 @@ class FrictionBand:
 def _sobol(dimensions: int, count: int, seed: int) -> si.DimensionlessArray:
     """Scrambled Sobol' points, shape (count, dimensions): kept on disk, since loading SciPy's
     statistics for them takes a quarter of a second."""
-    asked = repr((dimensions, count, seed))
-    points = _POINTS.get(asked)
-    if points is None:
+
+    def drawn() -> si.DimensionlessArray:
         from scipy.stats import qmc
 
-        points = np.asarray(qmc.Sobol(dimensions, rng=seed).random(count))
-        _POINTS.put(asked, points)
-    return points
+        return np.asarray(qmc.Sobol(dimensions, rng=seed).random(count))
+
+    return _POINTS.found(repr((dimensions, count, seed)), drawn)
 
 
 _BANDS: KeptDraws[FrictionBand] = KeptDraws("draws-band", FrictionBand)

@@ -10,7 +10,6 @@ for an answer feed it while they wait.
 from __future__ import annotations
 
 import secrets
-import typing
 from collections import deque
 from collections.abc import Sequence
 from typing import Any
@@ -274,7 +273,7 @@ class DeviceHost:
 
     def _set_limits(self, limits: Limits, info: m.Info) -> None:
         asked = m.limits_message(limits)
-        hints = typing.get_type_hints(Limits, include_extras=True)
+        hints = si.hints_of(Limits)
         for what, scale in _ON_THE_WIRE.items():
             wanted, allowed = getattr(limits, what), getattr(info, what) / scale
             if wanted > allowed * (1 + 1e-9):

@@ -6,7 +6,7 @@ What cannot be read, was damaged, or is no regular file counts as not there.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from hashlib import blake2b
@@ -61,6 +61,14 @@ class Kept(Generic[T]):
                     result: T = unpacked(data[DIGEST_BYTES:], self._of, given)
                     return result
         return None
+
+    def found(self, asked: str, make: Callable[[], T]) -> T:
+        """The result kept under what was `asked`, or else what `make` makes, which is then kept."""
+        result = self.get(asked)
+        if result is None:
+            result = make()
+            self.put(asked, result)
+        return result
 
     def put(self, asked: str, result: T, given: Sequence[Any] = ()) -> None:
         """Keep a result; no large one `in_passing`. Where the folder cannot be written to nothing

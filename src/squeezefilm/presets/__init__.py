@@ -129,23 +129,18 @@ def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folde
 def _unknown(says: str, name: str, kind: str, known: tuple[str, ...]) -> ConfigError:
     """The error for a name that is not a preset of a kind: `says` what was asked, and then what
     there is. Where a display is wanted, motors and skin-stretch arrays are listed as well."""
+    also = actuator_names() if kind == "preset" else ()
     plural = {"study": "studies", "set of requirements": "sets of requirements"}
     listed = f"{plural.get(kind, f'{kind}s').capitalize()}: {', '.join(known)}"
-    if kind == "preset":
-        if name in actuator_names():
+    if also:
+        if name in also:
             says = f"'{name}' is a motor or a skin-stretch array, and a display is wanted here"
-        others = ", ".join(actuator_names())
         listed = (
             f"Displays: {', '.join(known)}. Motors and skin-stretch arrays, for squeezefilm "
-            f"analyze and squeezefilm show only: {others}"
+            f"analyze and squeezefilm show only: {', '.join(also)}"
         )
-    near = "" if name in actuator_names() else si.did_you_mean(name, (*known, *_others(kind)))
+    near = "" if name in actuator_names() else si.did_you_mean(name, (*known, *also))
     return ConfigError(f"{says}.{near} {listed}")
-
-
-def _others(kind: str) -> tuple[str, ...]:
-    """Presets of other kinds that are worth suggesting for a misspelt name of a kind."""
-    return actuator_names() if kind == "preset" else ()
 
 
 def _exists(path: Path) -> bool:

@@ -361,11 +361,7 @@ def unit_of(annotation: Any) -> Unit | None:
     return None
 
 
-_HINTS: dict[type[Any], dict[str, Any]] = {}
-
-
+@functools.cache
 def hints_of(cls: type[Any]) -> dict[str, Any]:
     """The annotations of a class by name, with their units; read once, so leave them unchanged."""
-    if cls not in _HINTS:
-        _HINTS[cls] = typing.get_type_hints(cls, include_extras=True)
-    return _HINTS[cls]
+    return typing.get_type_hints(cls, include_extras=True)

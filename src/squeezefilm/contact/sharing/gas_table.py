@@ -224,11 +224,7 @@ class _Panel(NamedTuple):
 def _kept(slip_length: float, which: _Panel) -> si.FloatArray:
     """The coefficients of a panel's three quantities, and the bound on its error."""
     asked = repr((slip_length.hex(), *which))
-    found = _PANELS.get(asked)
-    if found is None:
-        found = _solved(slip_length, which)
-        _PANELS.put(asked, found)
-    return found
+    return _PANELS.found(asked, lambda: _solved(slip_length, which))
 
 
 def _solved(slip_length: float, which: _Panel) -> si.FloatArray:

@@ -85,10 +85,7 @@ def compare_teeth(
     )
     local = squeeze_number * tooth_width**2
     of_tooth = (gap, local, tooth_width, aspect_ratio / tooth_width, gas, tolerance)
-    total = _KEPT.get(repr(of_tooth))
-    if total is None:
-        total = _over_teeth(*of_tooth)
-        _KEPT.put(repr(of_tooth), total)
+    total = _KEPT.found(repr(of_tooth), lambda: _over_teeth(*of_tooth))
     toothed = total * tooth_width / tooth_pitch
     ratio = toothed / surface.over_pressure
     return ToothedFilm(

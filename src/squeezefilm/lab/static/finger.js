@@ -9,7 +9,7 @@ const RESTING = 1e-4;
 const SPEED_TIME = 0.015;
 
 /** The value of a table over an even abscissa from 0 to `last`. */
-export function lookup(values, last, at) {
+function lookup(values, last, at) {
   const place = Math.max(0, Math.min(1, at / last)) * (values.length - 1);
   const k = Math.min(values.length - 2, Math.floor(place)), share = place - k;
   return (1 - share) * values[k] + share * values[k + 1];

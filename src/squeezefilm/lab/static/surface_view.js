@@ -1,7 +1,7 @@
 // The touched surface at true scale: the texture's friction as shades, the standing wave's
 // antinodes, the finger's contact and what it has crossed.
 
-export const CSS_PER_MM = 96 / 25.4;
+const CSS_PER_MM = 96 / 25.4;
 const COLUMNS = 360;
 
 export class SurfaceView {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
-import typing
 from typing import Any
 
 from squeezefilm import quantities as si
@@ -24,7 +23,7 @@ def conditions_of(
     odd = set(given) - (known - {"consent", "consent_form"})
     if odd:
         raise InputError(f"conditions have no field '{sorted(odd)[0][:60]}'")
-    hints = typing.get_type_hints(SessionConditions, include_extras=True)
+    hints = si.hints_of(SessionConditions)
     values = {name: _si(name, value, hints[name]) for name, value in given.items()}
     form = "text sha256 " + hashlib.sha256(consent_text.encode()).hexdigest()[:16]
     return SessionConditions(consent=consented, consent_form=form, **values)

@@ -39,18 +39,18 @@ def interval_around(
     return Estimate(value, standard_error, (low, high), unit, level)
 
 
-def inverse_of(estimate: Estimate, unit: str, factor: float = 1.0) -> Estimate:
-    """`factor` over an estimate, such as Q from a loss factor: the interval's ends change places.
+def inverse_of(estimate: Estimate) -> Estimate:
+    """One over an estimate (1), such as Q from a loss factor: its interval's ends change places.
 
     What is not above zero, an end of the interval or the value itself (noise can make a loss
     seem a gain), has an infinite inverse.
     """
     low, high = estimate.interval
     value, *ends = (
-        factor / number if number > 0 else math.inf for number in (estimate.value, high, low)
+        1.0 / number if number > 0 else math.inf for number in (estimate.value, high, low)
     )
     error = value * estimate.standard_error / estimate.value if estimate.value > 0 else math.inf
-    return Estimate(value, error, (ends[0], ends[1]), unit, estimate.level)
+    return Estimate(value, error, (ends[0], ends[1]), "1", estimate.level)
 
 
 def propagated(

@@ -109,16 +109,16 @@ def _figures(analysis: Analysis, data: Mapping[str, Any]) -> dict[str, str]:
     what is in there: drawn once for the same data, whenever it was computed."""
     numbers = {name: value for name, value in data.items() if name != "provenance"}
     asked = json.dumps(to_json([numbers, sorted(analysis.display.provenance.items())]))
-    drawn = _DRAWN.get(asked)
-    if drawn is None:
+
+    def drawn() -> dict[str, str]:
         start_second_process()
         pieces = {}
         for item in FIGURES:
             shows = {name: getattr(analysis, name) for name in item.needs}
             pieces[item.key] = later(drawing_of, analysis, item.key, shows)
-        drawn = dict(zip(pieces, values(*pieces.values()), strict=True))
-        _DRAWN.put(asked, drawn)
-    return drawn
+        return dict(zip(pieces, values(*pieces.values()), strict=True))
+
+    return _DRAWN.found(asked, drawn)
 
 
 def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:

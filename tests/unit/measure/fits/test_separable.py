@@ -79,7 +79,7 @@ def test_an_interval_of_a_logarithm_never_reaches_zero_and_an_inverse_may_be_ope
     low, high = interval_around(0.0, 3.0, 5, "1", logarithmic=True).interval
     assert 0 < low < 1 < high
     loss = interval_around(0.02, 0.02, 50, "1")
-    quality = inverse_of(loss, "1")
+    quality = inverse_of(loss)
     assert quality.value == pytest.approx(50)
     assert quality.interval == (1 / loss.interval[1], float("inf"))
 

@@ -277,7 +277,7 @@ class _FittedResponse:
             frequency=fit.estimate(
                 lambda shape, _: self.band.middle * (1 + shape[2 * k]), "Hz", level=level
             ),
-            quality_factor=inverse_of(loss, "1"),
+            quality_factor=inverse_of(loss),
             modal_constant=fit.estimate(
                 lambda _, weights: abs(weights[k]) * self.size, "m/V", positive=True, level=level
             ),

@@ -333,7 +333,7 @@ class _FittedDecay:
         )
         return (
             fit.estimate(lambda shape, _: shape[2 * k], "Hz", level=level),
-            inverse_of(loss, "1"),
+            inverse_of(loss),
             fit.estimate(
                 lambda _, weights: self.size * float(np.hypot(*weights[2 * k : 2 * k + 2])),
                 "m",
@@ -346,4 +346,4 @@ class _FittedDecay:
         """Frequency, Q and first amplitude, the former two of slight amplitudes."""
         frequency = bent.estimate(0, "Hz", 1.0, self.level)
         loss = bent.estimate(1, "1", 1 / (np.pi * frequency.value), self.level)
-        return frequency, inverse_of(loss, "1"), bent.estimate(2, "m", self.size, self.level)
+        return frequency, inverse_of(loss), bent.estimate(2, "m", self.size, self.level)

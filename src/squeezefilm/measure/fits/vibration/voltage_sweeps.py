@@ -302,7 +302,7 @@ class _Fitted:
             recording=recording,
             law=self.duffing.law,
             frequency=fit.estimate(lambda at: own * (1 + float(at[0])), "Hz", level=level),
-            quality_factor=inverse_of(estimate(1, 1.0, "1"), "1"),
+            quality_factor=inverse_of(estimate(1, 1.0, "1")),
             amplitude_per_volt=fit.estimate(
                 lambda at: size / volts * math.hypot(at[4], at[5]) / abs(at[1]) / (1 + at[0]) ** 2,
                 "m/V",
