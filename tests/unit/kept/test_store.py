@@ -76,23 +76,6 @@ def test_a_whole_file_with_other_code_in_it_is_not_run(kept_file: Path) -> None:
         assert arrays().get("asked") is None
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="no pipes or devices with a name")
-@pytest.mark.parametrize("kind", ["pipe", "endless device", "folder", "broken link"])
-def test_what_is_no_regular_file_is_passed_over_without_waiting(kept_file: Path, kind: str) -> None:
-    kept_file.unlink()
-    if kind == "pipe":
-        os.mkfifo(kept_file)
-    elif kind == "folder":
-        kept_file.mkdir()
-    else:
-        kept_file.symlink_to("/dev/zero" if kind == "endless device" else "/gone")
-    assert arrays().get("asked") is None
-    arrays().put("asked", VALUES)
-    found = arrays().get("asked")
-    assert (found is None) == (kind == "folder")
-    assert len(list(kept_file.parent.iterdir())) == 1
-
-
 def test_too_large_a_file_is_neither_read_nor_written(
     kept_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
