@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm.errors import ConfigError
-from squeezefilm.hard_limits import HardLimit
+from squeezefilm.hard_limits import DESCRIPTION_BYTES, HardLimit
 
 # Opening a pipe would wait for a writer, and a terminal would become this process's own.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
@@ -104,6 +104,11 @@ def read_regular_text(path: str | Path, limit: HardLimit, what: str) -> str:
     except UnicodeDecodeError as error:
         raise _no_text(found, error, path, what) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_toml_text(path: str | Path) -> str:
+    """The text of a TOML file. Raises as `read_regular_text` does."""
+    return read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
 
 
 def read_json(path: str | Path, limit: HardLimit, what: str) -> Any:

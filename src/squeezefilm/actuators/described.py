@@ -17,8 +17,7 @@ from squeezefilm import quantities as si
 from squeezefilm.config.load import load_text
 from squeezefilm.config.scan import require_quick_toml
 from squeezefilm.errors import ConfigError, SqueezefilmError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.regular_file import read_toml_text
 from squeezefilm.results import Result
 
 KINDS: dict[str, tuple[str, str]] = {
@@ -39,7 +38,7 @@ def is_actuator(name_or_path: str | Path) -> bool:
     if path.suffix != ".toml":
         return text in presets.actuator_names()
     try:
-        said = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+        said = read_toml_text(path)
     except SqueezefilmError:
         return False
     return re.search(rf"^\s*\[+\s*({'|'.join(KINDS)})\b", said, re.MULTILINE) is not None
@@ -52,7 +51,7 @@ def load_actuator(name_or_path: str | Path) -> Result:
     table of no kind, or of more than one.
     """
     path = presets.resolve_actuator(name_or_path)
-    text = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+    text = read_toml_text(path)
     return load_text(actuator_class(text, path), text, file=path)
 
 

@@ -27,8 +27,7 @@ from squeezefilm.config.stated import stated_sources
 from squeezefilm.config.syntax import explained
 from squeezefilm.distributions import Distribution
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.regular_file import read_toml_text
 
 T = TypeVar("T")
 _Path = tuple[str | int, ...]
@@ -67,7 +66,7 @@ def load(cls: type[T], path: str | Path) -> T:
     of the values by their dotted path. Raises `ConfigError` for anything that is not right, with
     file, line, key, what is allowed and a did-you-mean; it reports every error it can see at once.
     """
-    text = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+    text = read_toml_text(path)
     return load_text(cls, text, file=Path(path))
 
 

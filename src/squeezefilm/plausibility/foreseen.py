@@ -9,13 +9,12 @@ from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.size import SolveSize, solve_size
 from squeezefilm.plausibility.checks import require_plausible
 from squeezefilm.plausibility.expected import Expectation, expectation
 from squeezefilm.progress import about
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.regular_file import read_toml_text
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ def foreseen(name_or_path: str | Path, voltage: si.Volt | None = None) -> Forese
     """
     display = load_display(name_or_path)
     file = presets.resolve(name_or_path)
-    text = read_regular_text(file, DESCRIPTION_BYTES, "a TOML file")
+    text = read_toml_text(file)
     doubts = require_plausible(display, voltage, text=text, file=str(file))
     expected = expectation(display.actuator)
     return Foreseen(display, doubts, expected, _size(display, expected))

@@ -9,14 +9,13 @@ from pydantic import Field
 
 from squeezefilm import presets
 from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.lab.designing import form as description
 from squeezefilm.lab.designing import numbers as design
 from squeezefilm.lab.designing.field_limits import allowed
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request, as_text
 from squeezefilm.lab.worker import PAGE
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.regular_file import read_toml_text
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
@@ -94,7 +93,7 @@ class DesignArea:
             text = description.preset_text(asked.preset)
         elif asked.file is not None:
             file = existing(self._lab.folder, asked.file, ".toml")
-            text = read_regular_text(file, DESCRIPTION_BYTES, "a TOML file")
+            text = read_toml_text(file)
         else:
             text = str(asked.text)
         return await self._display(design.opened, text)

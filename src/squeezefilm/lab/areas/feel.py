@@ -14,11 +14,10 @@ from pydantic import Field
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.lab.designing import program as feel
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.regular_file import read_toml_text
 from squeezefilm.results import write_whole
 from squeezefilm.texture_file import load_texture
 
@@ -106,7 +105,7 @@ class FeelArea:
                 raise InputError(f"'{asked.preset}' is no preset texture")
         else:
             file = existing(self._folder, str(asked.file), ".toml")
-        text = read_regular_text(file, DESCRIPTION_BYTES, "a TOML file")
+        text = read_toml_text(file)
         return {"type": "texture text", "text": text}
 
     async def _on_display(self, work: Callable[..., Answer], asked: OnDisplay) -> Answer:

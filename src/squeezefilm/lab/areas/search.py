@@ -12,12 +12,12 @@ from pydantic import Field
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES, DESIGNS_SCREENED, DESIGNS_SOLVED
+from squeezefilm.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED
 from squeezefilm.lab.files import existing, named
 from squeezefilm.lab.searching.asked import asked_of, display_text, folder_of
 from squeezefilm.lab.searching.process import SearchProcess, search
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.regular_file import read_toml_text
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ class SearchArea:
         else:
             place = named(self._folder, str(asked.file), "")
             file = existing(place, _REQUIREMENTS, ".toml")
-        text = read_regular_text(file, DESCRIPTION_BYTES, "a TOML file")
+        text = read_toml_text(file)
         return {"type": "requirements text", "text": text}
 
     async def _asked(self, text: str) -> dict[str, Any]:

@@ -76,12 +76,11 @@ def display_values(target: str) -> list[dict[str, Any]]:
     from squeezefilm.actuators.described import actuator_class, is_actuator
     from squeezefilm.config.written import written_values
     from squeezefilm.display import Display
-    from squeezefilm.hard_limits import DESCRIPTION_BYTES
-    from squeezefilm.regular_file import read_regular_text
+    from squeezefilm.regular_file import read_toml_text
 
     other = is_actuator(target)
     file = presets.resolve_actuator(target) if other else presets.resolve(target)
-    text = read_regular_text(file, DESCRIPTION_BYTES, "a TOML file")
+    text = read_toml_text(file)
     described = actuator_class(text, file) if other else Display
     return [
         {
