@@ -35,7 +35,7 @@ def test_a_stator_is_solved_and_says_what_was_fitted(tmp_path: Path) -> None:
     text = " ".join(done.stdout.split())
     for said in (
         "B(0,9)", "fitted, not predicted", "validates nothing", "Teeth: an equivalent",
-        "Assumed: phosphor bronze", "the first is as measured", "Sound at 0.5 m",
+        "Assumed: phosphor bronze", "the value above is measured", "Sound at 0.5 m",
     ):  # fmt: skip
         assert said in text
     assert {path.name for path in tmp_path.iterdir()} == {

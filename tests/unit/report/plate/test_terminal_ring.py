@@ -76,7 +76,7 @@ def test_a_ring_is_said_with_all_that_there_is() -> None:
         "Mode B(0,9) 40.523 kHz ± 12 Hz (estimated)",
         "Amplitude per volt 123.5 nm/V antinode at x 0 mm, y 2 mm, without a finger",
         "190 nm/V largest, touched face",
-        "110 nm/V computed at that antinode; the first is as measured",
+        "110 nm/V computed there (the value above is measured)",
         "Half wavelength 9.346 mm along the mean circumference",
         "Nodal circles 10.1 mm, 20 mm radius",
         "Quality factor 212.3 from the losses of its materials",
