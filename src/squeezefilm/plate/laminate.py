@@ -86,11 +86,12 @@ def plate_laminate(
     return section_with(plate, cross_section, *ceramics_of(plate))
 
 
+@si.checked_numbers
 def section_with(
     plate: RectangularPlate | DiscPlate,
     cross_section: CrossSection,
-    above: si.Metre,
-    below: si.Metre,
+    above: Annotated[si.Metre, si.AtLeast(0.0)],
+    below: Annotated[si.Metre, si.AtLeast(0.0)],
 ) -> Laminate:
     """The section of a plate with ceramic of a thickness on its upper and on its lower face; 0 is
     none.
@@ -98,6 +99,7 @@ def section_with(
     `cross_section` says how the strip deforms across its width: not at all ("plane_strain", for
     plates wide against λ/2: E/(1 − ν²) and c11_p), freely ("plane_stress", for narrow ones: E and
     1/s11), or as the paper has it, which mixes the two ("paper": E and c11_p).
+    Raises `InputError` for a thickness below 0.
     """
     substrate, ceramic = plate.substrate, plate.ceramic
     wide = cross_section == "plane_strain"

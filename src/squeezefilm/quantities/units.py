@@ -361,7 +361,11 @@ def unit_of(annotation: Any) -> Unit | None:
     return None
 
 
-@functools.cache
+_HINTS: dict[type[Any], dict[str, Any]] = {}
+
+
 def hints_of(cls: type[Any]) -> dict[str, Any]:
     """The annotations of a class by name, with their units; read once, so leave them unchanged."""
-    return typing.get_type_hints(cls, include_extras=True)
+    if cls not in _HINTS:
+        _HINTS[cls] = typing.get_type_hints(cls, include_extras=True)
+    return _HINTS[cls]
