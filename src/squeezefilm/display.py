@@ -17,7 +17,7 @@ from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy
-from squeezefilm.hard_limits import ROUGHNESS
+from squeezefilm.hard_limits import FREQUENCY, ROUGHNESS
 from squeezefilm.joint_spread import JointSpread
 from squeezefilm.materials import Gas
 from squeezefilm.plate.heat.thermal import Thermal
@@ -135,6 +135,38 @@ class ActiveRegion:
         si.require("y_to", self.y_to, si.Unit("m"), at_least=self.y_from)
 
 
+@si.checked_numbers
+@dataclass(frozen=True)
+class Measured:
+    """What was measured of the real display without a finger, to stand beside what is computed.
+
+    Nothing is computed from it. Each value may say where it is from and how sure it is, as any
+    value does; what is left out was not measured.
+
+    Args:
+        resonance_frequency: of the working mode (Hz).
+        vibration_amplitude: zero-to-peak at the antinode and at resonance (m), at `voltage`.
+        voltage: amplitude of the drive at which `vibration_amplitude` was measured (V, peak).
+        quality_factor: of the working mode.
+
+    Raises:
+        InputError: an amplitude without its voltage.
+    """
+
+    resonance_frequency: Annotated[si.Hertz, FREQUENCY] | None = None
+    vibration_amplitude: Annotated[si.Metre, si.Above(0), si.AtMost(1e-3)] | None = None
+    voltage: Annotated[si.Volt, si.Above(0), si.AtMost(HIGHEST_VOLTAGE)] | None = None
+    quality_factor: Annotated[si.Dimensionless, si.Above(0.5)] | None = None
+
+    def __post_init__(self) -> None:
+        if self.vibration_amplitude is not None and self.voltage is None:
+            raise InputError(
+                "measured.vibration_amplitude stands without its voltage; add the amplitude of "
+                'the drive\'s voltage, like voltage = "15 V"',
+                quantity="voltage",
+            )
+
+
 # Frozen, so that all displays may share it.
 _STILL_AIR = Thermal()
 
@@ -146,7 +178,8 @@ class Display(Result):
     Read one with `load_display`. The first of `surfaces` is the default. `active_area` is where
     fingers are meant to be; without one all of the face that a contact does not overhang.
     `joint` and `calibration` stand in a calibrated display: what its measurements say of its values
-    together, and what they were.
+    together, and what they were. `measured` is what was measured of the real display, and belongs
+    to its body: a copy with another body must be without.
     `provenance` says where each value is from, by its dotted path in the file. In a file
     `references` are resolved: a material by its name, and the preset that it is a changed copy of.
     """
@@ -168,6 +201,7 @@ class Display(Result):
     gas: Gas
     thermal: Thermal = _STILL_AIR
     active_area: ActiveRegion | None = None
+    measured: Measured | None = field(default=None, metadata={"found": True})
     joint: JointSpread | None = field(default=None, metadata={"found": True})
     calibration: CalibrationRecord | None = field(default=None, metadata={"found": True})
     provenance: Mapping[str, Provenance] = field(
@@ -270,6 +304,8 @@ def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
         raise InputError(f"{file} exists; give another name, or --force to replace it")
     name = re.sub(r"[^A-Za-z0-9._-]+", "-", file.stem) or "display"
     own = re.sub(r'(?m)^name = ".*"$', f'name = "{name}"', text, count=1)
+    # What was measured of the preset's device was not measured of this one.
+    own = re.sub(r"(?m)^# [^\n]*\n\[measured\]\n(?:.+\n)*\n?", "", own)
     header = (
         f"# Started from the preset {preset}: change what is yours, the title too, "
         "and say where it is from.\n"

@@ -54,7 +54,7 @@ def test_other_readings(found: dict[str, ClaimResult]) -> None:
 
 
 def _claim(**changes: object) -> Claim:
-    claim = Claim("x", "here", "one", (1.0,), "1", "reproduces", "so", tolerance=0.01)
+    claim = Claim("x", "here", "one", "1", "reproduces", "so", (1.0,), tolerance=0.01)
     return dataclasses.replace(claim, **changes)  # type: ignore[arg-type]
 
 

@@ -27,7 +27,12 @@ from squeezefilm.analysis.felt import FeltGratings, felt_gratings
 from squeezefilm.analysis.film.models import FilmComparison, compare_film_models
 from squeezefilm.analysis.friction.wanted import Wanted
 from squeezefilm.analysis.friction.wanted import wanted_friction as friction_wanted
-from squeezefilm.analysis.other_models import OtherModel, other_models
+from squeezefilm.analysis.other_models import (
+    MeasuredBeside,
+    OtherModel,
+    measured_beside,
+    other_models,
+)
 from squeezefilm.analysis.sensitivities import (
     DisplaySensitivities,
     Effort,
@@ -214,6 +219,11 @@ class Analysis(Result):
         """The same plate by other theories."""
         return tuple(other_models(self.display, self.prediction))
 
+    @property
+    def measured(self) -> tuple[MeasuredBeside, ...]:
+        """What was measured of the real display beside what is computed; empty for nothing."""
+        return measured_beside(self.display, self.prediction)
+
     @functools.cached_property
     def texture(self) -> FrictionTrace | None:
         """A stroke over a square grating; None where the amplitude changes no friction."""
@@ -297,6 +307,7 @@ class Analysis(Result):
                 "plateau_balance": to_json(self.film_models.balance),
             },
             "other_models": to_json(self.other_models),
+            "measured": [to_json(one) | {"difference": one.difference} for one in self.measured],
             "drive_electronics": to_json(self.drive_electronics),
             "verdict": to_json((*self.findings, *self.film_findings)),
             "provenance": stamp(self.display),

@@ -1,14 +1,16 @@
-"""The same plate by other theories, to set beside what the chain goes on with."""
+"""What stands beside the plate that the chain goes on with: other theories, and measurements."""
 
 from __future__ import annotations
 
 import contextlib
 import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction
+from squeezefilm.config.provenance import Provenance
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.plate.beam.modes import BeamTheory
@@ -57,3 +59,44 @@ def other_models(display: Display, prediction: Prediction) -> Iterator[OtherMode
         if beam.model != mode.model:
             amplitude = volts * beam.amplitude_per_volt
             yield OtherModel(beam.model, beam.mode.frequency, beam.mode.half_wavelength, amplitude)
+
+
+@dataclass(frozen=True)
+class MeasuredBeside:
+    """A number that was measured of the real display beside the computed one, without a finger:
+    `quantity` in words, both in `unit`, at what voltage (V) where it depends on it, and the source
+    of the measured one ("" where none is stated)."""
+
+    quantity: str
+    measured: float
+    computed: float
+    unit: str
+    voltage: si.Volt | None
+    source: str
+
+    @property
+    def difference(self) -> si.Dimensionless:
+        """The computed number less the measured one, as a share of the measured one."""
+        return self.computed / self.measured - 1
+
+
+def measured_beside(display: Display, prediction: Prediction) -> tuple[MeasuredBeside, ...]:
+    """What a display's `[measured]` says beside the solved mode of a prediction, in the order
+    frequency, amplitude, quality factor; empty without one. The amplitude is the free antinode's
+    at resonance, linear in the voltage."""
+    known, mode = display.measured, prediction.mode
+    if known is None:
+        return ()
+    volts = known.voltage
+    amplitude = math.nan if volts is None else volts * mode.amplitude_per_volt
+    pairs: tuple[tuple[str, str, str, float, si.Volt | None], ...] = (
+        ("resonance_frequency", "Resonance frequency", "Hz", mode.resonance_frequency, None),
+        ("vibration_amplitude", "Amplitude, free", "m", amplitude, volts),
+        ("quality_factor", "Quality factor", "1", mode.quality_factor, None),
+    )
+    return tuple(
+        MeasuredBeside(quantity, measured, computed, unit, at, source.source)
+        for name, quantity, unit, computed, at in pairs
+        if (measured := getattr(known, name)) is not None
+        for source in (display.provenance.get(f"measured.{name}", Provenance("")),)
+    )

@@ -8,6 +8,7 @@ from __future__ import annotations
 import functools
 
 from squeezefilm import quantities as si
+from squeezefilm.analysis.claims.record import measured_of_preset
 from squeezefilm.analysis.plate.sensitivity import WorkingPoint, with_other_data_set, working_point
 from squeezefilm.display import load_display
 from squeezefilm.plate.layout import RectangularPlate
@@ -15,8 +16,8 @@ from squeezefilm.plate.layout import RectangularPlate
 MODAL_FREQUENCY: si.Hertz = 35.6e3  # section 3.1.3, Fig 13
 HARMONIC_FREQUENCY: si.Hertz = 34.77e3  # section 3.1.3, Fig 14
 HARMONIC_AMPLITUDE: si.Metre = 3.2e-6
-MEASURED_FREQUENCY: si.Hertz = 30.5e3  # section 3.2.1
-MEASURED_AMPLITUDE: si.Metre = 1.15e-6
+MEASURED_FREQUENCY: si.Hertz = measured_of_preset("biet2008-plate", "resonance_frequency")
+MEASURED_AMPLITUDE: si.Metre = measured_of_preset("biet2008-plate", "vibration_amplitude")
 DRIVE_VOLTAGE: si.Volt = 15.0
 
 

@@ -8,6 +8,7 @@ from typing import Literal
 
 from squeezefilm import presets
 from squeezefilm.config import load
+from squeezefilm.display import preset_display
 
 Verdict = Literal[
     "reproduces",
@@ -56,18 +57,20 @@ class Claim:
     """One published claim: what stands where, how near counts as the same, the verdict on record.
 
     `printed` and the values computed for it are in the SI unit `unit`; `tolerance` is relative and
-    used for the relation "equals". `grounds` says what it is worth where it passes. A published
-    direction of friction is asked of one `model`, and `says` has it in words where it was measured;
-    of other claims both are empty.
+    used for the relation "equals". A number that a preset carries as measured is not written again:
+    `measured_of` is the preset and the name of the number. `grounds` says what it is worth where it
+    passes. A published direction of friction is asked of one `model`, and `says` has it in words
+    where it was measured; of other claims both are empty.
     """
 
     id: str
     where: str
     statement: str
-    printed: tuple[float, ...]
     unit: str
     verdict: Verdict
     why: str
+    printed: tuple[float, ...] = ()
+    measured_of: tuple[str, ...] = ()
     relation: Relation = "equals"
     tolerance: float = 0.01
     grounds: Grounds = "compared"
@@ -152,7 +155,21 @@ class ClaimFile:
 @functools.cache
 def read_claims() -> ClaimFile:
     """The claims on record. Raises `ConfigError` where the file is not right."""
-    return load(ClaimFile, presets.claims_path())
+    file = load(ClaimFile, presets.claims_path())
+    return replace(
+        file,
+        claims=tuple(
+            replace(one, printed=(measured_of_preset(*one.measured_of),))
+            if one.measured_of
+            else one
+            for one in file.claims
+        ),
+    )
+
+
+def measured_of_preset(preset: str, quantity: str) -> float:
+    """What was measured of a preset's real device (SI): `quantity` is a field of `Measured`."""
+    return float(getattr(preset_display(preset).measured, quantity))
 
 
 def missed_by(model: str) -> tuple[Claim, ...] | None:

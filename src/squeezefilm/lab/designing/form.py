@@ -163,8 +163,13 @@ def edited(text: str, path: str, value: str) -> str:
 
 
 def write_value(document: Any, rows: dict[str, dict[str, Any]], path: str, written: Any) -> None:
-    """Write a value at a dotted path of a document, and what is left of its source."""
+    """Write a value at a dotted path of a document, and what is left of its source.
+
+    What was measured was measured of a display with the old body: it goes where that changes.
+    """
     owner, row = document, rows[path]
+    if path.startswith("actuator.") and written != row["text"]:
+        document.pop("measured", None)
     *heads, last = path.split(".")
     for depth, part in enumerate(heads, 1):
         if isinstance(owner, list):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -27,6 +28,7 @@ from squeezefilm.report.kit.point_rows import Row, heat_rows, place_rows, reduct
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
+    from squeezefilm.analysis.other_models import MeasuredBeside
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.plate.working_mode import WorkingMode
 
@@ -43,7 +45,7 @@ def decision_rows(analysis: Analysis) -> list[Rows]:
     """The key numbers by subject, in the order of the chain."""
     p = analysis.prediction
     groups = [
-        Rows("Vibration", vibration_rows(p), []),
+        Rows("Vibration", with_measured(vibration_rows(p), analysis.measured, p.voltage), []),
         Rows("Friction", friction_rows(analysis), place_rows(p, analysis.active_area)),
         Rows("Textures", texture_rows(analysis), []),
     ]
@@ -95,6 +97,25 @@ def vibration_rows(p: Prediction) -> list[Row]:
         ("Amplitude, free", shown(free, M, 3), made),
         ("Amplitude, finger on", held, f"{of}; {kept}"),
         *under_finger,
+    ]
+
+
+def with_measured(
+    rows: Iterable[Row], beside: Iterable[MeasuredBeside], voltage: si.Volt | None
+) -> list[Row]:
+    """Rows whose remarks begin with what was measured of their quantity on the real display, and by
+    how much the computed number differs; of an amplitude at another voltage (V) that is said."""
+    said = dict[str, str]()
+    for one in beside:
+        more = "+" if one.difference > 0 else "−"
+        text = f"{more}{si.percent(abs(one.difference))} on measured "
+        text += shown(one.measured, si.Unit(one.unit), 3)
+        if one.voltage not in (None, voltage):
+            text += f" at {shown(one.voltage, V)}"
+        said[one.quantity] = f"{text} ({printable(one.source) or 'source not stated'})"
+    return [
+        (label, value, "; ".join(part for part in (said.get(label), remark) if part))
+        for label, value, remark in rows
     ]
 
 
@@ -213,7 +234,8 @@ def more_rows(analysis: Analysis) -> list[Row]:
     ]
     if analysis.fidelity is not None:
         rows += [_grating(analysis, at) for at in range(len(analysis.fidelity.speeds))]
-    return rows + (heat_rows(p.heat)[2:] if p.voltage else [])
+    rows += heat_rows(p.heat)[2:] if p.voltage else []
+    return with_measured(rows, analysis.measured, p.voltage)
 
 
 def unsaid_warnings(analysis: Analysis) -> list[str]:

@@ -240,6 +240,7 @@ class Requirements:
             finger=finger,
             surfaces=(first, *others),
             active_area=None,
+            measured=None,
             joint=None,
             calibration=None,
         )

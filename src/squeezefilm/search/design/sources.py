@@ -80,7 +80,7 @@ def _kept(requirements: Requirements, base: Display) -> Iterator[tuple[str, Prov
     places = {str(old): str(new) for new, old in enumerate(order)}
     for path, one in base.provenance.items():
         head, *rest = path.split(".")
-        if head in ("actuator", "joint", "calibration", "active_area"):
+        if head in ("actuator", "measured", "joint", "calibration", "active_area"):
             continue
         if head == "surfaces":
             rest[0] = places[rest[0]]

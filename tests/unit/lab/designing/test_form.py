@@ -204,6 +204,13 @@ def test_a_value_of_the_library_is_overwritten_beside_its_name() -> None:
         assert row_of(found, "actuator.substrate.material")["text"] == "brass CuZn30"
 
 
+def test_what_was_measured_goes_with_the_body_that_it_was_measured_of() -> None:
+    text = preset_text("biet2008-plate")
+    assert display_of(edited(text, "drive.voltage", "12 V")).measured is not None
+    assert display_of(edited(text, "actuator.thickness", "2.1 mm")).measured is None
+    assert display_of(edited(text, "actuator.patches.0.length", "10 mm")).measured is None
+
+
 def test_an_edited_preset_does_not_keep_the_presets_name() -> None:
     text = edited(preset_text("biet2008-plate"), "drive.voltage", "12 V")
     assert name_of(text) == "biet2008-plate, edited"

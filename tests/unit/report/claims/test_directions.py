@@ -18,7 +18,15 @@ from squeezefilm.report.claims.directions import (
 
 def result(number: int, model: str = "", printed: tuple[float, ...] = (2.0,)) -> ClaimResult:
     claim = Claim(
-        f"claim-{number}", "here", "so", printed, "1", "holds", "why", "at_most", model=model
+        f"claim-{number}",
+        "here",
+        "so",
+        "1",
+        "holds",
+        "why",
+        printed,
+        relation="at_most",
+        model=model,
     )
     verdict = "prediction only" if not printed else "holds"
     return ClaimResult(claim, (1.0,), None, None, verdict, "")

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 from tests.unit.report.made_results import WARM
 
+from squeezefilm.analysis.other_models import MeasuredBeside
 from squeezefilm.report.display.rows import (
     decision_rows,
     unsaid_warnings,
     vibration_rows,
+    with_measured,
     working_point,
 )
 from squeezefilm.report.kit.point_rows import heat_rows
@@ -42,13 +44,28 @@ def analysis(**changes: Any) -> Any:
     parts: dict[str, Any] = {
         "prediction": point(), "fidelity": table, "envelope_time_constant": 1e-3,
         "envelope_bandwidth": 160.0, "ears": None, "felt": None,
-        "active_area": None, "drive_electronics": None,
+        "active_area": None, "drive_electronics": None, "measured": (),
         "own_curve": SimpleNamespace(amplitude_for_criterion=0.7e-6),
         "uncertainty": SimpleNamespace(level=0.9, interval=(0.04, 0.786), median=0.37),
         "rivals": {"paper2008": 0.7, "film-smooth": 0.0},
         "verdict": (SimpleNamespace(text="said already"),),
     }  # fmt: skip
     return SimpleNamespace(**{**parts, **changes})
+
+
+def test_what_was_measured_stands_beside_what_is_computed() -> None:
+    swing = MeasuredBeside("Amplitude, free", 1e-6, 1.5e-6, "m", 15.0, "a laser")
+    unsure = MeasuredBeside("Quality factor", 80.0, 60.0, "1", None, "")
+    rows = [("Amplitude, free", "3 µm", "made"), ("Quality factor", "60", ""), ("Mass", "1 kg", "")]
+    assert with_measured(rows, [swing, unsure], 15.0) == [
+        ("Amplitude, free", "3 µm", "+50 % on measured 1 µm (a laser); made"),
+        ("Quality factor", "60", "−25 % on measured 80 (source not stated)"),
+        ("Mass", "1 kg", ""),
+    ]
+    (other,) = with_measured(rows[:1], [swing], 30.0)
+    assert other[2].startswith("+50 % on measured 1 µm at 15 V (")
+    vibration = decision_rows(analysis(measured=(swing,)))[0].rows
+    assert any("on measured 1 µm" in remark for _, _, remark in vibration)
 
 
 def test_key_numbers_go_by_subject_in_the_order_of_the_chain() -> None:
