@@ -315,6 +315,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "measure.recordings.kinds.ImpedanceSweep": {"admittance": np.ones(5) + 1j},
     "measure.recordings.kinds.FrequencyResponse": {"displacement_per_volt": np.ones(5) + 1j},
+    "measure.recordings.kinds.FrictionCurve": {"friction": np.full(5, 0.5)},
     "measure.recordings.kinds.LineScan": {"displacement": np.ones(5) + 1j},
     "measure.recordings.kinds.GridScan": {
         "x": WAYS,

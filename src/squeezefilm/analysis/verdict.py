@@ -90,8 +90,8 @@ def verdict(
             yield Finding("doubt", doubt)
         yield Finding(
             "doubt",
-            "Published friction against amplitude, of people on glass, refutes the default model: "
-            "it falls too fast with the amplitude (squeezefilm reproduce --data published).",
+            "Published friction of people on glass refutes the default model (squeezefilm "
+            "reproduce --data published).",
         )
 
     yield from (held_back(finding, why) for finding in found())

@@ -246,8 +246,8 @@ def test_the_last_word_is_that_nothing_is_validated(point: Prediction) -> None:
     last = said(point)[-1]
     assert last == Finding(
         "doubt",
-        "Published friction against amplitude, of people on glass, refutes the default model: it "
-        "falls too fast with the amplitude (squeezefilm reproduce --data published).",
+        "Published friction of people on glass refutes the default model (squeezefilm reproduce "
+        "--data published).",
     )
     # With what is said of the friction, and that no file says where these values are from.
     assert len(said(point, relative_friction=0.5)) == 3
@@ -329,7 +329,7 @@ def test_an_interval_says_what_it_has_varied_and_how_far_rival_models_lie_apart(
     assert "1 laws of one model (25 % of its variance)" in wide.text
     assert "not the frequency (30 kHz) or the mechanism" in wide.text
     assert "0.10 ('a') to 0.90 ('b')" in wide.text
-    assert "0.80 apart, wider than the interval's 0.30" in wide.text
+    assert "they span 0.80, more than the interval (0.30)" in wide.text
     narrow = model_form(drawn, {"a": 0.45}, 30e3)  # type: ignore[arg-type]
     assert "0.05 apart, within the width of" in narrow.text
     assert model_form(drawn, {}, 30e3).text.endswith("or the mechanism.")  # type: ignore[arg-type]

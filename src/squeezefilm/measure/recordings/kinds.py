@@ -199,6 +199,8 @@ class FrictionCurve:
     reading_error: float = 0.0
 
     def __post_init__(self) -> None:
+        # In newtons or a number: whatever the unit, each is finite.
+        si.require("friction", self.friction, si.Unit("1"))
         alike = {"vibration_amplitude": self.vibration_amplitude, "friction": self.friction}
         conditions = ("frequency", "normal_force", "speed", "spread")
         alike |= {name: getattr(self, name) for name in conditions}
