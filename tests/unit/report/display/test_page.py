@@ -210,6 +210,7 @@ def everything_in(folder: Path) -> list[str]:
 
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """A page without its figures: what is tested is the writing."""
+    monkeypatch.setattr(page, "_figures", lambda *_: {})
     monkeypatch.setattr(page, "report_page", lambda *_: "<!DOCTYPE html>")
 
 
@@ -268,7 +269,7 @@ def test_a_figure_that_fails_leaves_nothing(
     def fail(*_: Any) -> str:
         raise RuntimeError("no figure")
 
-    monkeypatch.setattr(page, "report_page", fail)
+    monkeypatch.setattr(page, "_figures", fail)
     with pytest.raises(RuntimeError):
         write_analysis(plate_analysis, folder)
     assert not folder.exists()

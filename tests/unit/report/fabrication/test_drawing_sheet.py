@@ -137,7 +137,7 @@ def plates(draw: st.DrawFn) -> RectangularPlate:
     )
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(settings.get_profile("dear"))
 @given(plate=plates())
 def test_dimensions_of_any_plate_are_its_description(
     preset: Preset, with_body: WithBody, plate: RectangularPlate
