@@ -8,14 +8,18 @@ many new ones in `make nightly`, which sets SQUEEZEFILM_EXPLORE and prints its s
 import gc
 import os
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
-# What an earlier run solved must not stand in for what this one tests.
-os.environ["SQUEEZEFILM_CACHE"] = "off"
+# Solved plates and films are kept from one process and run to the next under a hash of the whole
+# package, so that none is of another source; `off` keeps nothing, as `make coverage` asks.
+_KEPT = str(Path(__file__).parents[1] / "out" / "test-cache")
+if os.environ.get("SQUEEZEFILM_CACHE") != "off":
+    os.environ["SQUEEZEFILM_CACHE"] = _KEPT
 
 from hypothesis import settings  # noqa: E402
 
@@ -35,6 +39,19 @@ settings.load_profile("properties")
 # share what is dear. (xdist's own groups are passed over under pytest 9.2: it names tests anew.)
 _SPREAD = ("tests/e2e/", "tests/faults/", "tests/properties/")
 _TOGETHER = ("tests/e2e/test_report_page.py",)
+
+
+_setattr = pytest.MonkeyPatch.setattr
+
+
+def _setattr_and_keep_nothing(self: pytest.MonkeyPatch, *target: Any, **how: Any) -> None:
+    """Replace an attribute, and until it is back keep nothing for other tests, nor read what is."""
+    if os.environ.get("SQUEEZEFILM_CACHE") == _KEPT:
+        self.setenv("SQUEEZEFILM_CACHE", "off")
+    _setattr(self, *target, **how)
+
+
+pytest.MonkeyPatch.setattr = _setattr_and_keep_nothing  # type: ignore[method-assign]
 
 
 @pytest.hookimpl(wrapper=True)

@@ -96,13 +96,15 @@ def table(times: dict[str, dict[bool, float]], tests: dict[str, int]) -> str:
         return sum(times[file][is_slow] for file in files)
 
     def row(name: str, files: list[str]) -> str:
-        count = sum(tests[file] for file in files)
-        return f"| {name} | {count} | {total(files, False):.1f} | {total(files, True):.1f} |"
+        cells = [name, str(sum(tests[file] for file in files))]
+        return " | ".join([*cells, *(f"{total(files, kind):.1f}" for kind in ran)])
 
     def cost(files: list[str]) -> float:
         return total(files, False) + total(files, True)
 
-    head = "| {} | tests | quick, s | slow, s |\n|---|---|---|---|"
+    ran = [kind for kind in (False, True) if total([*times], kind)]
+    names = " | ".join("slow, s" if kind else "quick, s" for kind in ran)
+    head = f"{{}} | tests | {names}\n---|---{'|---' * len(ran)}"
     by_folder = sorted(folders.items(), key=lambda pair: -cost(pair[1]))
     by_file = sorted((file for file in times if cost([file]) >= LEAST), key=lambda f: -cost([f]))
     return "\n".join(
@@ -110,7 +112,7 @@ def table(times: dict[str, dict[bool, float]], tests: dict[str, int]) -> str:
             "# Processor time of the tests",
             "",
             "User and system time, children included. Collection and the tests in real time are",
-            "left out. Written by `make costs`.",
+            "left out. Written by `make costs`; slow tests stand in it if they were run.",
             "",
             head.format("folder"),
             *(row(name, files) for name, files in by_folder),

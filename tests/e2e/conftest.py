@@ -22,17 +22,6 @@ if TYPE_CHECKING:
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
-@pytest.fixture(scope="module", autouse=True)
-def kept_within_a_run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """What whole verbs and pages solve is kept from one test to the next, as it is for people, but
-    not from one run of the tests to the next: it is solved by the source that is tested."""
-    base = tmp_path_factory.getbasetemp()
-    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "kept"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SQUEEZEFILM_CACHE", str(folder))
-        yield
-
-
 @pytest.fixture(scope="session")
 def chromium_path() -> str:
     """The system's Chromium. Without one the test is skipped, but fails where CI=true."""

@@ -34,7 +34,7 @@ def claims(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
         asked=stands_in("analysis.claims.command:reproduce", reproduced()),
         shown=stands_in("report.claims.terminal:show_claims"),
         page=stands_in("report.claims.page:write_reproduction", tmp_path / "index.html"),
-        checkout=stands_in("report.claims.page:checkout"),
+        checkout=stands_in("report.kit.docs:checkout"),
         docs=stands_in("report.claims.page:write_validation_docs", "docs/reference/validation.md"),
     )
 
@@ -84,13 +84,13 @@ def test_a_changed_verdict_is_told_and_ends_with_1(
 def test_measured_curves_are_compared_in_place_of_the_claims(
     claims: SimpleNamespace, stands_in: StandsIn, tmp_path: Path
 ) -> None:
-    compared = stands_in("measure.fits.friction.friction_curve:compare_folder", [])
+    compared = stands_in("measure.fits.friction.friction_folder:compare_folder", [])
     stands_in("report.measured.curves:show_comparisons")
     done = run("reproduce", "--data", tmp_path)
     assert done.returncode == 0, done.stderr
     assert compared.given[0] == tmp_path
     refused = run("reproduce", "--data", tmp_path, "--write-docs")
     assert refused.returncode == 2
-    assert "--data writes no documentation" in refused.stderr
+    assert "of --data published, of no other data" in refused.stderr
     assert len(compared.calls) == 1
     assert claims.asked.calls == claims.checkout.calls == []
