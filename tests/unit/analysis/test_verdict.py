@@ -331,7 +331,7 @@ def test_an_interval_says_what_it_has_varied_and_how_far_rival_models_lie_apart(
     assert "0.10 ('a') to 0.90 ('b')" in wide.text
     assert "they span 0.80, more than the interval (0.30)" in wide.text
     narrow = model_form(drawn, {"a": 0.45}, 30e3)  # type: ignore[arg-type]
-    assert "0.05 apart, within the width of" in narrow.text
+    assert "they span 0.05, no more than the interval (0.30)" in narrow.text
     assert model_form(drawn, {}, 30e3).text.endswith("or the mechanism.")  # type: ignore[arg-type]
 
 
