@@ -74,7 +74,7 @@ def test_the_line_is_the_one_the_value_stands_on() -> None:
 
 
 def test_several_errors_are_reported_at_once() -> None:
-    bad = TEXT.replace("roughness =", "roughnes =", 1).replace('"15 V"', "15")
+    bad = TEXT.replace("roughness =", "roughnes =", 1).replace('"15 V"', "15", 1)
     with pytest.raises(ConfigError) as caught:
         load_text(Display, bad, file="mine.toml")
     message = str(caught.value)

@@ -105,7 +105,6 @@ class GridScan:
         si.require_alike(x=self.x, y=self.y, displacement=self.displacement)
 
 
-@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RingDown:
     """Displacement (m) against `time` (s) after the drive was switched off, both (points,)."""
@@ -129,7 +128,6 @@ class VoltageSweeps:
     told: Told = field(default_factory=Told)
 
 
-@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RawSignals:
     """Drive voltage (V) and displacement (m) against `time` (s), all (points,), evenly sampled."""

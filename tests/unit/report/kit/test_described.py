@@ -26,7 +26,7 @@ def test_presets_are_listed_with_what_is_assumed(printed: Callable[[], str]) -> 
     text = printed()
     for name in by_name:
         assert name in text
-    assert "15 of 67" in text
+    assert "15 of 70" in text
 
 
 @pytest.mark.parametrize("resolve", [presets.resolve, presets.path])
