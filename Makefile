@@ -40,7 +40,7 @@ lab: $(VENV)/run.stamp  ## open the lab in the browser
 PYTEST := $(BIN)/python -m pytest
 # Files of tests, all unless said: `TESTS="tests/unit/film"`, or those of a room or folder: `PART=film`.
 PART ?=
-TESTS ?= $(if $(PART),$(shell $(BIN)/python tools/part_tests.py $(PART) || echo no-such-part),tests)
+TESTS ?= $(if $(PART),$(or $(shell $(BIN)/python tools/part_tests.py $(PART)),$(error no tests of PART=$(PART))),tests)
 define run_tests
 @failed=0; tests="$(TESTS)"; \
 $(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(1)" $$tests || failed=1; \

@@ -73,8 +73,12 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
         raise InputError("--write-docs writes a page of --data published, of no other data")
     from squeezefilm import presets
     from squeezefilm.measure.fits.friction.friction_folder import compare_folder
+    from squeezefilm.report.kit.docs import checkout
     from squeezefilm.report.measured.curves import show_comparisons, write_comparisons
 
+    if write_docs:
+        # Minutes of work lie before the writing.
+        checkout()
     with working(as_json) as step:
         compared = compare_folder(presets.friction_folder() if published else data, step)
         written = None if out is None else write_comparisons(compared, out)

@@ -94,3 +94,15 @@ def test_measured_curves_are_compared_in_place_of_the_claims(
     assert "of --data published, of no other data" in refused.stderr
     assert len(compared.calls) == 1
     assert claims.asked.calls == claims.checkout.calls == []
+
+
+def test_without_a_checkout_no_curve_is_compared_for_its_page(
+    claims: SimpleNamespace, stands_in: StandsIn
+) -> None:
+    compared = stands_in("measure.fits.friction.friction_folder:compare_folder", [])
+    stands_in("report.measured.curves:show_comparisons")
+    page = stands_in("report.measured.friction_docs:write_friction_docs", "docs/friction.md")
+    done = run("reproduce", "--data", "published", "--write-docs")
+    assert done.returncode == 0, done.stderr
+    assert len(claims.checkout.calls) == len(page.calls) == len(compared.calls) == 1
+    assert "wrote docs/friction.md\n" in done.stderr

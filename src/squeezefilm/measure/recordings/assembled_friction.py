@@ -30,10 +30,9 @@ def bench(reading: Reading) -> kinds.FrictionBench:
         raise reading.wanting(
             "vibration_amplitude", "it is needed, or the voltage with amplitude_per_volt beside"
         )
-    if said.frequency is not None:
-        reading.facts.append(("frequency", quantity(said.frequency, si.Unit("Hz"))))
+    frequency = _condition(reading, "frequency")
     return kinds.FrictionBench(
-        time, normal, tangential, position, vibration, reading.told(), said.frequency
+        time, normal, tangential, position, vibration, reading.told(), frequency
     )
 
 
@@ -57,7 +56,7 @@ def curve(reading: Reading) -> kinds.FrictionCurve:
     spread = None
     if reading.has("spread"):
         spread = reading.take("spread", like=named[0])[order]
-    conditions = {name: _condition(reading, name, order) for name in _CONDITIONS}
+    conditions = {name: _condition(reading, name) for name in _CONDITIONS}
     if conditions["frequency"] is None:
         raise reading.description.error(
             "the key 'frequency' is missing; write frequency = \"30 kHz\", or name its column",
@@ -75,19 +74,19 @@ def curve(reading: Reading) -> kinds.FrictionCurve:
         display=_display(reading),
         finger=said.finger,
         reading_error=said.reading_error * float(np.max(np.abs(friction))),
-        **conditions,
+        **{name: value[order] if np.ndim(value) else value for name, value in conditions.items()},
     )
 
 
-def _condition(reading: Reading, name: str, order: si.IntArray) -> Any:
-    """A condition of a friction curve: a column's values in an order, one value, or None."""
+def _condition(reading: Reading, name: str) -> Any:
+    """A condition of a recording: a column's values (rows,), one value, or None."""
     value = getattr(reading.description.said, name)
     if reading.has(name):
         if value is not None:
             raise reading.description.error(
                 f"the {words(name)} has a column and a value; delete one of them", [name]
             )
-        return reading.take(name)[order]
+        return reading.take(name)
     if value is not None:
         reading.facts.append((words(name), quantity(value, QUANTITIES[name].unit)))
     return value
@@ -100,7 +99,7 @@ def decays(reading: Reading) -> kinds.FrictionDecays:
         reading.take("friction_coefficient"),
         told=reading.told(),
         display=_display(reading),
-        **{name: _condition(reading, name, np.arange(0)) for name in _CONDITIONS},
+        **{name: _condition(reading, name) for name in _CONDITIONS},
     )
 
 
@@ -111,7 +110,7 @@ def touches(reading: Reading) -> kinds.FingertipImpedances:
         reading.take("mass"),
         told=reading.told(),
         display=_display(reading),
-        **{name: _condition(reading, name, np.arange(0)) for name in _CONDITIONS[:2]},
+        **{name: _condition(reading, name) for name in _CONDITIONS[:2]},
     )
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, ClassVar, cast
 
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.measure.recordings.analysers import is_4294a, read_4294a
 from squeezefilm.measure.recordings.assembled import assembled, joined_sweeps
 from squeezefilm.measure.recordings.described import Described
@@ -26,7 +25,7 @@ from squeezefilm.measure.recordings.quantities_read import Reading
 from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.measure.recordings.text_table import read_text_table
 from squeezefilm.measure.recordings.universal import SUFFIXES, read_universal
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.regular_file import read_toml_text
 from squeezefilm.results import Result, to_json
 
 _SCANS = ("line scan", "grid scan")
@@ -179,7 +178,7 @@ def check_folder(folder: str | Path) -> FolderCheck:
 def _has_kind(path: Path) -> bool:
     """Whether a TOML file describes a recording; a display in the same folder does not."""
     try:
-        text = read_regular_text(path, DESCRIPTION_BYTES, "a TOML file")
+        text = read_toml_text(path)
     except ConfigError:
         return False
     return any(line.split("=")[0].strip() == "kind" for line in text.split("\n"))

@@ -77,28 +77,27 @@ def compare_folder(folder: str | Path, progress: SayProgress | None = None) -> F
     found = check_folder(folder)
     if found.refused:
         raise InputError(found.refused[0].why)
-    recordings = [check.recording for check in found.checks]
-    kinds = (FrictionCurve, FrictionDecays, FingertipImpedances)
-    if not any(isinstance(recording, kinds) for recording in recordings):
+    kinds = FrictionCurve | FrictionDecays | FingertipImpedances
+    recordings = [check.recording for check in found.checks if isinstance(check.recording, kinds)]
+    if not recordings:
         raise InputError(
             f"{folder} holds no friction curve, only: "
             + ", ".join(sorted({check.kind for check in found.checks}))
             + '; write kind = "friction curve" into the description of one'
         )
+    displays = [display_of(recording.told.name, recording.display) for recording in recordings]
     for recording in recordings:
         if isinstance(recording, FrictionCurve):
             rest_friction(recording)
-        if isinstance(recording, kinds):
-            display_of(recording.told.name, recording.display)
     curves: list[CurveComparison] = []
     populations: list[PopulationComparison] = []
-    for recording in recordings:
+    for recording, display in zip(recordings, displays, strict=True):
         if isinstance(recording, FrictionCurve):
-            curves.append(compare_friction_curve(recording, progress))
+            curves.append(compare_friction_curve(recording, progress, display))
         elif isinstance(recording, FrictionDecays):
-            populations += compare_decays(recording, progress)
-        elif isinstance(recording, FingertipImpedances):
-            populations += compare_impedances(recording, progress)
+            populations.append(compare_decays(recording, display, progress))
+        else:
+            populations += compare_impedances(recording, display)
     totals: tuple[TotalScore, ...] = ()
     if curves:
         scores = [compared.models for compared in curves]

@@ -97,11 +97,11 @@ def scored(
 
 def baseline_scores(curve: FrictionCurve) -> tuple[ModelScore, ...]:
     """The scores of `BASELINES`."""
-    return tuple(
-        _score(name, 2, _scaled(shape, curve.friction), curve)
-        for name in BASELINES
-        for shape in (fitted_shape(name, curve.vibration_amplitude, curve.friction)[1],)
-    )
+    scores = []
+    for name in BASELINES:
+        _, shape = fitted_shape(name, curve.vibration_amplitude, curve.friction)
+        scores.append(_score(name, 2, _scaled(shape, curve.friction), curve))
+    return tuple(scores)
 
 
 def fitted_shape(

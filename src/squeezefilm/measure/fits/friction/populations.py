@@ -12,10 +12,7 @@ from squeezefilm import quantities as si
 from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display
-from squeezefilm.measure.fits.friction.friction_curve import (
-    display_of,
-    relative_friction,
-)
+from squeezefilm.measure.fits.friction.friction_curve import relative_friction
 from squeezefilm.measure.fits.friction.friction_scores import fitted_shape
 from squeezefilm.measure.recordings.kinds import FingertipImpedances, FrictionDecays, Told
 from squeezefilm.progress import SayProgress
@@ -60,22 +57,19 @@ class PopulationComparison:
 
 
 def compare_decays(
-    decays: FrictionDecays, progress: SayProgress | None = None, display: Display | None = None
-) -> tuple[PopulationComparison, ...]:
-    """The decay amplitude τ of published fits (m) beside that of each model, fitted to the model's
-    own curve in the same way. Raises what `compare_friction_curve` raises."""
+    decays: FrictionDecays, display: Display, progress: SayProgress | None = None
+) -> PopulationComparison:
+    """The decay amplitude τ of published fits (m) beside that of each model on a display, fitted to
+    the model's own curve in the same way. Raises what `predict` raises."""
     tell = progress or (lambda _: None)
-    display = display_of(decays.told.name, decays.display) if display is None else display
-    force = display.finger.normal_force if decays.normal_force is None else decays.normal_force
-    speed = display.finger.speed if decays.speed is None else decays.speed
     largest = 2.0 * float(np.quantile(decays.decay_amplitude, 0.95))
     amplitude = np.linspace(0.0, largest, _POINTS)
     prediction = predict(
         display,
         vibration_amplitude=largest,
         frequency=decays.frequency,
-        normal_force=force,
-        speed=speed,
+        normal_force=decays.normal_force,
+        speed=decays.speed,
     )
     models: list[tuple[str, float | None]] = []
     for model in MODEL_KINDS:
@@ -89,24 +83,22 @@ def compare_decays(
             tau = tau if tau < _MOST_DECAY * largest else None
         models.append((model, tau))
     assumed = "" if decays.speed is not None and decays.normal_force is not None else ", assumed"
-    conditions = f"{decays.frequency:.5g} Hz, {force:.2g} N, {1e3 * speed:.3g} mm/s{assumed}"
-    return (
-        PopulationComparison(
-            decays.told, display.name, conditions, "decay amplitude τ", "m",
-            decays.decay_amplitude, tuple(models),
-        ),
+    conditions = (
+        f"{decays.frequency:.5g} Hz, {prediction.normal_force:.2g} N, "
+        f"{1e3 * prediction.speed:.3g} mm/s{assumed}"
+    )
+    return PopulationComparison(
+        decays.told, display.name, conditions, "decay amplitude τ", "m",
+        decays.decay_amplitude, tuple(models),
     )  # fmt: skip
 
 
 def compare_impedances(
-    touches: FingertipImpedances,
-    progress: SayProgress | None = None,
-    display: Display | None = None,
-) -> tuple[PopulationComparison, ...]:
-    """Damping (N s/m) and moving mass (kg) of fingertips beside those of the default model at an
-    assumed amplitude of 1 µm; a mass below zero is a stiffness. Raises what
-    `compare_friction_curve` raises."""
-    display = display_of(touches.told.name, touches.display) if display is None else display
+    touches: FingertipImpedances, display: Display
+) -> tuple[PopulationComparison, PopulationComparison]:
+    """Damping (N s/m) and moving mass (kg) of fingertips beside those of the default model on a
+    display, at an assumed amplitude of 1 µm; a mass below zero is a stiffness. Raises what
+    `predict` raises."""
     prediction = predict(
         display,
         vibration_amplitude=_PRESSED_AMPLITUDE,
@@ -119,12 +111,12 @@ def compare_impedances(
         damping, mass = impedance.real, impedance.imag / (2 * np.pi * touches.frequency)
     conditions = f"{touches.frequency:.5g} Hz, {touches.normal_force:.2g} N, 1 µm assumed"
     model = prediction.law.model
-    return tuple(
+    told = (touches.told, display.name, conditions)
+    return (
         PopulationComparison(
-            touches.told, display.name, conditions, quantity, unit, measured, ((model, value),)
-        )
-        for quantity, unit, measured, value in (
-            ("damping of a fingertip", "N*s/m", touches.damping, damping),
-            ("moving mass of a fingertip", "kg", touches.mass, mass),
-        )
+            *told, "damping of a fingertip", "N*s/m", touches.damping, ((model, damping),)
+        ),
+        PopulationComparison(
+            *told, "moving mass of a fingertip", "kg", touches.mass, ((model, mass),)
+        ),
     )
