@@ -90,6 +90,10 @@ def people_rows(compared: PopulationComparison) -> list[tuple[str, ...]]:
     ]
 
 
+# Micrometres and milligrams, on the axis of a figure.
+_SHOWN = {"m": ("µm", 1e6), "kg": ("mg", 1e6)}
+
+
 def _valued(value: float, unit: str) -> str:
     return f"{1e6 * value:.3g} mg" if unit == "kg" else printable(shown(value, si.Unit(unit), 3))
 
@@ -204,20 +208,20 @@ def all_curves_figure(compared: FolderComparison) -> Figure:
 @style.drawn
 def people_figure(compared: PopulationComparison) -> Figure:
     """How many people have less than a value, and where the models are."""
-    unit = si.Unit(compared.unit)
+    unit, scale = _SHOWN.get(compared.unit, (compared.unit, 1.0))
     figure = style.new_figure(
         f"{compared.quantity}: {compared.measured.size} measured",
         f"nothing fitted; {compared.display}, {compared.conditions}", 4,
     )  # fmt: skip
     axes = figure.subplots()
-    ordered = np.sort(compared.measured)
+    ordered = scale * np.sort(compared.measured)
     axes.step(ordered, np.arange(1, ordered.size + 1) / ordered.size, color=style.INK, where="post",
               label="measured")  # fmt: skip
     for model, value in compared.models:
         if value is not None:
             look = style.RENDERED if model == DEFAULT_MODEL else style.GUIDE
-            axes.axvline(value, **look, label=model if model == DEFAULT_MODEL else None)
-    axes.set(xlabel=f"{compared.quantity} ({unit.symbol})", ylabel="share of people", ylim=(0, 1))
+            axes.axvline(scale * value, **look, label=model if model == DEFAULT_MODEL else None)
+    axes.set(xlabel=f"{compared.quantity} ({unit})", ylabel="share of measured", ylim=(0, 1))
     style.legend_beside(axes)
     return figure
 
