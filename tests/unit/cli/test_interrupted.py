@@ -42,6 +42,20 @@ def test_a_verb_that_ends_by_itself_does_not(
     assert capsys.readouterr().err == ""
 
 
+# Says when it can meet Ctrl-C: what comes before that is Python's own to print.
+BEGIN = """
+import signal
+from squeezefilm.__main__ import main
+
+def first(*how):
+    signal.signal = handle
+    before = handle(*how)
+    print("begun", flush=True)
+    return before
+
+handle, signal.signal = signal.signal, first
+main()
+"""
 VERBS = {
     "lab": "lab --no-browser --port 0",
     "design": "design biet2008-plate --screened 20000 --jobs 2",
@@ -61,9 +75,8 @@ VERBS = {
 )
 def test_ctrl_c_at_any_moment_leaves_no_traceback(verb: str, wait: float, tmp_path: Path) -> None:
     """In a terminal it reaches the processes of the program too, while they load as well."""
-    begin = "from squeezefilm.__main__ import main; print('begun', flush=True); main()"
     with subprocess.Popen(
-        [sys.executable, "-c", begin, *VERBS[verb].split()],
+        [sys.executable, "-c", BEGIN, *VERBS[verb].split()],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path,
         env=os.environ | {"SQUEEZEFILM_CACHE": "off"}, start_new_session=True,
     ) as running:  # fmt: skip
