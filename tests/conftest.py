@@ -25,6 +25,7 @@ for _library in ("OMP", "OPENBLAS", "MKL"):
 _KEPT = str(Path(__file__).parents[1] / "out" / "test-cache")
 if os.environ.get("SQUEEZEFILM_CACHE") != "off":
     os.environ["SQUEEZEFILM_CACHE"] = _KEPT
+_AT_START = os.environ["SQUEEZEFILM_CACHE"]
 
 from hypothesis import settings  # noqa: E402
 
@@ -56,7 +57,15 @@ def _setattr_and_keep_nothing(self: pytest.MonkeyPatch, *target: Any, **how: Any
     _setattr(self, *target, **how)
 
 
-pytest.MonkeyPatch.setattr = _setattr_and_keep_nothing  # type: ignore[method-assign]
+def pytest_sessionstart() -> None:
+    """Watch what tests replace, and not what pytest itself did while it was configured."""
+    pytest.MonkeyPatch.setattr = _setattr_and_keep_nothing  # type: ignore[method-assign]
+
+
+@pytest.fixture(scope="session")
+def shared_cache() -> str:
+    """The folder in which the tests of this run keep what they solve, or `off`."""
+    return _AT_START
 
 
 @pytest.hookimpl(wrapper=True)

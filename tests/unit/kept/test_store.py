@@ -116,6 +116,15 @@ def test_off_keeps_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert list(tmp_path.iterdir()) == []
 
 
+def test_tests_share_what_they_solve_until_one_replaces_something(shared_cache: str) -> None:
+    """pytest replaces attributes of its own, which must not turn the sharing off for good."""
+    assert os.environ["SQUEEZEFILM_CACHE"] == shared_cache
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(store, "MOST_LARGE", 6)
+        assert os.environ["SQUEEZEFILM_CACHE"] == "off"
+    assert os.environ["SQUEEZEFILM_CACHE"] == shared_cache
+
+
 def test_a_folder_that_cannot_be_written_to_is_no_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
