@@ -15,7 +15,14 @@ from pathlib import Path
 
 import pytest
 
-from .good_arguments import FOR_ONE_CALL, Later, good_arguments, wanted_values
+from .good_arguments import (
+    FOR_ONE_CALL,
+    MADE,
+    Later,
+    constructor_of,
+    good_arguments,
+    wanted_values,
+)  # fmt: skip
 from .hostile_calls import HOSTILE, fault
 from .public_calls import NAMES_NOT_CALLED, NOT_CALLED, public_calls
 
@@ -25,7 +32,7 @@ CALLS = public_calls()
 # How many public calls are left out, by reason. One more has to be argued for here.
 LEFT_OUT = {
     "a record of what was computed, which only the package makes": 65,
-    "inside a solver: meshes, matrices and indices, made by calls that are checked": 167,
+    "inside a solver: meshes, matrices and indices, made by calls that are checked": 169,
     "no number but the index of what its other arguments hold, or an array the package made": 14,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": 1,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": 3,
@@ -63,6 +70,9 @@ def test_there_is_a_good_call_of_every_one_that_is_attacked() -> None:
         given = FOR_ONE_CALL.get(name, {})
         if not isinstance(given, Later):
             wanted_values(CALLS[name], given)
+            owner = CALLS[name].owner
+            if owner is not None and owner not in MADE and "self" not in given:
+                constructor_of(owner)
 
 
 def test_a_sample_of_hostile_calls_ends_in_a_typed_error_or_finite_numbers() -> None:

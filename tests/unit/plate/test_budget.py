@@ -8,8 +8,9 @@ from squeezefilm.analysis.plate.hurry import Hurry
 from squeezefilm.chain.chosen_mode import chosen_mode
 from squeezefilm.chain.prediction import predict
 from squeezefilm.display import Display, load_display
-from squeezefilm.errors import OutOfTimeError
+from squeezefilm.errors import InputError, OutOfTimeError
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid import mesh
 from squeezefilm.plate.solid.layers import COARSE, NORMAL
 from squeezefilm.plate.solid.modes import COARSE_AMPLITUDE_ERROR, COARSE_ERROR
 from squeezefilm.plate.solid.size import solve_size
@@ -107,3 +108,16 @@ def test_coarse_answers_of_random_plates_are_within_their_error() -> None:
         fine = solid_mode(plate)
         rough = solid_mode(plate, pace=frozen(size.coarse + size.coarse_response + 0.05))
         assert abs(rough.frequency - fine.frequency) < rough.frequency_error
+
+
+def test_meshes_of_too_high_a_frequency_are_refused_before_they_are_made(
+    display: Display, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of half a gigahertz the counting alone took minutes."""
+    plate = plate_of(display)
+    refused = pytest.raises(InputError, match="fewer nodal lines or a lower frequency")
+    with refused:
+        solve_size(plate, plate.working_label, 2e6)
+    monkeypatch.setattr(mesh, "BoxModel", None)
+    with refused:
+        solve_size(plate, plate.working_label, 5.6e8)

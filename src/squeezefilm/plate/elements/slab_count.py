@@ -9,14 +9,18 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.hard_limits import SOLID_MEMORY, require_within
-from squeezefilm.plate.elements.box_model import BoxModel
+from squeezefilm.plate.elements.box_model import BoxModel, kept_products
 from squeezefilm.plate.elements.cross_section import slice_codes
+from squeezefilm.plate.elements.lobatto import LineMesh
 
 _FLOAT = 8.0
 # Matrices of a slice's size that an element of its own kind takes (a number, and one for each
 # order), and vectors over all unknowns that the modes' search keeps. Fitted to peaks of resident
 # memory on four plates of metal and glass, 0.07 to 1.7 GB: within 10 % of all.
 _OF_A_KIND, _OF_AN_ORDER, _VECTORS = 3.0, 2.0, 120.0
+# A slice has this share at least of the squares of a full box's: the rest is air beside ceramics.
+# Meshes of gigahertz are refused by it; to count their unknowns would take hours.
+_FEWEST = 0.05
 
 
 class SlabCount(NamedTuple):
@@ -72,14 +76,27 @@ def slab_count(model: BoxModel) -> SlabCount:
     return SlabCount(np.array(slices), np.array(elements), np.array(x.orders), alone)
 
 
+def require_countable(x: LineMesh, y: LineMesh, z: LineMesh, trunk: float) -> None:
+    """Refuse meshes that are far too fine for memory, before a model is made of them.
+
+    Raises `InputError`.
+    """
+    full = int(np.count_nonzero(kept_products(y, z, trunk)))
+    _require_memory(x.nodes.size, full, _FEWEST * _FLOAT * x.elements * full**2)
+
+
 def require_memory(model: BoxModel) -> None:
     """Refuse a model whose factors would not fit into memory, before anything is made of it.
 
     Raises `InputError`.
     """
     count = slab_count(model)
+    _require_memory(count.slices.size, int(np.max(count.slices)), count.memory)
+
+
+def _require_memory(slices: int, most: int, memory: float) -> None:
     enough = (
-        f"{count.slices.size} slices of up to {int(np.max(count.slices))} unknowns are too many; "
+        f"{slices} slices of up to {most} unknowns are too many; "
         "ask for fewer nodal lines or a lower frequency, or take a beam (--theory timoshenko)"
     )
-    require_within(SOLID_MEMORY, count.memory, enough=enough)
+    require_within(SOLID_MEMORY, memory, enough=enough)

@@ -25,7 +25,7 @@ from squeezefilm.plate.elements.box_model import (
     require_aspect,
 )
 from squeezefilm.plate.elements.lobatto import MAX_ORDER, LineMesh
-from squeezefilm.plate.elements.slab_count import require_memory
+from squeezefilm.plate.elements.slab_count import require_countable, require_memory
 from squeezefilm.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
 from squeezefilm.plate.solid.layers import (
     NORMAL,
@@ -155,6 +155,7 @@ def plate_model(
     # Slices follow each other where that is less work; the longer way where it is the same.
     swapped = (work[1], -plate.width) < (work[0], -plate.length)
     x, y = ways[1 if swapped else 0]
+    require_countable(x, y, z, resolution.trunk)
     cells = _Cells(plate, swapped, x, y, z, layers)
     electrode_of, sign_of = _electrode_map(plate, parity)
     medium, ceramic, electrodes, number_of = cells.filled(ceramics, electrode_of)
