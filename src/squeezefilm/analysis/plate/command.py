@@ -25,6 +25,7 @@ from squeezefilm.from_text import reads_text
 from squeezefilm.hard_limits import NODAL_LINES, require_within
 from squeezefilm.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.plate.elements.nodal_lines import line_distance
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
 from squeezefilm.plate.solid.modes import Label, PlateModes, check_band
@@ -287,7 +288,7 @@ def mode_row(modes: PlateModes, index: int) -> ModeRow:
     """One line of the table of modes: that of the mode number `index` of a solved plate."""
     label, frequency = modes.labels[index], float(modes.frequencies[index])
     quality, force = float(modes.quality_factors[index]), float(modes.drive_forces[index])
-    shape, half = modes.shapes[index], modes.half_wavelength(index)
+    shape, nodes = modes.shapes[index], modes.nodal_positions(index)
     answer = quality * abs(force) / (2 * np.pi * frequency) ** 2
     return ModeRow(
         label=label_name(label),
@@ -300,7 +301,7 @@ def mode_row(modes: PlateModes, index: int) -> ModeRow:
         parallel_resonance_frequency=float(modes.open_frequencies[index]),
         parallel_resonance_frequency_error=float(modes.open_errors[index]),
         modal_force=force,
-        half_wavelength=half if np.isfinite(half) else None,
+        half_wavelength=line_distance(nodes) if nodes.size >= 2 else None,
     )
 
 
