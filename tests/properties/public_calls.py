@@ -80,6 +80,7 @@ NOT_CALLED = {
     contact.asperities.cubics contact.sharing.balance.require_balanced
     plate.solid.size.SolveSize.require_within
     actuators.motor.in_time.resting
+    plate.elements.slab_count.require_countable
     plate.heat.states.WarmCase.states plate.heat.states.WarmCase.time_to_fall
     film.periodic.batch.check_film film.periodic.batch.solve_all film.line_grid.LineGrid
     film.line_grid.edge_graded film.line_grid.edge_layer film.line_grid.gap_table

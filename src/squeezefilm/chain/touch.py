@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated, NamedTuple
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionLaw
@@ -106,19 +107,22 @@ def touched_amplitudes(
     """The best antinode's amplitude (m) with the finger at places of other mean squares.
 
     `mean_square` of the mode over the contact, the best antinode at 1, any shape: a finger beside
-    the antinodes takes less. As `touch` at some dozen of them, between which it is linear within
-    1e-4 of the amplitude. Raises as `touch` does.
+    the antinodes takes less. As `touch` at some dozen of them, interpolated within 1e-4 of the
+    amplitude. Raises as `touch` does.
     """
     if mode.modal_mass is None or free_amplitude < _LEAST_AMPLITUDE:
         return np.full(mean_square.shape, free_amplitude)
     low, high = float(np.min(mean_square)), float(np.max(mean_square))
-    knots = np.linspace(low, high, _KNOTS) if high > low else np.array([low])
+    # Amplitudes fall fastest where a pad just begins to lie on the mode, nearly as 1/(1 + c x).
+    knots = low + (high - low) * np.linspace(0, 1, _KNOTS if high > low else 1) ** 2
     over = dataclasses.replace(law, place=None, position=0.0)
     left = [
         _touched(mode, _Pad.at(over, float(one)), free_amplitude, TOLERANCE).amplitude
         for one in knots
     ]
-    return np.asarray(np.interp(mean_square, knots, left))
+    if high == low:
+        return np.full(mean_square.shape, left[0])
+    return 1 / np.asarray(PchipInterpolator(knots, 1 / np.array(left))(mean_square))
 
 
 class _Pad(NamedTuple):

@@ -8,6 +8,7 @@ import functools
 
 import numpy as np
 import pytest
+from tests.verification.random_plates import random_glass
 
 from squeezefilm.chain.active_area import CRITERIA, ActiveArea, active_area, percent
 from squeezefilm.chain.pad_place import PadPlace, met_by_pads, pad_place, place_words, read_place
@@ -331,3 +332,17 @@ def test_what_no_ridge_can_meet_is_refused_before_films_are_tabulated() -> None:
             one.curve(np.array([1e-6, 1.01 * most / min(1.0, np.max(one.ridge_swings[0]))]))
         with pytest.raises(OutOfRangeError, match="a ridge would meet"):
             one.felt_stiffness(99e-6)
+
+
+@pytest.mark.slow
+def test_amplitudes_between_knots_are_those_of_the_finger_there() -> None:
+    """A finger that takes nine tenths of the amplitude where it lies on the mode whole."""
+    display = dataclasses.replace(PLATE, actuator=random_glass(20))
+    p = predict(display)
+    even, free = dataclasses.replace(p.law, place=None, position=0.0), p.touch.free_amplitude
+    squares = np.linspace(0.02, 0.9, 23)
+    left = touched_amplitudes(p.mode, even, free, squares)
+    assert left[-1] < 0.15 * free
+    for square, amplitude in zip(squares[1:-1], left[1:-1], strict=True):
+        few = touched_amplitudes(p.mode, even, free, np.array([square]))
+        assert amplitude == pytest.approx(few[0], rel=1e-4)
