@@ -113,7 +113,10 @@ def test_smooth_motion_has_its_acceleration() -> None:
 
 def test_default_pad_is_overdamped_and_settles_with_its_slow_root() -> None:
     pad = FingerpadDynamics()
-    assert pad.resonance_frequency == pytest.approx(410.9, abs=0.1)
+    # As published over the force, at 0.5 N: 1.48 N/mm, 1.78 N s/m and 0.20 g times powers of it.
+    published = 1480 * 0.5**0.35, 1.78 * 0.5**0.35, 0.20e-3 * 0.5**0.26
+    assert (pad.stiffness, pad.damping, pad.mass) == pytest.approx(published, rel=3e-3)
+    assert pad.resonance_frequency == pytest.approx(419.5, abs=0.1)
     slow = -1 / np.roots([pad.mass, pad.damping, pad.stiffness]).max()
     assert pad.settling_time_constant == pytest.approx(slow)
     light = FingerpadDynamics(damping=0.1)

@@ -32,8 +32,8 @@ class Tissue:
     All defaults are assumed: 4 mm of pulp to the bone, nearly incompressible, and a shear modulus
     at which one contactor of 1 × 1.6 mm alone meets the 500 N/m that follow from the source paper's
     figures (`load_line.IMPLIED_STIFFNESS`). That modulus stands for the whole sandwich of a stiff
-    outer skin and soft pulp; a real one spreads a pull farther. `relaxation_time` is c/k of the
-    contact room's lumped fingertip (unverified there), so G(1 + iωτ): loss without relaxation.
+    outer skin and soft pulp; a real one spreads a pull farther. `relaxation_time` is near the
+    published 1.2 ms, c/k of `FingerpadDynamics`, so G(1 + iωτ): loss without relaxation.
     """
 
     shear_modulus: Annotated[si.Pascal, hard.MODULUS] = 125e3

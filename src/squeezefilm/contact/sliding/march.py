@@ -151,7 +151,7 @@ def slide(
             sample. Its rows hold all that depends on speed: no `stribeck_speed` beside them.
         normal_force: over time (N): a scalar or shape (n,), at least 0; the friction limit it
             gives is linear between samples.
-        fingerpad: stiffness, damping, mass; unverified defaults where not given.
+        fingerpad: stiffness, damping, mass; the published ones where not given.
         law: static friction and its dependence on speed and load; plain Coulomb if not given.
         occlusion: slow growth of friction with contact time, none if not given.
         profile: friction that belongs to places of the surface, a factor of the coefficient.
