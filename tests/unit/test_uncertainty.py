@@ -94,11 +94,12 @@ def test_what_is_given_stands_before_what_is_assumed(stator: Display) -> None:
     assert "surfaces.0.roughness" not in driven
     assert "drive.voltage" not in {p.path for p in uncertain_parameters(known, driven=False)}
     # What a finger takes from the vibration matters where there is one to take from.
-    damping = "finger.skin.damping_per_area"
-    assert damping not in names
-    assert driven[damping].distribution.support == pytest.approx((0.4 * 7.7e5, 1.6 * 7.7e5))
-    bare = replaced(known, {damping: 0.0})
-    assert damping not in {p.path for p in uncertain_parameters(bare, driven=True)}
+    mass = "finger.skin.mass_per_area"
+    assert mass not in names
+    assert driven[mass].distribution.support == pytest.approx((0.4 * 1.2, 1.5 * 1.2))
+    heavy = replaced(known, {mass: 2.0})
+    support = {p.path: p for p in uncertain_parameters(heavy, driven=True)}[mass].distribution
+    assert support.support == pytest.approx((0.8, 3.0))
 
 
 def test_a_ceramic_varies_as_makers_grant_unless_a_range_is_given() -> None:

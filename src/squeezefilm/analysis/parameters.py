@@ -91,8 +91,8 @@ _ASSUMED: dict[str, _Assumed] = {
     "finger.asperities.shortest_wavelength": _Assumed(0.4, 1.6, "where roughness ends: a guess"),
     "finger.asperities.decay_length": _Assumed(0.5, 1.5, "never measured on a display"),
     "finger.asperities.reference_gap": _Assumed(0.75, 1.25, "never measured on a display"),
-    "finger.skin.damping_per_area": _Assumed(
-        0.4, 1.6, "from one published impedance, its area not known"
+    "finger.skin.mass_per_area": _Assumed(
+        0.4, 1.5, "as the moving mass of 43 fingertips spreads, 5 to 95 %"
     ),
     TANGENTIAL_RATIO: _Assumed(
         0.75,

@@ -144,8 +144,6 @@ def test_a_finger_over_a_node_meets_more_friction(plate: Display) -> None:
     quarter = predict(plate).mode.half_wavelength / 2
     over_antinode, over_node = (predict(plate, position=x) for x in (0.0, quarter))
     assert over_node.relative_friction > over_antinode.relative_friction
-    # ... and takes less of the vibration.
-    assert over_node.touch.kept > over_antinode.touch.kept
     with pytest.raises(InputError, match="over an antinode only"):
         predict(plate, position=quarter, model="paper2008")
 

@@ -107,6 +107,8 @@ def _(model: str) -> ClaimValue:
 
 @_direction("damping")
 def _(model: str) -> ClaimValue:
+    inertia = Skin().mass_per_area * (2 * math.pi * FROZEN.frequency) ** 2
+
     def gain(stiffness: float) -> float:
         free, damped = (
             FROZEN.relative_friction(
@@ -116,12 +118,11 @@ def _(model: str) -> ClaimValue:
         )
         return free - damped
 
-    # A stiffness of twice the inertia: the skin follows the pressure in phase.
-    hard = 2 * Skin().mass_per_area * (2 * math.pi * FROZEN.frequency) ** 2
     return ClaimValue(
-        (gain(0.0),),
-        note="a damping of 1 MPa·s/m on a skin of mass alone, which is inertial; on a skin whose "
-        f"stiffness is twice its inertia the change is {gain(hard):+.4f}",
+        (gain(1.1 * inertia),),
+        note="a damping of 1 MPa·s/m on an elastic skin whose stiffness is 1.1 times its inertia; "
+        f"with twice its inertia {gain(2 * inertia):+.4f}, and on the default skin, which is a "
+        f"mass without stiffness, {gain(0.0):+.4f}",
     )
 
 

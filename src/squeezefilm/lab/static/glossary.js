@@ -116,12 +116,12 @@ export const DISPLAY = {
   shear_strength: { name: "shear strength", symbol: "τ", text: "Of the real contact: gives the friction without vibration in place of the surface's coefficient.", source: "yours to give" },
   asperity_roughness: { name: "asperity roughness", text: "Of the surface for which the asperities' law holds; on another one the heights scale with both roughnesses.", source: "assumed" },
   skin_roughness: { name: "skin roughness", text: "Of the ridges' tops; adds to the surface's as independent heights do.", source: "assumed" },
-  mass_per_area: { name: "mass per area", text: "Of the skin that moves with the vibration; its inertia decides at 40 kHz.", source: "assumed: 3 mm of 1100 kg/m³" },
+  mass_per_area: { name: "mass per area", text: "Of the skin that moves with the vibration; its inertia decides at 40 kHz.", source: "derived: from the published impedance of fingertips" },
   stiffness_per_area: { name: "stiffness per area", text: "Of the skin against the vibration.", source: "assumed: none beside the inertia" },
-  damping_per_area: { name: "damping per area", text: "Of the skin against the vibration.", source: "assumed: none beside the inertia" },
-  stiffness: { name: "fingerpad stiffness", symbol: "k", text: "Of the pad between bone and surface, along the surface.", source: "unverified default: about 1 N/mm" },
-  damping: { name: "fingerpad damping", symbol: "c", text: "Of the pad between bone and surface, along the surface.", source: "unverified default: about 1 N·s/m" },
-  mass: { name: "fingerpad mass", symbol: "m", text: "Of the skin that moves along with the contact.", source: "unverified default: 0.1 to 0.2 g" },
+  damping_per_area: { name: "damping per area", text: "Of the skin against the vibration.", source: "derived: the film alone loses as much as was published" },
+  stiffness: { name: "fingerpad stiffness", symbol: "k", text: "Of the pad between bone and surface, along the surface.", source: "published: 1.16 N/mm at 0.5 N (Wiertlewski and Hayward 2012)" },
+  damping: { name: "fingerpad damping", symbol: "c", text: "Of the pad between bone and surface, along the surface.", source: "published: 1.40 N·s/m at 0.5 N (Wiertlewski and Hayward 2012)" },
+  mass: { name: "fingerpad mass", symbol: "m", text: "Of the skin that moves along with the contact.", source: "published: 0.167 g at 0.5 N (Wiertlewski and Hayward 2012)" },
   moisture: { name: "moisture", text: "Of the skin: water softens it and makes it grip.", source: "assumed" },
 };
 

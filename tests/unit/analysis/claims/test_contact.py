@@ -58,6 +58,9 @@ def between(name: str, low: float, high: float) -> Callable[[str], float]:
     return lambda model: friction(model, **{name: low}) - friction(model, **{name: high})
 
 
+# Of the default skin at the frozen frequency (Pa/m).
+INERTIA = Skin().mass_per_area * (2 * math.pi * 40.5e3) ** 2
+
 EXPECTED: dict[str, Callable[[str], float]] = {
     "half-atmosphere": lambda model: abs(friction(model, ambient_pressure=5e4) - friction(model)),
     "reach": lambda model: (
@@ -68,7 +71,7 @@ EXPECTED: dict[str, Callable[[str], float]] = {
     "roughness": between("roughness", 0.6e-6, 0.2e-6),
     "speed": between("speed", 0.3, 0.03),
     "load": ratio,
-    "damping": lambda model: gain(model, 0.0),
+    "damping": lambda model: gain(model, 1.1 * INERTIA),
     "orientation": turned,
 }
 
@@ -105,9 +108,11 @@ def test_the_notes_say_the_other_numbers() -> None:
         low, high = friction(model, frequency=3e4), friction(model, frequency=6e4)
         said = f"µ′/µ {low:.3f} at 30 kHz, {high:.3f} at 60 kHz"
         assert value("frequency", model).note == said
-        # A skin twice as stiff as it is inert at the frequency follows the pressure.
-        hard = gain(model, 2 * Skin().mass_per_area * (2 * math.pi * 40.5e3) ** 2)
-        assert value("damping", model).note.endswith(f"the change is {hard:+.4f}")
+        harder = f"with twice its inertia {gain(model, 2 * INERTIA):+.4f}"
+        assert harder in value("damping", model).note
+        # On a mass alone the sign is the other one.
+        assert gain(model, 0.0) < 0
+        assert value("damping", model).note.endswith(f"stiffness, {gain(model, 0.0):+.4f}")
         level = FROZEN.pad_friction(model, 0.0)
         assert f"{level:.3f} with ridges along the nodal lines" in value("orientation", model).note
 

@@ -19,8 +19,9 @@ from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
 
 _POINTS, _MOST_DECAY = 9, 10.0
-# Of a display's amplitude, which a publication of fingertip impedances does not tell.
-_PRESSED_AMPLITUDE: si.Metre = 1e-6
+# A publication of fingertip impedances does not tell it; what was measured is impossible at 1 µm
+# (see `contact.finger.load`).
+_PRESSED_AMPLITUDE: si.Metre = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +98,7 @@ def compare_impedances(
     touches: FingertipImpedances, display: Display
 ) -> tuple[PopulationComparison, PopulationComparison]:
     """Damping (N s/m) and moving mass (kg) of fingertips beside those of the default model on a
-    display, at an assumed amplitude of 1 µm; a mass below zero is a stiffness. Raises what
+    display, at an assumed amplitude of 0.1 µm; a mass below zero is a stiffness. Raises what
     `predict` raises."""
     prediction = predict(
         display,
@@ -109,7 +110,10 @@ def compare_impedances(
     damping = mass = None
     if impedance is not None:
         damping, mass = impedance.real, impedance.imag / (2 * np.pi * touches.frequency)
-    conditions = f"{touches.frequency:.5g} Hz, {touches.normal_force:.2g} N, 1 µm assumed"
+    conditions = (
+        f"{touches.frequency:.5g} Hz, {touches.normal_force:.2g} N, 0.1 µm assumed; the mass of "
+        "the default skin is derived from the fingertips on glass of 2018"
+    )
     model = prediction.law.model
     told = (touches.told, display.name, conditions)
     return (
