@@ -7,6 +7,7 @@ without; what a process is for (its exit code, its streams, its signals) has tes
 from __future__ import annotations
 
 import contextlib
+import functools
 import io
 import logging
 import os
@@ -17,7 +18,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from unittest import mock
 
+import typer
+
 PROGRAM = [sys.executable, "-c", "from squeezefilm.cli import main; main()"]
+# The tree of verbs is the same for every command line; a process builds it once.
+_command = functools.cache(typer.main.get_command)
 _PLAIN = {"NO_COLOR": "1", "COLUMNS": "100"}
 
 Done = subprocess.CompletedProcess[str]
@@ -33,6 +38,7 @@ def run(*arguments: str | Path, cwd: Path | None = None, keys: str = "") -> Done
         contextlib.chdir(cwd or Path.cwd()),
         mock.patch.dict(os.environ, _PLAIN),
         mock.patch.object(sys, "argv", ["squeezefilm", *words]),
+        mock.patch.object(typer.main, "get_command", _command),
         mock.patch.object(sys, "stdin", io.StringIO(keys)),
         contextlib.redirect_stdout(out),
         contextlib.redirect_stderr(err),
