@@ -29,14 +29,12 @@ def person(value: float, error: float, factors: tuple[float, ...] = ()) -> Perso
 
 def by_hand(values: list[float], errors: list[float]) -> tuple[float, float, float]:
     """Quantiles of mu under a flat prior of it and a half-normal one of tau, by brute force."""
-    mu = np.linspace(-3, 3, 3001)
-    total = np.zeros(mu.size)
-    for tau in np.linspace(1e-3, 2.0, 2001):
-        logs = sum(
-            stats.norm.logpdf(value, mu, np.hypot(tau, error))
-            for value, error in zip(values, errors, strict=True)
-        )
-        total += np.exp(logs - 0.5 * (tau / USUAL_SPREAD) ** 2)
+    mu, tau = np.linspace(-3, 3, 1201), np.linspace(1e-3, 2.0, 401)[:, None]
+    logs = -0.5 * (tau / USUAL_SPREAD) ** 2
+    for value, error in zip(values, errors, strict=True):
+        scale = np.hypot(tau, error)
+        logs = logs - 0.5 * ((value - mu) / scale) ** 2 - np.log(scale)
+    total = np.exp(logs).sum(axis=0)
     below = np.cumsum(total) / total.sum()
     low, middle, high = np.interp([0.025, 0.5, 0.975], below, mu)
     return float(low), float(middle), float(high)
