@@ -191,10 +191,13 @@ def _display_trials(
     offered = tuple(names[i] for i in matching.permutation(len(names)))
     if design.task != "match-to-sample":
         offered = names
+    answers: dict[Condition, str] = {}
 
     def add(block: int, phase: Phase, one: Condition, pause: float = 0.0, answer: str = "") -> None:
         if phase in ("practice", "main"):
-            answer = design.answer_to(*(design.stimulus(name) for name in one))
+            if one not in answers:
+                answers[one] = design.answer_to(*(design.stimulus(name) for name in one))
+            answer = answers[one]
         found.append(
             Trial(
                 number=len(found) + 1,
