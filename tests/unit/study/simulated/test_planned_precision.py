@@ -36,7 +36,7 @@ def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("design", [ALIKE, NUMBERS], ids=lambda one: one.task)
 def test_more_people_are_more_precise(design: Any) -> None:
     found = planned_precision(
-        design, EXACT, 0.15, participants=(2, 12, 40), studies=40, people=60, seed=1
+        design, EXACT, 0.15, participants=(2, 12, 40), studies=20, people=60, seed=1
     )
     assert found.reached[0] <= found.reached[1] <= found.reached[2]
     assert np.all(found.low <= found.reached)
@@ -45,7 +45,7 @@ def test_more_people_are_more_precise(design: Any) -> None:
     data = found.summary()
     assert data["origin"] == "simulated"
     again = planned_precision(
-        design, EXACT, 0.15, participants=(2, 12, 40), studies=40, people=60, seed=1
+        design, EXACT, 0.15, participants=(2, 12, 40), studies=20, people=60, seed=1
     )
     assert again.reached.tolist() == found.reached.tolist()
 
