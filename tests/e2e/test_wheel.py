@@ -64,6 +64,7 @@ def test_its_commands_run(unpacked: Path) -> None:
     assert json.loads(found.stdout)["relative_friction"] == pytest.approx(0.702, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_documents_are_written_in_a_checkout_only(unpacked: Path) -> None:
     done = _run(unpacked, "reproduce", "--write-docs")
     assert done.returncode == 2

@@ -160,6 +160,7 @@ def survived(tmp_path: Path, seed: int, times: int, pause: float) -> None:
     assert station.served.end() == 0
 
 
+@pytest.mark.slow
 def test_a_killed_lab_loses_no_acknowledged_answer(tmp_path: Path) -> None:
     rng, station = random.Random(1), Station(tmp_path / "lab")
     sitting = sitting_of(station)
