@@ -283,6 +283,11 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "plate.shear.section.ShearSection": Later(lambda: fields_of(made(ShearSection))),
     "plate.shear.section.ShearLayout": Later(lambda: fields_of(made(ShearLayout))),
     "plate.sound.rectangular_surface": _RADIATOR,
+    "plate.sound.smooth_surface": {
+        "sides": (0.02, 0.01),
+        "velocity": lambda x, y: np.ones((x.size, y.size)) + 0j,
+        "wave": 0.01,
+    },
     "plate.sound.ring_surface": {"radius": np.linspace(0, 0.02, 9), "velocity": np.ones(9) + 0j},
     "plate.sound.RadiatingSurface": Later(lambda: fields_of(made(RadiatingSurface))),
     "plate.solid.response.HarmonicResponse.motion": {"at": 0},

@@ -22,8 +22,8 @@ from squeezefilm.plate.ring.body import ring_body
 from squeezefilm.plate.sound import (
     RadiatingSurface,
     loudest_level,
-    rectangular_surface,
     ring_surface,
+    smooth_surface,
 )
 
 MODEL_ERROR_dB: si.Dimensionless = 6.0
@@ -145,14 +145,14 @@ def moving_surface(display: Display, prediction: Prediction) -> RadiatingSurface
     free = p.touch.free_amplitude
     if mode.solid is not None:
         plate, response = mode.solid.modes.plate, mode.solid.response
-        step = min(p.mode.half_wavelength / 7, _AIR / p.frequency / 5)
-        x, y = (
-            np.linspace(0, side, max(round(side / step), 8) + 1)
-            for side in (plate.length, plate.width)
-        )
         # The shape at resonance; off it as much as its lobe moves less.
-        w = response.motion(mode.solid.resonance, x, y) * free / mode.solid.amplitude_per_volt
-        return rectangular_surface(x, y, 1j * omega * w, p.frequency)
+        factor = 1j * omega * free / mode.solid.amplitude_per_volt
+        return smooth_surface(
+            (plate.length, plate.width),
+            lambda x, y: factor * response.motion(mode.solid.resonance, x, y),
+            p.frequency,
+            min(2 * p.mode.half_wavelength, _AIR / p.frequency),
+        )
     if isinstance(actuator, DiscPlate):
         found = ring_body(actuator).mode()
         shape = found.surface_shape / np.max(np.abs(found.surface_shape))

@@ -82,6 +82,38 @@ def rectangular_surface(
 
 
 @si.checked_numbers
+def smooth_surface(
+    sides: tuple[Annotated[si.Metre, si.Above(0.0)], Annotated[si.Metre, si.Above(0.0)]],
+    velocity: Callable[[si.MetreArray, si.MetreArray], si.ComplexArray],
+    frequency: Annotated[si.Hertz, si.Above(0.0)],
+    wave: Annotated[si.Metre, si.Above(0.0)],
+) -> RadiatingSurface:
+    """A plate's surface from a smooth `velocity` (m/s) of lines x and y (m from a corner), shape
+    (x, y), whose shortest wave, in air or along the plate, is `wave` (m).
+
+    Gauss–Legendre quadrature with three points to a wave and six more along each side: levels of
+    the plates that come along are within .01 dB of those of a grid of ten times as many points.
+    Raises `InputError` for a velocity of another shape.
+    """
+    nodes, weights = [], []
+    for side in sides:
+        point, weight = np.polynomial.legendre.leggauss(6 + math.ceil(3 * side / wave))
+        nodes.append(side / 2 * point)
+        weights.append(side / 2 * weight)
+    x, y = nodes
+    values = np.asarray(velocity(x + sides[0] / 2, y + sides[1] / 2), dtype=complex)
+    if values.shape != (x.size, y.size):
+        raise InputError(
+            f"velocity has the shape {values.shape}; for these lines it must be {(x.size, y.size)}",
+            quantity="velocity",
+        )
+    grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+    return RadiatingSurface(
+        frequency, grid.reshape(-1, 2), np.outer(*weights).ravel(), values.ravel()
+    )
+
+
+@si.checked_numbers
 def ring_surface(
     radius: Annotated[si.MetreArray, si.AtLeast(0.0)],
     velocity: si.ComplexArray,
@@ -137,11 +169,11 @@ def sound_pressure(
     omega = 2 * math.pi * surface.frequency
     strength = surface.velocity * surface.area
     pressure = np.empty(len(flat), dtype=complex)
-    rows = max(1, 2_000_000 // strength.size)  # 32 MB of complex numbers at a time
+    x, y = surface.position.T
+    rows = max(1, 200_000 // strength.size)  # 3 MB of complex numbers at a time
     for start in range(0, len(flat), rows):
-        part = flat[start : start + rows]
-        across = ((part[:, None, :2] - surface.position[None]) ** 2).sum(axis=-1)
-        distance = np.sqrt(across + part[:, None, 2] ** 2)
+        px, py, pz = flat[start : start + rows].T[:, :, None]
+        distance = np.sqrt((px - x) ** 2 + (py - y) ** 2 + pz**2)
         si.require("distance", distance, si.Unit("m"), above=0)
         kernel = np.exp(-1j * (omega / sound_speed) * distance) / distance
         pressure[start : start + rows] = kernel @ strength

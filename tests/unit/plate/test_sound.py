@@ -16,6 +16,7 @@ from squeezefilm.plate.sound import (
     pressure_level,
     rectangular_surface,
     ring_surface,
+    smooth_surface,
     sound_field,
     sound_pressure,
 )
@@ -221,3 +222,25 @@ def test_what_does_not_move_radiates_nothing() -> None:
     still = sound_field(points([(0.0, 1e-3)], [0.0]), (0.5,))
     assert still.radiated_power == 0.0
     assert still.directivity_dB == 0.0
+
+
+def test_few_points_of_a_smooth_surface_do_what_many_of_a_grid_do() -> None:
+    """Of a free plate's flexural wave along x, whose shape is known everywhere."""
+    sides, wave = (0.11, 0.03), 0.018
+
+    def velocity(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        along = np.cos(2 * np.pi * x / wave + 0.4) + np.exp(-2 * np.pi * x / wave)
+        return along[:, None] * (1 + 0.1j - 4 * (y / sides[1] - 0.5) ** 2)
+
+    few = smooth_surface(sides, velocity, F, min(wave, WAVE))
+    x, y = (np.linspace(0, side, round(side / 2e-4) + 1) for side in sides)
+    many = rectangular_surface(x, y, velocity(x, y), F)
+    assert few.area.sum() == pytest.approx(math.prod(sides), rel=1e-12)
+    assert few.area.size < many.area.size / 50
+    up = np.linspace(0.0, math.pi / 2, 40)
+    for distance in (0.1, 0.5):
+        places = distance * np.stack([np.sin(up), np.zeros(40), np.cos(up)], axis=-1)
+        here, there = sound_pressure(few, places), sound_pressure(many, places)
+        assert np.abs(here - there).max() < 2e-3 * np.abs(there).max()
+    with pytest.raises(InputError, match="for these lines"):
+        smooth_surface(sides, lambda x, y: velocity(x, y).T, F, wave)
