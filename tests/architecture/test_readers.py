@@ -33,6 +33,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
         "json.loads": "a line between the two processes",
     },
     "kept/records.py": {"json.loads": "what `read_regular` read; any error counts as not there"},
+    "contact/sharing/film_panels.py": {"np.load": PACKAGE},
     "kept/computed_by.py": {"os.open": "the package's source"},
     "measure/recordings/matlab.py": {"loadmat": CHILD},
     "measure/recordings/universal.py": {"pyuff.UFF": CHILD},

@@ -145,11 +145,12 @@ def moving_surface(display: Display, prediction: Prediction) -> RadiatingSurface
     free = p.touch.free_amplitude
     if mode.solid is not None:
         plate, response = mode.solid.modes.plate, mode.solid.response
+        resonance = mode.solid.resonance
         # The shape at resonance; off it as much as its lobe moves less.
         factor = 1j * omega * free / mode.solid.amplitude_per_volt
         return smooth_surface(
             (plate.length, plate.width),
-            lambda x, y: factor * response.motion(mode.solid.resonance, x, y),
+            lambda x, y: factor * response.motion(resonance, x, y),
             p.frequency,
             min(2 * p.mode.half_wavelength, _AIR / p.frequency),
         )

@@ -19,7 +19,8 @@ from squeezefilm import quantities as si
 from squeezefilm.compiled import announce
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
-from squeezefilm.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable
+from squeezefilm.contact.sharing.film_panels import DEEPEST_EXCURSION
+from squeezefilm.contact.sharing.gas_table import FilmTable
 from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError, OutOfRangeWarning
 
 

@@ -13,7 +13,6 @@ from typing import Literal
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.contact.sharing.gas_table import across_frequencies
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.kept.store import in_passing
@@ -183,10 +182,8 @@ def evaluate_all(
 
 def screened(requirements: Requirements, display: Display, design: Design) -> dict[str, float]:
     """The criteria of a display by the theory by which its design is screened."""
-    with across_frequencies():
-        theory = _SCREENING[requirements.shapes[design.shape].type]
-        found = predict(display, theory=theory)
-        return _judged(requirements, display, found, design)
+    theory = _SCREENING[requirements.shapes[design.shape].type]
+    return _judged(requirements, display, predict(display, theory=theory), design)
 
 
 def rough_frequency(requirements: Requirements, design: Design) -> si.Hertz:

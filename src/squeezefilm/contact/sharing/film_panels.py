@@ -1,0 +1,177 @@
+"""Panels of the film table: their films, solved, kept, and shipped for the range that people use.
+
+A panel depends on gas, width and frequency through the slip length Λ/ℓ alone, and smoothly (see
+`gas_table`): it is solved at Chebyshev nodes of each octave of Λ/ℓ and interpolated between them,
+which errs by some 1e-5 of the over-pressure. So all plates, fingers and draws share some hundred
+panels. Those of the default law and tolerance for .002 < Λ/ℓ < .0625 come with the package
+(`tools/film_panels.py` writes them): plateaus of 100 to 500 µm at 20 to 100 kHz in air. Others are
+solved when first asked for, and kept (`kept.store`). A slip law with joints is not smooth, and a
+tolerance near the error of the interpolation leaves no room for it: such panels are solved at
+their own Λ/ℓ.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.film.periodic.batch import solve_films
+from squeezefilm.kept.store import Kept
+
+DEEPEST_EXCURSION: si.Dimensionless = 0.993
+"""The deepest excursion a/u the table holds; the gap then closes to 0.7 % of its mean."""
+
+FIRST_COLUMN, COLUMNS = -6, 10
+"""The first power of e of u/ℓ, and how many powers there are: a column of panels each."""
+EXCURSIONS = (3e-3, 0.8, 0.95, 0.985, DEEPEST_EXCURSION)
+ROWS = len(EXCURSIONS) - 1
+EDGES: si.FloatArray = -np.log1p(-(np.array(EXCURSIONS) ** 2))
+"""The edges of the rows of panels, as excursions and as −ln(1 − ε²)."""
+SMOOTH_LAWS = ("first", "second", "veijola")
+SHIPPED = Path(__file__).with_name("film_panels.npz")
+SHIPPED_OCTAVES = range(-9, -4)
+"""The octaves log2(Λ/ℓ) of the panels that come with the package."""
+SHIPPED_DIGITS = 7
+"""The decimals of their coefficients, which are of logarithms."""
+
+_FINEST: si.Dimensionless = 1e-4  # the smallest tolerance that leaves room for the interpolation
+_PLACES = 0.5 * (1.0 - np.cos(np.pi * np.arange(5) / 4))
+_POWERS = np.arange(_PLACES.size)
+_TO_POWERS = np.linalg.inv(_PLACES[:, None] ** _POWERS)
+_PANELS: Kept[si.FloatArray] = Kept("film-panels", si.FloatArray)
+
+
+class Panel(NamedTuple):
+    """A panel of a table, but for Λ/ℓ; nothing else of gas, width and frequency is in it."""
+
+    slip: str
+    tolerance: float
+    nodes: tuple[int, int]
+    number: int
+
+    def at(self, slip_length: si.Dimensionless) -> si.FloatArray:
+        """The coefficients of the panel's three quantities at Λ/ℓ, and the bound on their relative
+        error. Raises `ConvergenceError` for films that are not solved."""
+        if self.slip not in SMOOTH_LAWS or self.tolerance < _FINEST:
+            asked = repr((slip_length.hex(), *self))
+            return _PANELS.found(asked, lambda: self.solved(slip_length))
+        octave, place = divmod(float(np.log2(slip_length)), 1.0)
+        known = _octave(int(octave), self)
+        return np.append(
+            (place**_POWERS @ _TO_POWERS) @ known[:-1].reshape(_POWERS.size, -1), known[-1]
+        )
+
+    def octave_solved(self, octave: int) -> si.FloatArray:
+        """The coefficients at the nodes of an octave of Λ/ℓ, and the bound on the error within."""
+        rows = np.array([self.solved(2.0 ** (octave + place)) for place in _PLACES.tolist()])
+        points = self.between()
+        # Between the second and the third node it errs most.
+        values, films_error = self.films(2.0 ** (octave + 0.32), *points)
+        middle = (0.32**_POWERS @ _TO_POWERS) @ rows[:, :-1]
+        deviation = _deviation(middle.reshape(3, *self.nodes)[0], points, values[0])
+        bound = max(2.0 * deviation + films_error, *rows[:, -1].tolist())
+        return np.append(rows[:, :-1], bound)
+
+    def solved(self, slip_length: si.Dimensionless) -> si.FloatArray:
+        """As `at`, all films of it solved at this Λ/ℓ."""
+        nx, nt = self.nodes
+        xi, eta = (np.cos(np.pi * np.arange(n) / (n - 1)) for n in (nx, nt))
+        XI, ETA = np.meshgrid(xi, eta, indexing="ij")
+        between = self.between()
+        x, y = (
+            np.concatenate([nodes.ravel(), points])
+            for nodes, points in zip((XI, ETA), between, strict=True)
+        )
+        values, films_error = self.films(slip_length, x, y)
+        panels = np.stack([_coefficients(one[: nx * nt].reshape(nx, nt)) for one in values])
+        deviation = _deviation(panels[0], between, values[0][nx * nt :])
+        return np.append(panels.ravel(), 2.0 * deviation + films_error)
+
+    def between(self) -> tuple[si.FloatArray, si.FloatArray]:
+        """Points between nodes where a panel is checked: a lattice that meets every line. A slip
+        law with joints leaves its mark somewhere along them: there, between all nodes."""
+        nx, nt = self.nodes
+        lines = 1 if self.slip in SMOOTH_LAWS else nt - 1
+        i = np.tile(np.arange(nx - 1), lines)
+        j = (3 * i + np.repeat(np.arange(lines), nx - 1)) % (nt - 1)
+        return np.cos(np.pi * (i + 0.5) / (nx - 1)), np.cos(np.pi * (j + 0.5) / (nt - 1))
+
+    def films(
+        self, slip_length: float, x: si.FloatArray, y: si.FloatArray
+    ) -> tuple[si.FloatArray, float]:
+        """The logarithms of the panel's three quantities at points of it, shape (3, points), and
+        the relative error of the over-pressure."""
+        column, row = divmod(self.number, ROWS)
+        low, high = EDGES[row], EDGES[row + 1]
+        gap = np.exp(FIRST_COLUMN + column + 0.5 * (x + 1.0))
+        excursion = np.sqrt(-np.expm1(-(low + 0.5 * (y + 1.0) * (high - low))))
+        # Errors of films on grids of their own look like noise between nodes, which no further node
+        # takes away; the bound on a panel is some three times as large.
+        share = 1 / 6 if self.slip in SMOOTH_LAWS else 1 / 10
+        films = solve_films(
+            gap**-2.0,
+            excursion,
+            knudsen_number=slip_length / gap,
+            slip=self.slip,
+            tolerance=self.tolerance * share,
+            workers=1,
+        )
+        values = (
+            films.over_pressure / excursion**2,
+            films.stiffness_relative,
+            films.damping_relative,
+        )
+        return np.log(values), float(np.max(films.over_pressure_error / films.over_pressure))
+
+
+def _deviation(
+    panel: si.FloatArray, points: tuple[si.FloatArray, si.FloatArray], values: si.FloatArray
+) -> float:
+    """The largest relative deviation of a panel from logarithms of films at points of it."""
+    from numpy.polynomial import chebyshev
+
+    return float(np.max(np.abs(np.expm1(chebyshev.chebval2d(*points, panel) - values))))
+
+
+def _coefficients(values: si.FloatArray) -> si.FloatArray:
+    """Chebyshev coefficients from values at the Lobatto nodes of both directions."""
+    from scipy.fft import dct
+
+    result = values
+    for axis in (0, 1):
+        n = values.shape[axis] - 1
+        result = np.asarray(dct(result, type=1, axis=axis)) / n
+        ends = [slice(None), slice(None)]
+        for end in (0, n):
+            ends[axis] = slice(end, end + 1)
+            result[tuple(ends)] *= 0.5
+    return np.ascontiguousarray(result)
+
+
+@lru_cache(maxsize=2048)
+def _octave(octave: int, panel: Panel) -> si.FloatArray:
+    """As `Panel.octave_solved`, from what is shipped or kept where it is there."""
+    shipped = _shipped().get((octave, panel))
+    if shipped is not None:
+        return shipped
+    return _PANELS.found(repr((octave, *panel)), lambda: panel.octave_solved(octave))
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> dict[tuple[int, Panel], si.FloatArray]:
+    """The panels that come with the package."""
+    with np.load(SHIPPED) as file:
+        nodes = tuple(file["nodes"].tolist())
+        tolerance, rows, bounds = float(file["tolerance"]), file["rows"], file["bounds"]
+    steps = _POWERS.size - 1
+    return {
+        (octave, Panel("first", tolerance, nodes, number)): np.append(
+            rows[number, k * steps : (k + 1) * steps + 1], bounds[number, k]
+        )
+        for number in range(len(rows))
+        for k, octave in enumerate(SHIPPED_OCTAVES)
+    }

@@ -1,0 +1,50 @@
+"""Solve the panels of the film table that come with the package, in about two minutes.
+
+    python tools/film_panels.py
+
+writes `contact/sharing/film_panels.npz`. After a change of the film solver or of the table's nodes
+tests compare the file with solved films and ask for this.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from squeezefilm import quantities as si
+from squeezefilm.contact.sharing.film_panels import (
+    COLUMNS,
+    ROWS,
+    SHIPPED,
+    SHIPPED_DIGITS,
+    SHIPPED_OCTAVES,
+    Panel,
+)
+from squeezefilm.contact.sharing.gas_table import START, default_tolerance
+
+SLIP = "first"
+
+
+def solved_octaves(number: int) -> tuple[si.FloatArray, si.FloatArray]:
+    """Coefficients of a panel by its number at the nodes of all shipped octaves, each once, and the
+    bound on the error in every octave."""
+    panel = Panel(SLIP, default_tolerance(SLIP), START, number)
+    octaves = np.array([panel.octave_solved(octave) for octave in SHIPPED_OCTAVES])
+    values = 3 * START[0] * START[1]
+    rows = octaves[:, :-1].reshape(len(octaves), -1, values)
+    # An octave begins where the one before it ends.
+    once = np.concatenate([rows[:, :-1].reshape(-1, values), rows[-1, -1:]])
+    return np.round(once, SHIPPED_DIGITS), octaves[:, -1]
+
+
+def main() -> None:
+    """Solve all of them and write the file."""
+    found = [solved_octaves(number) for number in range(COLUMNS * ROWS)]
+    rows, bounds = (np.array(part) for part in zip(*found, strict=True))
+    tolerance = np.array(default_tolerance(SLIP))
+    np.savez_compressed(
+        SHIPPED, rows=rows, bounds=bounds, nodes=np.array(START), tolerance=tolerance
+    )
+
+
+if __name__ == "__main__":
+    main()
