@@ -71,7 +71,13 @@ def contact_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
     display = contact.load_display("biet2008-stator")
     finger = display.finger
     law = finger.asperity_law(display.surface().roughness)
-    points, pressure = contact.ridge_points(finger), finger.plateau_pressure()
+    # A name that older trees had for it.
+    points = (
+        contact.ridge_points(finger)
+        if hasattr(contact, "ridge_points")
+        else contact.pad_points(finger).along
+    )
+    pressure = finger.plateau_pressure()
     amplitudes = np.linspace(0.05e-6, 5e-6, 100)
 
     def curve(table: Any) -> object:

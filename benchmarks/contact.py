@@ -28,7 +28,7 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import RoughContact
 from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable
-from squeezefilm.contact.sharing.pad import pad_friction, ridge_points
+from squeezefilm.contact.sharing.pad import pad_friction, pad_points
 from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
 from squeezefilm.display import load_display
 from squeezefilm.film.periodic.film import solve_uniform
@@ -130,7 +130,7 @@ def main() -> None:
     display = load_display("biet2008-stator")
     finger, gas = display.finger, display.gas
     law = finger.asperity_law(display.surface().roughness)
-    points = ridge_points(finger)
+    points = pad_points(finger).along
     amplitudes = np.linspace(0.05e-6, 5e-6, 100)
     pressure = finger.plateau_pressure()
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from squeezefilm.actuators.motor.assembled import Working
 from squeezefilm.actuators.motor.description import Motor
+from squeezefilm.contact.sharing.pad import PadPoints
 from squeezefilm.control.force_law import ForceLaw
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.plate.parts import Sector
@@ -330,7 +331,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "search.sweep.SweepRequest": {"display": "biet2008-plate"},
     "chain.pad_place.pad_place": {"place": (5e-3, 5e-3)},
     "chain.pad_place.place_words": {"place": (5e-3, 5e-3)},
-    "chain.pad_place.met_by_pads": {"points": (WAYS, WAYS)},
+    "chain.pad_place.met_by_pads": {"points": PadPoints(*[WAYS] * 5)},
     "plate.sound.sound_pressure": {"points": np.array([[0.0, 0.0, 0.3]])},
     "plate.sound.pressure_level": {"pressure": np.array([1.0 + 1j])},
     "plate.solid.solve.solve_modes": {"count": 1, "near": 60e3},

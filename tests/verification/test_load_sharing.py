@@ -23,7 +23,7 @@ from squeezefilm.contact.sharing import film_panels
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.film_panels import DEEPEST_EXCURSION
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.contact.sharing.pad import PadPosture, friction_ripple, pad_friction, ridge_points
+from squeezefilm.contact.sharing.pad import PadPosture, friction_ripple, pad_friction, pad_points
 from squeezefilm.contact.sharing.paper import relative_friction
 from squeezefilm.contact.sharing.tapping import contact_angle, tapping_friction
 from squeezefilm.display import load_display
@@ -38,6 +38,7 @@ from squeezefilm.materials import Gas
 GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)
 LAW = AsperityLaw()
 FINGER = Finger(10e-3, 50e-6, 350e-6, 0.5)
+RIDGES = (np.arange(-14, 14) + 0.5) * 350e-6
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +59,7 @@ def test_a_rigid_finger_at_an_antinode(table: FilmTable) -> None:
 
 
 def test_the_two_limits_over_the_standing_wave(table: FilmTable) -> None:
-    points = ridge_points(FINGER)
+    points = RIDGES
     own, tied = (
         pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3, limit=limit).relative_friction[0]
         for limit in ("own", "one-gap")
@@ -355,7 +356,7 @@ def test_the_skin_moves_little_at_ultrasonic_frequency(table: FilmTable) -> None
 
 
 def test_a_long_wave_makes_the_limits_one(table: FilmTable) -> None:
-    points = ridge_points(FINGER)
+    points = RIDGES
     alone = float(share_load(table, LAW, 2e-6, 5e3).relative_friction)
     for limit in ("own", "one-gap"):
         pad = pad_friction(table, LAW, 2e-6, 10.0, points, 5e3, limit=limit)
@@ -364,7 +365,7 @@ def test_a_long_wave_makes_the_limits_one(table: FilmTable) -> None:
 
 
 def test_the_pad_is_the_mean_of_its_ridges(table: FilmTable) -> None:
-    points = ridge_points(FINGER)
+    points = RIDGES
     each = share_load(table, LAW, 2e-6 * np.abs(np.cos(np.pi * points / 9.35e-3)), 5e3)
     pad = pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3)
     assert pad.relative_friction[0] == pytest.approx(float(np.mean(each.relative_friction)))
@@ -393,7 +394,7 @@ def test_crossing_the_nodes_is_felt_as_a_ripple(table: FilmTable) -> None:
 
 
 def test_tilt_and_orientation(table: FilmTable) -> None:
-    points = ridge_points(FINGER)
+    points = RIDGES
 
     def friction(**posture: float) -> float:
         limit = "one-gap" if "gap_tilt" in posture else "own"
@@ -415,7 +416,7 @@ def test_tilt_and_orientation(table: FilmTable) -> None:
     # Ridges along the wave sample it finely; across it in 28 places: the same wave.
     # (28 ridges are 9.8 mm of them.)
     whole = dataclasses.replace(FINGER, contact_length=9.8e-3, ridge_angle=math.pi / 2)
-    turned = pad_friction(table, LAW, 2e-6, 9.35e-3, ridge_points(whole), 5e3)
+    turned = pad_friction(table, LAW, 2e-6, 9.35e-3, pad_points(whole).along, 5e3)
     assert turned.relative_friction[0] == pytest.approx(friction(), abs=5e-3)
     with pytest.raises(InputError, match="limit = 'both'"):
         pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3, limit="both")  # type: ignore[arg-type]

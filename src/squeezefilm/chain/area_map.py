@@ -18,9 +18,9 @@ from scipy.interpolate import PchipInterpolator
 from squeezefilm import quantities as si
 from squeezefilm.chain.free_vibration import FreeVibration, free_vibration
 from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.pad_place import PadPlace, met_by_pads, place_words
+from squeezefilm.chain.pad_place import ALONG_RIDGE, PadPlace, met_by_pads, place_words
 from squeezefilm.chain.touch import touched_amplitudes
-from squeezefilm.contact.sharing.pad import pad_points
+from squeezefilm.contact.sharing.pad import PadPoints, pad_points
 from squeezefilm.display import ActiveRegion, Display
 from squeezefilm.errors import GeometryError, OutOfRangeError, SqueezefilmError
 from squeezefilm.plate.layout import Actuator
@@ -124,7 +124,7 @@ def _area_map(
     side = law.contact_side
     x, y, rule = _places(region, shape, side, refinement)
     at = np.argwhere(_inside(shape, side, x, y, region))
-    swings, weights = _met(shape, (x, y), at, pad_points(law.finger, side))
+    swings, weights = _met(shape, (x, y), at, pad_points(law.finger, side, ALONG_RIDGE))
     mean_square = np.sum(weights * swings**2, axis=1)
     if np.max(mean_square) > _MOST_BESIDE_LOBE:
         return None
@@ -149,30 +149,35 @@ def _met(
     shape: SurfaceShape,
     axes: tuple[si.MetreArray, si.MetreArray],
     at: si.IntArray,
-    points: tuple[si.MetreArray, si.MetreArray],
+    points: PadPoints,
 ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
     """What the points of pads meet at places of a grid, with weights: both (places, points)."""
     x, y = axes
-    dx, dy = points if shape.along == "x" else points[::-1]
-    across, along = np.unique(dx), np.unique(dy)
+    if shape.along == "x":
+        dx, dy, length, width = points[:4]
+    else:
+        dy, dx, width, length = points[:4]
+    (across, by_x), (along, by_y) = (np.unique(one, return_index=True) for one in (dx, dy))
     if at.shape[0] == x.size * y.size and across.size * along.size == dx.size:
         # Ridges along an axis, under every place of a grid: their points are a grid too.
-        grid = (x[:, None] + across).ravel(), (y[:, None] + along).ravel()
-        form = x.size, across.size, y.size, along.size
-        found, there = (
-            np.asarray(one, dtype=float)
-            .reshape(form)
+        found, covered = (
+            one.reshape(x.size, across.size, y.size, along.size)
             .transpose(0, 2, 1, 3)
             .reshape(at.shape[0], -1)
-            for one in (shape.between(*grid), shape.on_face(grid[0][:, None], grid[1][None, :]))
+            for one in shape.under_grid(
+                (x[:, None] + across).ravel(),
+                (y[:, None] + along).ravel(),
+                np.tile(length[by_x], x.size),
+                np.tile(width[by_y], y.size),
+            )
         )
-        return found, there / np.sum(there, axis=1, keepdims=True)
-    parts = np.array_split(at, -(-at.shape[0] * points[0].size // _AT_A_TIME))
+        order = np.lexsort((dy, dx))
+        weights = points.shares[order] * covered
+        return found, weights / np.sum(weights, axis=1, keepdims=True)
+    parts = np.array_split(at, -(-at.shape[0] * dx.size // _AT_A_TIME))
     met = [met_by_pads(shape, x[one[:, 0]], y[one[:, 1]], points) for one in parts]
-    # Points beside the face carry nothing, the others in their stead.
-    weights = np.concatenate([there for _, there in met]).astype(float)
-    weights /= np.sum(weights, axis=1, keepdims=True)
-    return np.concatenate([swings for swings, _ in met]), weights
+    swings, shares = (np.concatenate(one) for one in zip(*met, strict=True))
+    return swings, shares
 
 
 def _friction(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
@@ -34,7 +34,7 @@ from squeezefilm.contact.sharing.pad import (
     PadPosture,
     friction_ripple,
     pad_friction,
-    ridge_points,
+    pad_points,
 )
 from squeezefilm.contact.sharing.shear import AsperityShear
 from squeezefilm.display import Surface
@@ -228,10 +228,10 @@ class PadLaw:
     @cached_property
     def _even_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
         """The same of an even wave, wherever the pad is."""
-        points = ridge_points(self.finger, self.contact_side)
-        wave = PadPosture(self.position).over_the_antinode(points, self.half_wavelength)
-        kinds, counts = np.unique(np.round(wave, 9), return_counts=True)
-        return np.asarray(kinds, dtype=float), counts / points.size
+        points = pad_points(self.finger, self.contact_side)
+        wave = PadPosture(self.position).over_the_antinode(points.along, self.half_wavelength)
+        kinds, alike = np.unique(np.round(wave, 9), return_inverse=True)
+        return kinds, np.bincount(alike, weights=points.shares).astype(float)
 
     @si.checked_numbers
     def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
@@ -264,7 +264,10 @@ class PadLaw:
             points, posture = np.zeros(met.size), PadPosture(swings=met, shares=shares)
             _require_tabulated(amplitude, met)
         elif points is None:
-            points = ridge_points(self.finger, self.contact_side)
+            of_ridges = pad_points(self.finger, self.contact_side)
+            points = of_ridges.along
+            if posture.shares is None:
+                posture = replace(posture, shares=of_ridges.shares)
         with self._named_force():
             return pad_friction(
                 self._films,

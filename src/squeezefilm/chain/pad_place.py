@@ -10,7 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.contact.sharing.pad import pad_points
+from squeezefilm.contact.sharing.pad import PadPoints, pad_points
 from squeezefilm.errors import GeometryError, QuantityError
 from squeezefilm.from_text import ReadBy
 from squeezefilm.plate.layout import Actuator
@@ -21,6 +21,8 @@ from squeezefilm.plate.working_mode import WorkingMode
 _NODES, _NODES_ACROSS_REST = 8, 24
 _NEAR_REST = 0.25
 _MOST_PADS = 64
+ALONG_RIDGE = 8
+"""Points along a ridge that stands across the wave, over a pattern that changes along it too."""
 
 
 def place_words(place: tuple[si.Metre, si.Metre]) -> str:
@@ -107,28 +109,32 @@ class PadPlace:
         if pad not in self._known:
             if len(self._known) >= _MOST_PADS:
                 self._known.clear()
-            self._known[pad] = gauss_nodes(self.ridges(finger, contact_length)[1])
+            _, swings, shares = self.ridges(finger, contact_length)
+            self._known[pad] = gauss_nodes(swings, shares)
         return self._known[pad]
 
     @si.checked_numbers
     def ridges(
         self, finger: Finger, contact_length: si.Metre
-    ) -> tuple[si.MetreArray, si.DimensionlessArray]:
-        """The points of the ridges along the wave (m from the pad's centre), and their amplitudes.
+    ) -> tuple[si.MetreArray, si.DimensionlessArray, si.DimensionlessArray]:
+        """The points of the ridges along the wave (m from the pad's centre), the amplitudes there,
+        and the shares of the pad that they stand for.
 
         Raises `InputError` where the contact holds no ridge.
         """
-        along, across = pad_points(finger, contact_length)
+        points = pad_points(finger, contact_length, ALONG_RIDGE)
         x, y = np.array([self.x]), np.array([self.y])
-        swings, there = met_by_pads(self.shape, x, y, (along, across))
-        return along[there[0]], swings[there]
+        swings, shares = met_by_pads(self.shape, x, y, points)
+        there = shares[0] > 0
+        return points.along[there], swings[0, there], shares[0, there]
 
 
 @si.checked_numbers
 def gauss_nodes(
     values: Annotated[si.DimensionlessArray, si.AtLeast(0.0)],
+    weights: Annotated[si.DimensionlessArray, si.AtLeast(0.0)],
 ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-    """Few values, with weights of sum 1, for the mean of a function over many, shape (n,).
+    """Few values, with weights of sum 1, for the mean of a function over many, both of shape (n,).
 
     Gauss's rule of their distribution, by Lanczos' recurrence of orthogonal polynomials (Golub &
     Welsch 1969, 10.1090/S0025-5718-69-99647-1): of 8 nodes, and so exact for polynomials up to
@@ -136,14 +142,15 @@ def gauss_nodes(
     pad is within 1e-8 by it at an antinode and 3e-5 across a node, where it bends within the
     roughness. Of values of no more kinds than nodes all are kept.
     """
-    kinds, counts = np.unique(np.round(values, 9), return_counts=True)
+    kinds, alike = np.unique(np.round(values, 9), return_inverse=True)
+    counts = np.bincount(alike, weights=weights).astype(float)
     size = _NODES if kinds[0] > _NEAR_REST * kinds[-1] else _NODES_ACROSS_REST
     if kinds.size <= size:
-        return kinds, counts / values.size
+        return kinds, counts
     middle, reach = (kinds[0] + kinds[-1]) / 2, (kinds[-1] - kinds[0]) / 2
     at = (kinds - middle) / reach
     basis = np.zeros((size, kinds.size))
-    basis[0] = np.sqrt(counts / values.size)
+    basis[0] = np.sqrt(counts)
     jacobi = np.zeros((size, size))
     for k in range(size):
         further = at * basis[k]
@@ -176,13 +183,14 @@ def met_by_pads(
     shape: SurfaceShape,
     x: si.MetreArray,
     y: si.MetreArray,
-    points: tuple[si.MetreArray, si.MetreArray],
-) -> tuple[si.DimensionlessArray, np.ndarray[tuple[int, ...], np.dtype[np.bool]]]:
-    """The amplitudes over the antinode's under pads centred at places (m), and which points of the
-    pads are on the face at all, both of shape (places, points).
-
-    `points` (m) are those of a pad, along the wave and across it.
-    """
-    dx, dy = points if shape.along == "x" else points[::-1]
-    at_x, at_y = x[:, None] + dx, y[:, None] + dy
-    return shape.at(at_x, at_y), shape.on_face(at_x, at_y)
+    points: PadPoints,
+) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+    """The amplitudes over the antinode's under pads centred at places (m), and the shares of each
+    pad that meet them, both of shape (places, points): what is beside the face carries nothing."""
+    if shape.along == "x":
+        dx, dy, length, width = points[:4]
+    else:
+        dy, dx, width, length = points[:4]
+    swings, covered = shape.under(x[:, None] + dx, y[:, None] + dy, length, width)
+    shares = points.shares * covered
+    return swings, shares / np.sum(shares, axis=1, keepdims=True)

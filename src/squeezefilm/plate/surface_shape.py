@@ -33,6 +33,12 @@ _EDGE: si.Metre = 1e-9
 Axis = Literal["x", "y"]
 
 
+def _within(middle: si.FloatArray, size: si.MetreLike, low: float, high: float) -> si.FloatArray:
+    """The share of intervals of a size about their middles that is within low and high."""
+    inside = np.minimum(middle + size / 2, high) - np.maximum(middle - size / 2, low)
+    return np.asarray(np.clip(inside / size, 0.0, 1.0))
+
+
 @dataclass(frozen=True, eq=False)
 class SurfaceShape(ABC):
     """The size of the upper face's vibration, 1 at the best antinode `lobe` (x, y).
@@ -73,22 +79,38 @@ class SurfaceShape(ABC):
         return np.where(there, self._grid(x, y), 0.0)
 
     @si.checked_numbers
-    def at(self, x: si.MetreLike, y: si.MetreLike) -> si.DimensionlessArray:
-        """|w| over the lobe's at points (m, broadcast), 0 beside the face; a solved plate's
-        between knots a 24th of a half wavelength apart, by cubic splines."""
+    def under(
+        self, x: si.MetreLike, y: si.MetreLike, length: si.MetreLike, width: si.MetreLike
+    ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+        """|w| over the lobe's under cells about points (m, broadcast) that reach over a `length`
+        along x and a `width` along y (m), and which share of each cell is on the face. A solved
+        plate's is between knots a 24th of a half wavelength apart, by cubic splines; of what lies
+        beside the face it is that of its nearest point."""
         X, Y = np.broadcast_arrays(x, y)
-        found = np.zeros(X.shape)
-        there = self.on_face(X, Y)
-        found[there] = self._points(X[there], Y[there])
-        return found
+        return self._points(*self._nearest(X, Y)), self._covered(X, Y, length, width)
 
     @si.checked_numbers
-    def between(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
-        """As `at` on the grid of `x` × `y` (m), shape (x, y); for very many points, and quickly."""
+    def under_grid(
+        self, x: si.MetreArray, y: si.MetreArray, length: si.MetreArray, width: si.MetreArray
+    ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+        """As `under` on the grid of `x` × `y` (m), of cells with a length for each x and a width
+        for each y (m), both of shape (x, y); for very many points, and quickly."""
         si.require("x", x, si.Unit("m"), axes=1)
         si.require("y", y, si.Unit("m"), axes=1)
-        there = self.on_face(x[:, None], y[None, :])
-        return np.where(there, self._between(x, y), 0.0)
+        covered = self._covered(x[:, None], y[None, :], length[:, None], width[None, :])
+        return self._between(*self._nearest(x, y)), covered
+
+    def _nearest(self, x: si.MetreArray, y: si.MetreArray) -> tuple[si.MetreArray, si.MetreArray]:
+        """The nearest places of a rectangular face."""
+        left, right, front, back = self.bounds
+        return np.clip(x, left, right), np.clip(y, front, back)
+
+    def _covered(
+        self, x: si.FloatArray, y: si.FloatArray, length: si.MetreLike, width: si.MetreLike
+    ) -> si.DimensionlessArray:
+        """The share of cells that is on a rectangular face."""
+        left, right, front, back = self.bounds
+        return _within(x, length, left, right) * _within(y, width, front, back)
 
     def _between(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         return self._points(*np.meshgrid(x, y, indexing="ij"))
@@ -179,6 +201,19 @@ class DiscSurface(SurfaceShape):
         r, known = np.hypot(x, y), self.mode.surface_radius
         return np.asarray((r >= known[0] - _EDGE) & (r <= known[-1] + _EDGE))
 
+    def _nearest(self, x: si.MetreArray, y: si.MetreArray) -> tuple[si.MetreArray, si.MetreArray]:
+        return x, y  # `_points` keeps to the radii there are
+
+    def _covered(
+        self, x: si.FloatArray, y: si.FloatArray, length: si.MetreLike, width: si.MetreLike
+    ) -> si.DimensionlessArray:
+        """By the radius alone, over which a cell reaches as far as across it."""
+        r, known = np.hypot(x, y), self.mode.surface_radius
+        turned = np.where(r > 0, r, 1.0)
+        across = (np.abs(x) * length + np.abs(y) * width) / turned
+        size = np.where(r > 0, across, np.minimum(length, width))
+        return _within(r, size, float(known[0]) or -np.inf, float(known[-1]))
+
     def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         known = self.mode.surface_radius
         r = np.clip(np.hypot(x, y), known[0], known[-1])
@@ -202,6 +237,15 @@ class TrackSurface(SurfaceShape):
         """Whether points (m, broadcast) lie on the face: the track is closed, so every x does."""
         _, _, inner, outer = self.bounds
         return np.asarray(np.broadcast_arrays((y >= inner - _EDGE) & (y <= outer + _EDGE), x)[0])
+
+    def _nearest(self, x: si.MetreArray, y: si.MetreArray) -> tuple[si.MetreArray, si.MetreArray]:
+        return x, y  # |w| is that of x alone, round and round
+
+    def _covered(
+        self, x: si.FloatArray, y: si.FloatArray, length: si.MetreLike, width: si.MetreLike
+    ) -> si.DimensionlessArray:
+        _, _, inner, outer = self.bounds
+        return np.asarray(np.broadcast_arrays(_within(y, width, inner, outer), x)[0])
 
     def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         return np.abs(np.cos(np.pi * x / self.half_wavelength))

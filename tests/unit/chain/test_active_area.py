@@ -15,7 +15,7 @@ from squeezefilm.chain.pad_place import PadPlace, met_by_pads, pad_place, place_
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.touch import touch, touched_amplitudes
 from squeezefilm.chain.wanted_voltage import voltage_for_friction
-from squeezefilm.contact.sharing.pad import pad_points, ridge_points
+from squeezefilm.contact.sharing.pad import pad_points
 from squeezefilm.display import ActiveRegion, Display, load_display
 from squeezefilm.errors import GeometryError, InputError, OutOfRangeError, QuantityError
 from squeezefilm.plate.surface_shape import surface_shape
@@ -75,9 +75,10 @@ def test_over_equal_antinodes_a_place_has_the_friction_of_the_law(position: floa
 def test_one_ridge_is_the_pad_of_one_ridge() -> None:
     p = predicted("stator")
     amplitude = np.linspace(0, 2e-6, 5)
-    wave = np.abs(np.cos(np.pi * ridge_points(p.law.finger) / p.mode.half_wavelength))
+    points = pad_points(p.law.finger)
+    wave = np.abs(np.cos(np.pi * points.along / p.mode.half_wavelength))
     each = p.law.ridge_friction(np.outer(amplitude, wave).ravel()).reshape(5, -1)
-    assert each.mean(axis=1) == pytest.approx(p.law.curve(amplitude), abs=1e-9)
+    assert each @ points.shares == pytest.approx(p.law.curve(amplitude), abs=1e-9)
 
 
 # The map.
@@ -219,9 +220,13 @@ def test_of_a_pad_that_overhangs_the_rest_carries() -> None:
     p = predicted("plate")
     shape = surface_shape(PLATE.actuator, p.mode)
     side = p.law.contact_side
-    points, swings = PadPlace(shape, 1e-3, 0.0245).ridges(p.law.finger, side)
-    assert points.size == swings.size < pad_points(p.law.finger, side)[0].size
-    assert np.min(points) >= -1e-3
+    points, swings, shares = PadPlace(shape, 1e-3, 0.0245).ridges(p.law.finger, side)
+    assert points.size == swings.size < pad_points(p.law.finger, side, 8).along.size
+    # The middle of a ridge that the edge cuts may lie beyond it.
+    assert np.min(points) >= -1e-3 - p.law.finger.ridge_period / 2
+    assert np.sum(shares) == pytest.approx(1.0)
+    # What reaches from the edge to the far end carries, each length of it alike.
+    assert shares @ points == pytest.approx((side / 2 - 1e-3) / 2, abs=2e-5)
 
 
 def test_a_model_without_ridges_of_their_own_has_amplitudes_only_and_says_why() -> None:
@@ -300,10 +305,10 @@ def test_pads_turn_with_the_wave() -> None:
     points = pad_points(p.law.finger)
     across = dataclasses.replace(shape, along="y")
     at = np.array([30e-3]), np.array([20e-3])
-    swings, there = met_by_pads(shape, *at, points)
-    other, _ = met_by_pads(across, *at, points[::-1])
-    assert there.all()
-    assert swings.shape == (1, points[0].size)
+    swings, shares = met_by_pads(shape, *at, points)
+    other, _ = met_by_pads(across, *at, points)
+    assert shares[0] == pytest.approx(points.shares)
+    assert swings.shape == (1, points.along.size)
     # The beam's line is that of y then: only the points are compared.
     assert other.shape == swings.shape
 

@@ -68,11 +68,11 @@ def test_of_a_pad_all_points_are_what_few_nodes_say() -> None:
     p = predicted("winfield2007-tpad")
     law, place = p.law, p.law.place
     assert place is not None
-    _, met = place.ridges(law.finger, law.contact_side)
+    _, met, shares = place.ridges(law.finger, law.contact_side)
     assert met.size > 5 * law.ridge_swings[0].size
     each = law.ridge_friction(p.vibration_amplitude * met)
-    assert p.relative_friction == pytest.approx(float(np.mean(each)), abs=3e-8)
-    assert law.mean_square == pytest.approx(float(np.mean(met**2)), rel=1e-9)
+    assert p.relative_friction == pytest.approx(float(each @ shares), abs=3e-8)
+    assert law.mean_square == pytest.approx(float(met**2 @ shares), rel=1e-9)
 
 
 @pytest.mark.parametrize("frequency", [None, 25.9e3])
@@ -169,8 +169,10 @@ def test_a_grid_of_points_is_the_points_of_a_grid(name: str, theory: Any) -> Non
     left, right, front, back = shape.bounds
     rng = np.random.default_rng(5)
     x, y = rng.uniform(left - 1e-3, right + 1e-3, 9), rng.uniform(front - 1e-3, back + 1e-3, 7)
-    expected = shape.at(x[:, None], y[None, :])
-    assert shape.between(x, y) == pytest.approx(expected, abs=1e-12)
+    long, wide = rng.uniform(0.1e-3, 2e-3, 9), rng.uniform(0.1e-3, 2e-3, 7)
+    expected = shape.under(x[:, None], y[None, :], long[:, None], wide[None, :])
+    for found, by_points in zip(shape.under_grid(x, y, long, wide), expected, strict=True):
+        assert found == pytest.approx(by_points, abs=1e-12)
 
 
 # Few nodes for many ridges.
@@ -179,16 +181,17 @@ def test_a_grid_of_points_is_the_points_of_a_grid(name: str, theory: Any) -> Non
 @pytest.mark.parametrize(("low", "size"), [(0.4, 8), (0.0, 24)])
 def test_nodes_take_means_of_polynomials(low: float, size: int) -> None:
     values = np.random.default_rng(3).uniform(low, 1.0, 300)
-    nodes, shares = gauss_nodes(values)
+    weights = np.random.default_rng(4).dirichlet(np.ones(values.size))
+    nodes, shares = gauss_nodes(values, weights)
     assert nodes.size == size
     assert np.sum(shares) == pytest.approx(1.0)
     assert np.all((nodes >= np.min(values)) & (nodes <= np.max(values)))
     for degree in range(2 * size):
-        assert shares @ nodes**degree == pytest.approx(np.mean(values**degree), rel=1e-7)
+        assert shares @ nodes**degree == pytest.approx(weights @ values**degree, rel=1e-7)
 
 
 def test_few_kinds_are_all_kept() -> None:
-    nodes, shares = gauss_nodes(np.array([1.0, 0.5, 1.0, 0.9]))
+    nodes, shares = gauss_nodes(np.array([1.0, 0.5, 1.0, 0.9]), np.full(4, 0.25))
     assert nodes == pytest.approx([0.5, 0.9, 1.0])
     assert shares == pytest.approx([0.25, 0.25, 0.5])
 

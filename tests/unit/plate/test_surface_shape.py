@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from squeezefilm import quantities as si
 from squeezefilm.display import load_display
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate, turned
@@ -14,6 +15,7 @@ from squeezefilm.plate.surface_shape import (
     BeamSurface,
     DiscSurface,
     SolvedSurface,
+    SurfaceShape,
     TrackSurface,
     surface_shape,
 )
@@ -22,6 +24,13 @@ from squeezefilm.plate.working_mode import working_mode
 PLATE = load_display("biet2008-plate").actuator
 STATOR = load_display("biet2008-stator").actuator
 DISC = load_display("winfield2007-tpad").actuator
+
+
+def at(shape: SurfaceShape, x: si.FloatArray, y: si.FloatArray) -> si.FloatArray:
+    """The motion at points of the face."""
+    swings, covered = shape.under(x, y, 1e-6, 1e-6)
+    assert np.all(covered > 0.2)
+    return swings
 
 
 def test_a_beam_moves_alike_all_across_and_stands_still_at_its_nodes() -> None:
@@ -34,7 +43,7 @@ def test_a_beam_moves_alike_all_across_and_stands_still_at_its_nodes() -> None:
     y = np.linspace(*shape.bounds[2:], 5)
     assert shape.grid(nodes, y) == pytest.approx(0.0, abs=1e-3)
     assert np.ptp(shape.grid(np.linspace(0, 0.083, 50), y), axis=1) == pytest.approx(0.0)
-    assert shape.at(*(np.array([one]) for one in shape.lobe)) == pytest.approx(1.0)
+    assert at(shape, *(np.array([one]) for one in shape.lobe)) == pytest.approx(1.0)
 
 
 def test_a_beam_with_its_nodal_lines_across_the_width_is_the_turned_one() -> None:
@@ -57,9 +66,9 @@ def test_a_disc_varies_as_the_cosine_around_and_ends_at_its_rim() -> None:
     outer = disc.diameter / 2
     angle = np.linspace(0, 2 * np.pi, 73)
     radius = 0.6 * outer
-    found = shape.at(radius * np.cos(angle), radius * np.sin(angle))
+    found = at(shape, radius * np.cos(angle), radius * np.sin(angle))
     assert found == pytest.approx(found[0] * np.abs(np.cos(2 * angle)), abs=1e-12)
-    assert shape.at(*(np.array([one]) for one in shape.lobe)) == pytest.approx(1.0, abs=1e-6)
+    assert at(shape, *(np.array([one]) for one in shape.lobe)) == pytest.approx(1.0, abs=1e-6)
     corner = np.array([-outer, outer])
     assert np.all(shape.grid(corner, corner) == 0.0)
     assert not np.any(shape.on_face(corner, corner))
@@ -74,8 +83,8 @@ def test_a_stators_track_carries_a_wave_with_all_antinodes_alike_and_says_so() -
     half = mode.half_wavelength
     antinodes = half * np.arange(17)
     middle = np.full(17, shape.lobe[1])
-    assert shape.at(antinodes, middle) == pytest.approx(1.0)
-    assert shape.at(antinodes + half / 2, middle) == pytest.approx(0.0, abs=1e-12)
+    assert at(shape, antinodes, middle) == pytest.approx(1.0)
+    assert at(shape, antinodes + half / 2, middle) == pytest.approx(0.0, abs=1e-12)
     # The ring is closed: a pad over where it begins overhangs nothing.
     assert shape.on_face(np.array([-1e-3]), middle[:1]).all()
 
@@ -94,7 +103,7 @@ def test_the_map_is_the_solved_response_to_rounding_and_its_splines_follow() -> 
     # Beside the knots the splines miss by less than a thousandth of the best antinode.
     rng = np.random.default_rng(5)
     at = np.sort(rng.uniform(0, 0.083, 60)), np.sort(rng.uniform(0, 0.049, 60))
-    assert shape.at(at[0][:, None], at[1][None, :]) == pytest.approx(shape.grid(*at), abs=1e-3)
+    assert at(shape, at[0][:, None], at[1][None, :]) == pytest.approx(shape.grid(*at), abs=1e-3)
 
 
 @pytest.mark.slow

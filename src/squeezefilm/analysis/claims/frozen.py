@@ -24,7 +24,7 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.contact.sharing.pad import pad_friction, ridge_points
+from squeezefilm.contact.sharing.pad import PadPosture, pad_friction, pad_points
 from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
 from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.errors import InputError
@@ -137,13 +137,15 @@ class FrozenContact:
     def pad_friction(self, model: str, ridge_angle: si.Radian) -> si.Dimensionless:
         """µ′/µ by a model of a whole pad over an antinode, its ridges turned by an angle (rad) out
         of the nodal lines, each place at its own balance. Raises as `relative_friction`."""
+        points = pad_points(replace(self.finger, ridge_angle=ridge_angle))
         found = pad_friction(
             self._films(None),
             self.law(model),
             self.amplitude,
             self.half_wavelength,
-            ridge_points(replace(self.finger, ridge_angle=ridge_angle)),
+            points.along,
             self.plateau_pressure,
+            posture=PadPosture(shares=points.shares),
             shear=self._shear(model),
         )
         return float(found.relative_friction[0])

@@ -28,6 +28,8 @@ Limit = Literal["own", "one-gap"]
 _MOST_RIDGES = 100_000
 # More points of ridges than that are taken in as many kinds, by the wave's amplitude there.
 _KINDS = 4096
+# Of a cell: less is rounding.
+_LEAST_SHARE = 1e-9
 
 
 @si.checked_numbers
@@ -107,64 +109,69 @@ class PadFriction:
         return self.film_pressure / (self.asperity_pressure + self.film_pressure)
 
 
-@si.checked_numbers
-def ridge_points(
-    finger: Finger, contact_length: Annotated[si.Metre, si.Above(0.0)] | None = None
-) -> si.FloatArray:
-    """Where along the wave (m from the pad's centre) the ridges are sampled, each point alike.
+class PadPoints(NamedTuple):
+    """Where a pad's ridges are sampled, arrays of one shape: `along` the wave and `across` it (m
+    from the pad's centre), how far each point's cell reaches either way (m), and the `shares` of
+    the pad that they stand for, of sum 1."""
 
-    Ridges stand at (i + ½) L along their normal; with ridge_angle 0 each has one x. At an angle
-    each ridge in the square contact is sampled along its length, a quarter of a period apart or
-    finer. Raises `InputError` where the contact holds no ridge.
-    """
-    side = finger.contact_length if contact_length is None else contact_length
-    si.require("ridges in the contact", side / finger.ridge_period, at_most=_MOST_RIDGES)
-    return np.asarray(_ridge_places(finger, side, 1)[0])
+    along: si.MetreArray
+    across: si.MetreArray
+    length: si.MetreArray
+    width: si.MetreArray
+    shares: si.DimensionlessArray
 
 
-# Along a ridge that stands across the wave, over a pattern that changes along it too.
-_ALONG = 8
+# Along a ridge at an angle to the nodal lines.
+_ALONG = 64
 
 
 @si.checked_numbers
 def pad_points(
-    finger: Finger, contact_length: Annotated[si.Metre, si.Above(0.0)] | None = None
-) -> tuple[si.FloatArray, si.FloatArray]:
-    """Where the ridges are sampled over the pad (m from its centre), along the wave and across it.
+    finger: Finger,
+    contact_length: Annotated[si.Metre, si.Above(0.0)] | None = None,
+    spread: Annotated[int, si.AtLeast(1), si.AtMost(1000)] = 1,
+) -> PadPoints:
+    """Where the ridges of a square contact are sampled.
 
-    The points of `ridge_points`, spread along the ridges too: eight to a ridge that stands across
-    the wave. Raises as it does.
+    Ridges stand at (i + ½) L along their normal, each in a cell of a period; with ridge_angle 0
+    each has one x and `spread` points along it, at an angle 64 points along the contact's reach. A
+    cell that the contact's edge cuts carries with the part within, and from its middle, so that
+    friction is continuous in the contact's length. Raises `InputError` where the contact is shorter
+    than a period of the ridges.
     """
     side = finger.contact_length if contact_length is None else contact_length
-    si.require("ridges in the contact", side / finger.ridge_period, at_most=_MOST_RIDGES)
-    return _ridge_places(finger, side, _ALONG)
-
-
-def _ridge_places(
-    finger: Finger, side: si.Metre, spread: int
-) -> tuple[si.FloatArray, si.FloatArray]:
-    """The points of the ridges in a square, along and across the wave; `spread` of them along a
-    ridge that has one place along the wave."""
-    half, period, angle = side / 2, finger.ridge_period, finger.ridge_angle
-    reach = half * (abs(np.cos(angle)) + abs(np.sin(angle)))
-    count = int(np.floor(reach / period + 0.5))
-    across = (np.arange(-count, count) + 0.5) * period
-    if abs(np.sin(angle)) < 1e-9:
-        ridges = across[np.abs(across) <= half]
-        y = (np.arange(spread) + 0.5) / spread * side - half
-        points, beside = np.repeat(ridges, spread), np.tile(y, ridges.size)
-    else:
-        along = (np.arange(64) + 0.5) / 64 * 2 * reach - reach
-        x = across[:, None] * np.cos(angle) - along * np.sin(angle)
-        y = across[:, None] * np.sin(angle) + along * np.cos(angle)
-        inside = (np.abs(x) <= half) & (np.abs(y) <= half)
-        points, beside = x[inside], y[inside]
-    if points.size == 0:
+    half, period = side / 2, finger.ridge_period
+    si.require("ridges in the contact", side / period, at_most=_MOST_RIDGES)
+    if side < period:
         raise InputError(
             f"a contact of {si.format_quantity(side, si.Unit('m'))} holds no ridge of period "
             f"{si.format_quantity(period, si.Unit('m'))}; make the contact longer"
         )
-    return np.asarray(points, dtype=float), np.asarray(beside, dtype=float)
+    cos, sin = float(np.cos(finger.ridge_angle)), float(np.sin(finger.ridge_angle))
+    if abs(sin) < 1e-9:
+        cos, sin = 1.0, 0.0
+    reach = half * (abs(cos) + abs(sin))
+    count = int(np.ceil(reach / period))
+    n = (np.arange(-count, count)[:, None] + 0.5) * period
+    points = spread if sin == 0 else _ALONG
+    step = 2 * reach / points
+    t = (np.arange(points) + 0.5) * step - reach
+    along, length, inside = _within(half, n * cos - t * sin, period * abs(cos) + step * abs(sin))
+    across, width, beside = _within(half, n * sin + t * cos, period * abs(sin) + step * abs(cos))
+    shares = inside * beside
+    kept = shares > _LEAST_SHARE
+    return PadPoints(
+        along[kept], across[kept], length[kept], width[kept], shares[kept] / np.sum(shares[kept])
+    )
+
+
+def _within(
+    half: float, middle: si.FloatArray, size: float
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
+    """Of cells of a size about their middles: middle and size of what lies within ± half, and its
+    share of the cell."""
+    beyond = np.clip(np.abs(middle) + size / 2 - half, 0.0, size)
+    return middle - np.sign(middle) * beyond / 2, size - beyond, 1 - beyond / size
 
 
 @si.checked_numbers
@@ -346,7 +353,7 @@ def friction_ripple(
     Raises as `pad_friction` does, and `InputError` for fewer than 4 positions.
     """
     side = float(np.sqrt(finger.contact_area(normal_force)))
-    points = ridge_points(finger, side)
+    points = pad_points(finger, side)
     where = np.arange(positions) / positions * half_wavelength
     values = [
         pad_friction(
@@ -354,10 +361,10 @@ def friction_ripple(
             asperities,
             amplitude,
             half_wavelength,
-            points,
+            points.along,
             finger.plateau_pressure(normal_force),
             limit=limit,
-            posture=PadPosture(position=float(x)),
+            posture=PadPosture(position=float(x), shares=points.shares),
             shear=shear,
         ).relative_friction[0]
         for x in where

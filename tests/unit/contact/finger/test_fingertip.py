@@ -4,7 +4,6 @@ import dataclasses
 import math
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from squeezefilm import presets
@@ -13,7 +12,6 @@ from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import RoughContact
-from squeezefilm.contact.sharing.pad import ridge_points
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError, InputError
 
@@ -83,27 +81,6 @@ def test_friction_of_a_shear_strength_is_that_of_the_real_contact_area() -> None
     assert few < 0.9 * light
     with pytest.raises(InputError, match="real contact area"):
         dataclasses.replace(strong, asperities=AsperityLaw())
-
-
-def test_ridge_points_stand_half_a_period_from_the_centre() -> None:
-    points = ridge_points(FINGER)
-    assert points.size == 28
-    assert np.min(np.abs(points)) == pytest.approx(175e-6)
-    np.testing.assert_allclose(points, -points[::-1])
-
-
-@pytest.mark.parametrize("angle", [0.3, math.pi / 4, math.pi / 2])
-def test_ridge_points_at_an_angle_cover_the_square_evenly(angle: float) -> None:
-    points = ridge_points(dataclasses.replace(FINGER, ridge_angle=angle))
-    assert np.max(np.abs(points)) <= 5e-3
-    assert np.mean(points) == pytest.approx(0, abs=2e-5)
-    # A uniform square of side 10 mm has the variance 100/12 mm².
-    assert np.var(points) == pytest.approx(1e-4 / 12, rel=0.02)
-
-
-def test_a_contact_without_ridges_is_refused() -> None:
-    with pytest.raises(InputError, match="holds no ridge"):
-        ridge_points(FINGER, 1e-4)
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from squeezefilm.contact.sharing.pad import (
     PadPosture,
     friction_ripple,
     pad_friction,
-    ridge_points,
+    pad_points,
 )
 from squeezefilm.errors import InputError, OutOfRangeError
 
@@ -103,30 +103,48 @@ def test_a_pad_pressed_through_and_one_off_the_table_are_refused(table: FilmTabl
         share_load(table, weak, 1e-4, 1e-6)
 
 
-def test_ridges_stand_half_a_period_off_the_middle() -> None:
+def test_ridges_stand_half_a_period_off_the_middle_and_carry_with_the_part_in_contact() -> None:
     half = finger(0.5e-3)
-    assert ridge_points(half, 2e-3) == pytest.approx([-0.75e-3, -0.25e-3, 0.25e-3, 0.75e-3])
-    # A ridge on the very edge counts, one beyond does not.
-    assert ridge_points(half, 1.5e-3) == pytest.approx([-0.75e-3, -0.25e-3, 0.25e-3, 0.75e-3])
-    assert ridge_points(half, 1.4e-3).size == 2
-    assert ridge_points(half).size == 20
+    whole = pad_points(half, 2e-3)
+    assert whole.along == pytest.approx([-0.75e-3, -0.25e-3, 0.25e-3, 0.75e-3])
+    assert whole.shares == pytest.approx([0.25] * 4)
+    # Of the outer two a half, from the middle of that half.
+    cut = pad_points(half, 1.5e-3)
+    assert cut.along == pytest.approx([-0.625e-3, -0.25e-3, 0.25e-3, 0.625e-3])
+    assert cut.shares == pytest.approx([1 / 6, 1 / 3, 1 / 3, 1 / 6])
+    assert cut.length == pytest.approx([0.25e-3, 0.5e-3, 0.5e-3, 0.25e-3])
+    assert pad_points(half, 2e-3, 8).along.size == 32
+    assert pad_points(half, 2e-3, 8).width == pytest.approx(np.full(32, 0.25e-3))
     with pytest.raises(InputError, match="holds no ridge"):
-        ridge_points(half, 0.4e-3)
+        pad_points(half, 0.4e-3)
     with pytest.raises(InputError, match="ridges in the contact"):
-        ridge_points(half, 100_001 * 0.5e-3)
+        pad_points(half, 100_001 * 0.5e-3)
 
 
-@pytest.mark.parametrize("angle", [0.3, math.pi / 4, -0.8, math.pi / 2])
+@pytest.mark.parametrize("angle", [0.0, 0.3, math.pi / 4, -0.8, math.pi / 2])
 def test_ridges_at_an_angle_are_sampled_evenly_over_the_square(angle: float) -> None:
     side = 5e-3
-    points = ridge_points(finger(0.4e-3, ridge_angle=angle), side)
-    assert np.abs(points).max() <= side / 2
-    # Evenly: the first moments are those of the square's uniform density.
-    assert points.mean() == pytest.approx(0.0, abs=0.02 * side)
-    assert points.std() == pytest.approx(side / math.sqrt(12), rel=0.06)
-    # And as many as the area has lengths of ridges: 64 to the diagonal reach of each ridge.
-    reach = side / 2 * (abs(math.cos(angle)) + abs(math.sin(angle)))
-    assert points.size == pytest.approx(side**2 / 0.4e-3 / (2 * reach / 64), rel=0.06)
+    points = pad_points(finger(0.4e-3, ridge_angle=angle), side, 16)
+    for places, sizes in ((points.along, points.length), (points.across, points.width)):
+        assert np.all(np.abs(places) + sizes / 2 <= side / 2 * (1 + 1e-9))
+        # Evenly: the first moments are those of the square's uniform density.
+        assert points.shares @ places == pytest.approx(0.0, abs=0.001 * side)
+        spread = math.sqrt(points.shares @ places**2)
+        assert spread == pytest.approx(side / math.sqrt(12), rel=0.01)
+    assert np.sum(points.shares) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, math.pi / 4])
+def test_means_over_a_pad_are_continuous_in_its_size(angle: float) -> None:
+    """Of what changes within a ridge: a thousandth more of the side, a few thousandths more of it,
+    where whole ridges would come in."""
+    sides = 3e-3 * 1.001 ** np.arange(400)
+    means = []
+    for side in sides.tolist():
+        points = pad_points(finger(0.4e-3, ridge_angle=angle), side, 4)
+        means.append(points.shares @ np.cos(np.pi * points.along / HALF) ** 2)
+    assert np.abs(np.diff(means)).max() < 2e-3
+    assert np.ptp(means) > 0.1
 
 
 def test_each_ridge_at_its_own_balance_is_the_mean_of_ridges(table: FilmTable) -> None:
@@ -184,10 +202,11 @@ def test_the_ripple_is_the_friction_at_places_along_half_a_wave(table: FilmTable
     assert ripple.position == pytest.approx([0.0, 1.5e-3, 3e-3, 4.5e-3])
     side = math.sqrt(pad.contact_area(0.02))
     assert ripple.contact_length == pytest.approx(side)
+    points = pad_points(pad, side)
     for x, value in zip(ripple.position, ripple.relative_friction, strict=True):
         own = pad_friction(
-            table, LAW, 2e-6, HALF, ridge_points(pad, side), pad.plateau_pressure(0.02),
-            posture=PadPosture(position=float(x)),
+            table, LAW, 2e-6, HALF, points.along, pad.plateau_pressure(0.02),
+            posture=PadPosture(position=float(x), shares=points.shares),
         )  # fmt: skip
         assert value == own.relative_friction[0]
     # At the node most of the load is on the asperities.
