@@ -12,22 +12,19 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.contact.sharing.film_panels import (
-    COLUMNS,
-    ROWS,
     SHIPPED,
     SHIPPED_DIGITS,
     SHIPPED_OCTAVES,
+    SHIPPED_PANELS,
     Panel,
 )
 from squeezefilm.contact.sharing.gas_table import START, default_tolerance
 
-SLIP = "first"
 
-
-def solved_octaves(number: int) -> tuple[si.FloatArray, si.FloatArray]:
+def solved_octaves(slip: str, number: int) -> tuple[si.FloatArray, si.FloatArray]:
     """Coefficients of a panel by its number at the nodes of all shipped octaves, each once, and the
     bound on the error in every octave."""
-    panel = Panel(SLIP, default_tolerance(SLIP), START, number)
+    panel = Panel(slip, default_tolerance(slip), START, number)
     octaves = np.array([panel.octave_solved(octave) for octave in SHIPPED_OCTAVES])
     values = 3 * START[0] * START[1]
     rows = octaves[:, :-1].reshape(len(octaves), -1, values)
@@ -38,12 +35,12 @@ def solved_octaves(number: int) -> tuple[si.FloatArray, si.FloatArray]:
 
 def main() -> None:
     """Solve all of them and write the file."""
-    found = [solved_octaves(number) for number in range(COLUMNS * ROWS)]
-    rows, bounds = (np.array(part) for part in zip(*found, strict=True))
-    tolerance = np.array(default_tolerance(SLIP))
-    np.savez_compressed(
-        SHIPPED, rows=rows, bounds=bounds, nodes=np.array(START), tolerance=tolerance
-    )
+    arrays = {"nodes": np.array(START), "tolerance": np.array(default_tolerance("first"))}
+    for slip, numbers in SHIPPED_PANELS.items():
+        found = [solved_octaves(slip, number) for number in numbers]
+        arrays[f"{slip}_rows"] = np.array([rows for rows, _ in found])
+        arrays[f"{slip}_bounds"] = np.array([bounds for _, bounds in found])
+    np.savez_compressed(SHIPPED, **arrays)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 A panel depends on gas, width and frequency through the slip length Λ/ℓ alone, and smoothly (see
 `gas_table`): it is solved at Chebyshev nodes of each octave of Λ/ℓ and interpolated between them,
 which errs by some 1e-5 of the over-pressure. So all plates, fingers and draws share some hundred
-panels. Those of the default law and tolerance for .002 < Λ/ℓ < .0625 come with the package
+panels. Those of usual laws at their tolerance for .002 < Λ/ℓ < .0625 come with the package
 (`tools/film_panels.py` writes them): plateaus of 100 to 500 µm at 20 to 100 kHz in air. Others are
 solved when first asked for, and kept (`kept.store`). A slip law with joints is not smooth, and a
 tolerance near the error of the interpolation leaves no room for it: such panels are solved at
@@ -12,6 +12,7 @@ their own Λ/ℓ.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -35,6 +36,11 @@ SMOOTH_LAWS = ("first", "second", "veijola")
 SHIPPED = Path(__file__).with_name("film_panels.npz")
 SHIPPED_OCTAVES = range(-9, -4)
 """The octaves log2(Λ/ℓ) of the panels that come with the package."""
+SHIPPED_PANELS: Mapping[str, tuple[int, ...]] = {
+    "first": tuple(range(COLUMNS * ROWS)),
+    "veijola": tuple(column * ROWS + row for column in range(7) for row in range(2)),
+}
+"""Their numbers, by the slip law: of the default one all, of one that intervals draw the usual."""
 SHIPPED_DIGITS = 7
 """The decimals of their coefficients, which are of logarithms."""
 
@@ -164,14 +170,14 @@ def _octave(octave: int, panel: Panel) -> si.FloatArray:
 @lru_cache(maxsize=1)
 def _shipped() -> dict[tuple[int, Panel], si.FloatArray]:
     """The panels that come with the package."""
+    steps, known = _POWERS.size - 1, {}
     with np.load(SHIPPED) as file:
-        nodes = tuple(file["nodes"].tolist())
-        tolerance, rows, bounds = float(file["tolerance"]), file["rows"], file["bounds"]
-    steps = _POWERS.size - 1
-    return {
-        (octave, Panel("first", tolerance, nodes, number)): np.append(
-            rows[number, k * steps : (k + 1) * steps + 1], bounds[number, k]
-        )
-        for number in range(len(rows))
-        for k, octave in enumerate(SHIPPED_OCTAVES)
-    }
+        nodes, tolerance = tuple(file["nodes"].tolist()), float(file["tolerance"])
+        for slip, numbers in SHIPPED_PANELS.items():
+            rows, bounds = file[f"{slip}_rows"], file[f"{slip}_bounds"]
+            for number, row, bound in zip(numbers, rows, bounds, strict=True):
+                panel = Panel(slip, tolerance, nodes, number)
+                for k, octave in enumerate(SHIPPED_OCTAVES):
+                    within = row[k * steps : (k + 1) * steps + 1]
+                    known[octave, panel] = np.append(within, bound[k])
+    return known
