@@ -13,6 +13,7 @@ from scipy.interpolate import RegularGridInterpolator
 from tests.verification.second_order import carried
 
 from squeezefilm.chain.prediction import predict
+from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.display import load_display
 from squeezefilm.plate.working_mode import resonance_factor
 from squeezefilm.render.motion.stroke import Stroke
@@ -252,7 +253,7 @@ def test_friction_drags_the_finger_back_and_its_work_is_lost(
     base = display.surface().friction_coefficient
     assert force == pytest.approx(factor * base * 0.5, rel=1e-9)
     skin = column(plant, "skin_x_m")[-1]
-    assert x - skin == pytest.approx(force / 1000.0, rel=1e-3)
+    assert x - skin == pytest.approx(force / FingerpadDynamics().stiffness, rel=1e-3)
     # A pad at rest stays at rest: friction holds it, and does not creep.
     still = Plant(point(), CALM, Hand(Stroke(1e-9, 1e-9), begin=0.0))
     still.advance(1_000_000, 0, carrier())
