@@ -471,7 +471,7 @@ def test_an_uncertain_friction_is_said_and_listed() -> None:
         nominal=0.412, median=0.43, interval=(0.281, 0.549), level=0.9,
         samples=np.array([0.3, 0.7]), amplitudes=np.zeros(2), draws=3,
         influences=(Influence(parameter, 0.1, 0.2, 0.3, 0.4),),
-        groups=(GroupInfluence("measurable", 0.5, 0.7, 0.1),),
+        groups=(GroupInfluence("measurable", 0.5, 0.7, 0.1, 0.1),),
         refused=Refusals(1, 64, Counter({"why": 1}), Counter(), ""), seed=5, model="a-model",
     )  # fmt: skip
     assert found.sentence == "µ′/µ = 0.41 as described (0.28–0.55, median 0.43)"
@@ -482,7 +482,10 @@ def test_an_uncertain_friction_is_said_and_listed() -> None:
         "vibration_amplitude_interval_m": None, "power_W": None, "power_interval_W": None,
         "refused": 1, "refused_why": {"why": 1}, "seed": 5,
         "groups": {
-            "measurable": {"first_order": 0.5, "total_order": 0.7, "total_order_error": 0.1}
+            "measurable": {
+                "first_order": 0.5, "first_order_error": 0.1,
+                "total_order": 0.7, "total_order_error": 0.1,
+            }
         },
         "measure_next": [
             {

@@ -69,6 +69,8 @@ def _claim(**changes: object) -> Claim:
         (_claim(relation="above"), ClaimValue((1.0,)), "does not hold"),
         (_claim(relation="at_least"), ClaimValue((1.0,)), "holds"),
         (_claim(relation="at_most"), ClaimValue((1.1,)), "does not hold"),
+        (_claim(relation="within", printed=(0.8, 0.6)), ClaimValue((0.6, 0.7, 0.8)), "holds"),
+        (_claim(relation="within", printed=(0.8, 0.6)), ClaimValue((0.7, 0.81)), "does not hold"),
         (_claim(relation="above", grounds="sign"), ClaimValue((1.1,)), "sign only"),
         (_claim(relation="above", grounds="sign"), ClaimValue((0.9,)), "does not hold"),
         (_claim(grounds="construction"), ClaimValue((1.0,)), "true by construction"),

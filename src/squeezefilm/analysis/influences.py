@@ -35,13 +35,14 @@ class Influence:
 @dataclass(frozen=True)
 class GroupInfluence:
     """How much of the variance of µ′/µ goes away if all of a group were known (`alone`), and how
-    much would be left if all but the group were (`total`), with the half width of the latter's 95 %
-    confidence interval."""
+    much would be left if all but the group were (`total`), each with the half width of its 95 %
+    confidence interval: no member has more of either, but for these errors and its own."""
 
     knowledge: Knowledge
     alone: si.Dimensionless
     total: si.Dimensionless
     error: si.Dimensionless
+    alone_error: si.Dimensionless
 
 
 def influences_of(
@@ -58,8 +59,8 @@ def influences_of(
         of_a, of_b, with_b = a[there], b[there], with_b[there]
         whole = (of_a - of_b) ** 2
         total, total_error = _ratio((of_a - with_b) ** 2, whole, scale)
-        rest, rest_error = _ratio((of_b - with_b) ** 2, whole)
-        found.append(Influence(item, 1 - rest, rest_error, total, total_error))
+        first = _ratio(_shared((of_a, of_b), with_b), whole)
+        found.append(Influence(item, *first, total, total_error))
     return tuple(sorted(found, key=lambda item: -item.total))
 
 
@@ -82,27 +83,40 @@ def followed(friction: si.DimensionlessArray) -> si.IntArray:
 def groups_of(friction: si.DimensionlessArray) -> tuple[GroupInfluence, ...]:
     """What could be measured, and what nobody knows, of the design's frictions.
 
-    Its last two columns share with A, and with B, what nobody knows; alone is what the other group
-    leaves.
+    Its last two columns share with A, and with B, what nobody knows.
     """
     a, b, like_a, like_b = friction[:, [0, -3, -2, -1]].T
     whole = (a - b) ** 2 + (like_a - like_b) ** 2
     measurable = _ratio((a - like_a) ** 2 + (b - like_b) ** 2, whole)
     unknown = _ratio((b - like_a) ** 2 + (a - like_b) ** 2, whole)
+    # Each way round, A for B.
+    by_itself = [
+        _ratio(_shared((a, b), of_a) + _shared((b, a), of_b), whole)
+        for of_a, of_b in ((like_a, like_b), (like_b, like_a))
+    ]
     return (
-        GroupInfluence("measurable", 1 - unknown[0], *measurable),
-        GroupInfluence("unknown", 1 - measurable[0], *unknown),
+        GroupInfluence("measurable", by_itself[0][0], *measurable, by_itself[0][1]),
+        GroupInfluence("unknown", by_itself[1][0], *unknown, by_itself[1][1]),
     )
+
+
+def _shared(both: tuple[si.FloatArray, si.FloatArray], with_b: si.FloatArray) -> si.FloatArray:
+    """What A with some columns of B has in common with B, beyond what A has: its mean is twice the
+    variance that these columns explain by themselves. Where they explain little its noise is
+    little, which that of 1 less the share of the others is not (Saltelli's of 2010)."""
+    a, b = both
+    return 2 * (b - (np.mean(a) + np.mean(b)) / 2) * (with_b - a)
 
 
 def _ratio(
     part: si.FloatArray, whole: si.FloatArray, scale: float | None = None
 ) -> tuple[float, float]:
-    """Jansen's estimator of a share of the variance, and the half width of its 95 % interval.
+    """A share of the variance, and the half width of its 95 % interval.
 
-    Half the mean square of what differs where only some inputs do over that where all do: as a
-    ratio of the same rows, in which most of the noise cancels. `scale` is the mean of the whole
-    where more rows of it are known. Jansen 1999, 10.1016/S0010-4655(98)00154-4.
+    The mean square of what differs where only some inputs do (Jansen), or what is `_shared`, over
+    the mean square where all differ: as a ratio of the same rows, in which most of the noise
+    cancels. `scale` is the mean of the whole where more rows of it are known. Jansen 1999,
+    10.1016/S0010-4655(98)00154-4; Saltelli et al. 2010, 10.1016/j.cpc.2009.09.018.
     """
     scale = scale or float(np.mean(whole)) or 1.0
     share = float(np.mean(part)) / scale

@@ -119,6 +119,7 @@ class UncertainFriction:
             "groups": {
                 one.knowledge: {
                     "first_order": one.alone,
+                    "first_order_error": one.alone_error,
                     "total_order": one.total,
                     "total_order_error": one.error,
                 }

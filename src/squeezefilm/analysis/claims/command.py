@@ -135,6 +135,10 @@ def _verdict(claim: Claim, found: ClaimValue) -> Verdict:
         if found.alternative is not None and _near(found.alternative, claim):
             return "misprint"
         return "does not reproduce"
+    if claim.relation == "within":
+        least, most = min(claim.printed), max(claim.printed)
+        holds = all(least <= value <= most for value in found.value)
+        return (passed or "holds") if holds else "does not hold"
     compare: dict[str, Callable[[float, float], bool]] = {
         "above": lambda value, bound: value > bound,
         "at_least": lambda value, bound: value >= bound,

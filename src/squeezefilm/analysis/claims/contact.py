@@ -13,6 +13,9 @@ from squeezefilm.analysis.claims.frozen import FROZEN, MODELS
 from squeezefilm.analysis.claims.values import ClaimValue
 from squeezefilm.contact.finger.skin import Skin
 
+# 0.017 atm (Pa).
+_THIN = 0.017 * 101325.0
+
 DIRECTION_VALUES: dict[str, Callable[[str], ClaimValue]] = {}
 
 
@@ -32,13 +35,13 @@ def _direction(
 def _(model: str) -> ClaimValue:
     def left(slip: str, speed: float = FROZEN.speed) -> float:
         at = replace(FROZEN, slip=slip, speed=speed)
-        inside = at.relative_friction(model, ambient_pressure=2e3)
+        inside = at.relative_friction(model, ambient_pressure=_THIN)
         return (1 - inside) / (1 - at.relative_friction(model))
 
     shares = left("fukui-kaneko"), left("veijola")
     if not MODELS[model].film:
         return ClaimValue(shares)
-    path = FROZEN.gas.at_pressure(2e3).mean_free_path
+    path = FROZEN.gas.at_pressure(_THIN).mean_free_path
     return ClaimValue(
         shares,
         note=f"the mean free path is {1e6 * path:.1f} µm there, about as wide as the gap: the laws "

@@ -21,7 +21,8 @@ Verdict = Literal[
     "reachable with parameters of our choice",
     "prediction only",
 ]
-Relation = Literal["equals", "above", "at_least", "at_most"]
+Relation = Literal["equals", "above", "at_least", "at_most", "within"]
+"""How what is computed must stand to what was printed; "within" the range of several measured."""
 Grounds = Literal["compared", "sign", "construction", "our parameters", "prediction"]
 """What a claim that passes is worth: see `VERDICT_OF_GROUNDS`."""
 

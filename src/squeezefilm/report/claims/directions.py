@@ -13,7 +13,7 @@ from squeezefilm.report.claims.prototype import Table
 from squeezefilm.report.kit.model_rows import cited, missed_directions
 
 DIRECTIONS = ("where", "direction", "model", "bound", "found", "verdict")
-_SIGNS = {"equals": "", "above": "> ", "at_least": "≥ ", "at_most": "≤ "}
+_SIGNS = {"equals": "", "above": "> ", "at_least": "≥ ", "at_most": "≤ ", "within": "within "}
 
 
 def plain_claims(results: Iterable[ClaimResult]) -> tuple[ClaimResult, ...]:

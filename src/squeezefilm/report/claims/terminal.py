@@ -31,7 +31,7 @@ _VERDICT_STYLES = {
     "does not reproduce": "yellow",
     "does not hold": "yellow",
 }
-_SIGNS = {"above": "> ", "at_least": "≥ ", "at_most": "≤ "}
+_SIGNS = {"above": "> ", "at_least": "≥ ", "at_most": "≤ ", "within": "within "}
 
 
 def show_claims(result: Reproduction) -> None:
@@ -94,7 +94,11 @@ def _direction_row(item: ClaimResult, *, first: bool) -> tuple[str, ...]:
     return (
         claim.id if first else "",
         claim.model,
-        _values(claim.printed[:1], claim.unit, _SIGNS.get(claim.relation, "")),
+        _values(
+            claim.printed[: None if claim.relation == "within" else 1],
+            claim.unit,
+            _SIGNS.get(claim.relation, ""),
+        ),
         "\n".join(f"{value:.2g}" for value in item.value),
         item.verdict,
     )

@@ -120,7 +120,7 @@ def group_words(one: GroupInfluence) -> str:
     what = {"measurable": "Could be measured", "unknown": "Nobody knows"}[one.knowledge]
     return (
         f"{what}: {100 * one.total:.0f} ± {si.percent(one.error)} of the variance, "
-        f"{si.percent(max(one.alone, 0))} by itself"
+        f"{100 * max(one.alone, 0):.0f} ± {si.percent(one.alone_error)} by itself"
     )
 
 
