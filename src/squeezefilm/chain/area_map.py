@@ -74,8 +74,8 @@ def at_best_place(display: Display, mode: WorkingMode, law: FrictionLaw) -> Fric
 
     One place for all voltages and amplitudes, so that an amplitude, a voltage and a friction stand
     for each other whichever of them was asked for; another voltage may have its lowest friction a
-    little beside it. As it is, over an antinode of an even wave, where the shape is not solved
-    (a beam, a measured stator), or friction is not known.
+    little beside it. As it is, over an antinode of an even wave, where the plate is taken as a
+    beam, or friction is not known.
     """
     if not mode.has_shape or law.kind.film != "shared" or law.kind.limit != "own":
         return law

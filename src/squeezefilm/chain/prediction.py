@@ -43,7 +43,7 @@ class Prediction(Result):
     """What a display does at one voltage, frequency and force on one surface.
 
     The pad is at the best place of the active area (see `at_best_place`), or where it was asked
-    for, on the solved shape of the vibration; where no shape is solved it is over an antinode of a
+    for, on the shape of the vibration; of a plate taken as a beam it is over an antinode of a
     wave whose antinodes are taken to be all alike. `place` is its centre. `amplitude_model` made
     the vibration amplitude (zero-to-peak, at the antinode wherever the finger is, with it on;
     `amplitude_at_place` is that under the pad's centre), `touch` says what the finger took from
@@ -225,7 +225,7 @@ def predict(
     what each of its ridges meets; `place` (x, y in m, from a plate's corner, a disc's middle or
     along a stator's track) puts it elsewhere on that shape, and `position` that far from an
     antinode along a wave whose antinodes are all alike. Such a wave's antinode it is also over
-    where no shape is solved (a beam, a measured stator), or by a model that knows no other place.
+    where a plate is taken as a beam, or by a model that knows no other place.
     `theory` says how a plate is computed; without one it is solved in three dimensions, and taken
     as a beam, with a warning, where its working mode cannot be found so.
     Without a `model`, film and asperities share the load of each ridge (partial levitation), and

@@ -66,8 +66,8 @@ class RenderAnalysis(Result):
         stroke: sensor, commands and envelope; its friction is the one felt, the wave included.
         finger: time and place of the finger.
         wave, factor: what was done about the standing wave, and the amplitude that the pad meets
-            at each step over that centred on an antinode (1); a contact longer than half the wave
-            may meet more off the antinodes.
+            at each step over that where the display's law has its pad (1), the best place or an
+            antinode of an even wave.
         asked: relative friction the texture asks for, whether it can be reached or not (1).
         counters: what the renderer met along the true motion.
         force: tangential force and skin motion along the way.

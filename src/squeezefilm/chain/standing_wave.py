@@ -63,12 +63,18 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
     return WaveCompensation.from_ripple(found.position, reached, inverse, half, along=along)
 
 
+def factor_of_law(p: Prediction, factors: WaveCompensation) -> si.Dimensionless:
+    """The factor of `wave_factors` where the prediction's law has its pad: at the best place, or
+    over an antinode of an even wave."""
+    return 1.0 if p.law.place is not None else float(factors.factor(0.0))
+
+
 @dataclass(frozen=True)
 class UnderPad:
     """The friction that a pad meets at an amplitude, with or without the wave's nodes.
 
-    `friction` is the display's law, that of an antinode; `factors` are the amplitude that the pad
-    meets over that at the best place, and `centred` is theirs at an antinode.
+    `friction` is the display's law; `factors` are the amplitude that the pad meets over that at
+    the best place, and `of_law` is theirs where the law has its pad.
     """
 
     wave: Wave
@@ -76,7 +82,7 @@ class UnderPad:
     felt: FrictionTable
     inverse: FrictionInverse
     factors: WaveCompensation | None
-    centred: float
+    of_law: float
 
     @classmethod
     def of(cls, display: Display, p: Prediction, wave: Wave) -> UnderPad:
@@ -85,12 +91,11 @@ class UnderPad:
         if wave == "ignored":
             return cls(wave, friction, friction, inverse, None, 1.0)
         factors = wave_factors(display, p)
-        # Factors are over the best place, the display's law is that of an antinode.
-        centred = float(factors.factor(0.0))
-        felt = p.law.table(largest / centred)
+        of_law = factor_of_law(p, factors)
+        felt = p.law.table(largest / of_law)
         if wave == "compensated":
-            inverse = felt.inverse(p.law.over_speeds, largest, centred)
-        return cls(wave, friction, felt, inverse, factors, centred)
+            inverse = felt.inverse(p.law.over_speeds, largest, of_law)
+        return cls(wave, friction, felt, inverse, factors, of_law)
 
     @property
     def compensation(self) -> WaveCompensation | None:
@@ -103,7 +108,7 @@ class UnderPad:
         """Relative friction (1) where the renderer asks for amplitudes (m), under a finger at
         speeds (m/s)."""
         if self.wave == "compensated":
-            return self.felt(amplitude / self.centred, speed)
+            return self.felt(amplitude / self.of_law, speed)
         return self.friction(amplitude, speed)
 
     def of_the_skin(
@@ -126,10 +131,10 @@ class UnderPad:
         return SpeedFriction(table.speed[taken], rows)
 
     def factor(self, finger: FingerMotion) -> si.DimensionlessArray:
-        """The amplitude along the way over that of an antinode (1)."""
+        """The amplitude along the way over that where the display's law has its pad (1)."""
         if self.factors is None:
             return np.ones(finger.time.size)
-        return self.factors.factor(finger.x, finger.y) / self.centred
+        return self.factors.factor(finger.x, finger.y) / self.of_law
 
 
 # A study plays many textures under one finger of one display, and all need the same.

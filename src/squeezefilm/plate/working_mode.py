@@ -48,6 +48,9 @@ PlateTheory = Literal["solid", "timoshenko", "euler_bernoulli", "shear"]
 PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
 
 
+MEASURED = "measured_stator"
+"""The model of a stator's mode, which is as it was measured."""
+
 CROWDED: si.Dimensionless = 0.2
 """A mode is crowded if a neighbour adds at least this share of its amplitude at its resonance,
 and hidden if it adds as much as the mode has."""
@@ -93,8 +96,8 @@ class WorkingMode:
 
     @property
     def has_shape(self) -> bool:
-        """Whether the shape of the vibration is solved: not of a beam, nor of a measured stator."""
-        return self.solid is not None or self.disc is not None
+        """Whether the shape over the face is solved, or measured as a stator's is: not of a beam."""
+        return self.solid is not None or self.disc is not None or self.model == MEASURED
 
     @property
     def neighbour(self) -> Neighbour | None:
@@ -160,7 +163,7 @@ def working_mode(
             half_wavelength=actuator.wavelength / 2,
             quality_factor=actuator.quality_factor,
             amplitude_per_volt=actuator.reference_amplitude / actuator.reference_voltage,
-            model="measured_stator",
+            model=MEASURED,
             lobe=(0.0, actuator.radial_width / 2),
         )
     if isinstance(actuator, DiscPlate):

@@ -17,7 +17,7 @@ import numpy as np
 from squeezefilm.chain.friction_table import FrictionTable
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.rendered_texture import lowered
-from squeezefilm.chain.standing_wave import resonance_with_finger, wave_factors
+from squeezefilm.chain.standing_wave import factor_of_law, resonance_with_finger, wave_factors
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.formats.pictures import picture_from
@@ -115,7 +115,7 @@ def feel(asked: TextureOnDisplay) -> dict[str, Any]:
         found = factors.factor(0.0, along) if across else factors.factor(along, 0.0)
         wave = {
             "period_m": 2 * p.mode.half_wavelength,
-            "factor": (found / found[0]).tolist(),
+            "factor": (found / factor_of_law(p, factors)).tolist(),
             "along": "y" if across else "x",
         }
     pad = display.finger.fingerpad
