@@ -190,6 +190,7 @@ def working_mode(
     )
 
 
+@si.checked_numbers
 def solid_working_mode(
     plate: RectangularPlate, solid: SolidMode, label: tuple[int, int] | None = None
 ) -> WorkingMode:

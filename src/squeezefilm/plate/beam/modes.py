@@ -132,6 +132,7 @@ def _determinant(
     return (alpha**2 + m) * alpha * c * th + (m - beta**2) * s * beta
 
 
+@si.checked_numbers
 def require_nodal_lines(nodal_lines: int) -> None:
     """Raises `InputError` for a number of nodal lines that no bending mode of a free beam has, or
     that is too large to be meant."""

@@ -34,11 +34,13 @@ def line_counts(shape: si.FloatArray, x: si.MetreArray, y: si.MetreArray) -> tup
     return zero_crossings(x, along).size, zero_crossings(y, across).size
 
 
+@si.checked_numbers
 def within_nodes(
     position: si.MetreArray, nodes: si.MetreArray
 ) -> np.ndarray[tuple[int], np.dtype[np.bool]]:
     """Which places lie between the outermost of some nodal lines, all where there are fewer than
     two: free ends move further than any finger meets."""
+    si.require("nodes", nodes, si.Unit("m"), axes=1)
     if nodes.size < 2:
         return np.ones(position.size, dtype=bool)
     return np.asarray((position > nodes[0]) & (position < nodes[-1]))

@@ -52,6 +52,7 @@ class DrivenMode:
         return Moving(self.name, self.frequency, half, self.alone_per_volt)
 
 
+@si.checked_numbers
 def label_name(label: Label | None) -> str:
     """Nodal lines across length and width as people write them, "(8,0)"."""
     return "in plane" if label is None else f"({label[0]},{label[1]})"
