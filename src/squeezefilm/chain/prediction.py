@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import functools
+import math
 import warnings
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -131,7 +132,10 @@ class Prediction(Result):
         at, where = self.law.place, place_words(self.place)
         if at is not None:
             which = "the best place of the active area, " if at.is_best_of_area else ""
-            return f"at {which}{where}, where the face moves {1e6 * self.amplitude_at_place:.3g} µm"
+            moves = f"the face moves {1e6 * self.amplitude_at_place:.3g} µm"
+            if at.at_centre**2 < self.law.mean_square:
+                moves = f"the pad meets {1e6 * self.amplitude_under_pad:.3g} µm r.m.s."
+            return f"at {which}{where}, where {moves}"
         if self.law.position:
             return f"{1e3 * self.law.position:.4g} mm along the wave from the antinode, {where}"
         half = f"{1e3 * self.mode.half_wavelength:.3g} mm"
@@ -143,6 +147,12 @@ class Prediction(Result):
         at = self.law.place
         return self.vibration_amplitude * (1.0 if at is None else at.at_centre)
 
+    @property
+    def amplitude_under_pad(self) -> si.Metre:
+        """The amplitude (m, zero-to-peak) that the pad meets with the finger on, its root mean
+        square over the contact."""
+        return self.vibration_amplitude * math.sqrt(self.law.mean_square)
+
     def place_summary(self) -> dict[str, Any]:
         """What JSON has under `place`; keys carry units."""
         return {
@@ -151,6 +161,7 @@ class Prediction(Result):
             "is_best_of_area": self.law.place is not None and not self.place_was_asked,
             "is_on_even_wave": self.law.place is None,
             "amplitude_m": self.amplitude_at_place,
+            "amplitude_under_pad_m": self.amplitude_under_pad,
             "said": self.place_said,
         }
 

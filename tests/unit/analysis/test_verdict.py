@@ -44,7 +44,7 @@ def findings(*about: Any) -> tuple[Finding, ...]:
 
 @pytest.fixture(scope="module")
 def point() -> Prediction:
-    return predict(STATOR)
+    return predict(STATOR, position=0.0)
 
 
 def curve(needed: float | None, surface: str = "adhesive", model: str = SHARED) -> FrictionCurve:

@@ -19,8 +19,8 @@ from squeezefilm.chain.rendered_texture import (
     render_texture,
 )
 from squeezefilm.chain.standing_wave import WAVES, UnderPad, wave_factors
-from squeezefilm.contact.sliding.dry_friction import SpeedFriction
 from squeezefilm.contact.finger.fingertip import EXPLORING_SPEED
+from squeezefilm.contact.sliding.dry_friction import SpeedFriction
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.render.fidelity.report import strongest_lines

@@ -88,9 +88,9 @@ def vibration_rows(p: Prediction) -> list[Row]:
         kept = "the finger is taken to change nothing: no modal mass is known"
     held, under_finger = shown(p.vibration_amplitude, M, 3), list[Row]()
     # A finger at the antinode has that amplitude: no number is printed twice.
-    if place is not None and (under := shown(p.amplitude_at_place, M, 3)) != held:
-        where = f"where it is, at {place_words(p.place)}"
-        under_finger = [("Amplitude under the finger", under, where)]
+    if place is not None and shown(p.amplitude_at_place, M, 3) != held:
+        where = f"r.m.s. over its contact, at {place_words(p.place)}"
+        under_finger = [("Amplitude under the finger", shown(p.amplitude_under_pad, M, 3), where)]
     return [
         ("Resonance frequency", shown(mode.resonance_frequency, HZ), _solved(mode)),
         drive,

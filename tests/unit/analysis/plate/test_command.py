@@ -63,8 +63,8 @@ class Modes:
 
     resolution, coarseness = NORMAL, ""
 
-    def half_wavelength(self, mode: int) -> float:
-        return [20e-3, math.nan, 16e-3][mode]
+    def nodal_positions(self, mode: int) -> Any:
+        return np.array([[0.0, 20e-3], [], [0.0, 16e-3]][mode])
 
 
 class Response:
