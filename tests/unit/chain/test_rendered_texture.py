@@ -153,7 +153,7 @@ def test_a_compensated_wave_leaves_an_even_texture_even() -> None:
     felt = made(EVEN, motion, wave="felt").stroke.relative_friction_rendered
     rendered = friction.stroke.relative_friction_rendered
     # What the wave leaves was found at the prediction's amplitude, and the texture asks for less.
-    assert rendered == pytest.approx(0.85, abs=5e-3)
+    assert rendered == pytest.approx(0.85, abs=7e-3)
     assert np.ptp(rendered) < np.ptp(felt) / 4
     assert friction.asked == pytest.approx(0.85)
     assert friction.stroke.relative_friction_wanted == pytest.approx(0.85, abs=1e-3)
