@@ -167,7 +167,7 @@ NOT_CALLED = {
     film.periodic.solution.assembled
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """
-    contact.sharing.gas_table.FilmTable.build contact.sharing.film_panels.Panel
+    contact.sharing.gas_table.FilmTable.build
     contact.sharing.film_panels.Panel.at contact.sharing.film_panels.Panel.films
     contact.sharing.film_panels.Panel.octave_solved contact.sharing.film_panels.Panel.solved
     plate.solid.volume.PlateVolume.displacement plate.solid.volume.PlateVolume.potential
