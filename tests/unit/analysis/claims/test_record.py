@@ -46,7 +46,7 @@ def test_a_claim_is_asked_once_of_a_model() -> None:
 def test_a_prediction_has_nothing_to_be_compared_with() -> None:
     (prediction,) = (one for one in CLAIMS if one.grounds == "prediction")
     assert prediction.printed == ()
-    assert "have not been compared" in prediction.why
+    assert "has not been compared" in prediction.why
 
 
 def test_what_a_model_misses_is_what_was_measured_and_does_not_hold() -> None:
