@@ -111,7 +111,7 @@ def test_a_friction_has_its_interval_its_shares_and_what_to_measure_next(tmp_pat
     [
         (("--samples", "10"), "power of two"),
         (("--wanted", "1.5"), "at most 1"),
-        (("--wanted", "0.01"), "at the least"),
+        (("--wanted", "0.005"), "at the least"),
         (("--ambient-pressure", "0 Pa"), "at least"),
         (("--force", "500 N"), "pressed through"),
     ],

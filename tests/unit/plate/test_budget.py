@@ -18,6 +18,12 @@ from squeezefilm.plate.solid.working import solid_mode
 from squeezefilm.progress import Pace
 
 
+@pytest.fixture(autouse=True)
+def nothing_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is kept on disk takes no time, so that no budget is too small for it."""
+    monkeypatch.setenv("SQUEEZEFILM_CACHE", "off")
+
+
 @pytest.fixture(scope="module")
 def display() -> Display:
     return load_display("biet2008-plate")
