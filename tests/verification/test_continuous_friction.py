@@ -73,7 +73,9 @@ def test_at_a_slow_finger_it_is_steep_and_has_no_steps(display: str, quantity: s
 
 def test_a_stator_under_a_slow_finger_rises_evenly_from_035_to_040_newtons() -> None:
     """Where two whole ridges came in, from 0.032 to 0.100."""
-    law = predict(load_display("biet2008-stator"), vibration_amplitude=2e-6, speed=0.005).law.on_even_wave
+    law = predict(
+        load_display("biet2008-stator"), vibration_amplitude=2e-6, speed=0.005
+    ).law.on_even_wave
     forces = np.linspace(0.35, 0.40, 26)
     friction = [dataclasses.replace(law, normal_force=float(force)).at(2e-6) for force in forces]
     rises = np.diff(friction)
