@@ -63,7 +63,7 @@ def _require_held(found: Found, seed: int) -> None:
 
 
 def test_a_few_mutated_files_are_refused_or_done(tmp_path: Path) -> None:
-    found = [tried(number, SEED, tmp_path) for number in range(90)]
+    found = [tried(number, SEED, tmp_path) for number in range(45)]
     for one in found:
         _require_held(one, SEED)
     # A gate through which nothing passes would show nothing.

@@ -93,6 +93,7 @@ def test_a_cache_is_used_until_something_changes(tmp_path: Path) -> None:
     assert answer(tmp_path, "elsewhere", step=3, factor=5) == "35.0 1"
 
 
+@pytest.mark.slow
 def test_a_constant_of_a_module_and_a_records_fields_are_asked_too(tmp_path: Path) -> None:
     assert answer(tmp_path) == "12.0 0"
     # Read as `at.SHIFT`, in a file of which no function is called.

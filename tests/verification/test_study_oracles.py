@@ -1,4 +1,5 @@
-"""Fits, placements and population models against other people's programs, on twenty data sets each.
+"""Fits, placements and population models against other people's programs, on twenty data sets each
+(five of those that take seconds, twenty at night).
 
 psignifit and questplus are GPL, and oracles of these tests only. Each test prints the largest
 difference that it found.
@@ -29,6 +30,9 @@ from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.two_interval import QUARTILE, differences, on_grid
 
 SETS = range(20)
+FEW = pytest.mark.parametrize(
+    "seeds", [SETS[:5], pytest.param(SETS, marks=pytest.mark.nightly)], ids=["five", "twenty"]
+)
 LEVELS = np.arange(1.0, 9.0)
 NORMAL_TAIL = 1.6448536269514722
 
@@ -79,13 +83,14 @@ def test_twenty_fits_agree_with_psignifit() -> None:
     assert worst["interval"] < 0.08
 
 
-def test_twenty_runs_choose_as_questplus_does() -> None:
+@FEW
+def test_runs_choose_as_questplus_does(seeds: range) -> None:
     questplus = pytest.importorskip("questplus", reason="questplus is not installed (GPL oracle)")
     stimuli = tuple(np.linspace(0.0, 10.0, 21).tolist())
     prior = PsychometricPrior((1.0, 9.0), (0.5, 12.0))
     cells = (15, 9, 4)
     choices, same, worst = 0, 0, 0.0
-    for seed in SETS:
+    for seed in seeds:
         random = np.random.default_rng(seed)
         truth = PsychometricFunction(
             "gaussian", random.uniform(3, 7), random.uniform(1.5, 6), 0.5, 0.02
@@ -242,11 +247,12 @@ def answered_as_one(main):  # type: ignore[no-untyped-def]
 
 # It says so where the spread over people of the slope is next to none.
 @pytest.mark.filterwarnings("ignore::UserWarning")
-def test_twenty_exponents_agree_with_a_linear_mixed_model() -> None:
+@FEW
+def test_exponents_agree_with_a_linear_mixed_model(seeds: range) -> None:
     pandas = pytest.importorskip("pandas")
     formula = pytest.importorskip("statsmodels.formula.api")
     worst, ratios = 0.0, []
-    for seed in SETS:
+    for seed in seeds:
         random = np.random.default_rng([6, seed])
         main = answered(DESIGNS["magnitude"], [somebody(random) for _ in range(10)], random).main(0)
         _, pooled, _ = exponents(main, 0.95)

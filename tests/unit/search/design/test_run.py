@@ -35,7 +35,9 @@ def by_formula(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def _search(folder: Path | None = None, **changes: int) -> DesignSearch:
-    asked = {"screened": 400, "solved": 60, "seed": 1} | changes
+    # What a folder keeps shows in a search that is too small for a good front.
+    size = {"screened": 400, "solved": 60} if folder is None else {"screened": 150, "solved": 24}
+    asked = size | {"seed": 1} | changes
     return run.search_designs(requirements(), out=folder, **asked)  # type: ignore[arg-type]
 
 
@@ -136,7 +138,7 @@ def test_a_search_that_was_stopped_goes_on(
     )
     assert (stopped.stopped, why) == (True, "stopped")
     monkeypatch.setattr(run, "evaluate_all", evaluated_by_formula)
-    found = _search(tmp_path)
+    found = _search(tmp_path, screened=400, solved=60)
     assert not found.stopped
     assert [one.evaluated for one in found.front] == [one.evaluated for one in whole.front]
 
