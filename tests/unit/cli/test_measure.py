@@ -24,7 +24,7 @@ from squeezefilm.chain.prediction import predict
 from squeezefilm.cli.measure import check, fit
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
 from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
-from squeezefilm.measure.fits.friction.friction_scores import BASELINES
+from squeezefilm.measure.fits.friction.friction_scores import SHAPES
 
 StandsIn = Callable[..., Any]
 
@@ -160,7 +160,7 @@ def test_a_synthetic_curve_in_a_folder_is_nearest_to_the_model_that_made_it(
     (found,) = json.loads(done.stdout)["curves"]
     assert found["models"][0]["model"] == "partial-levitation"
     assert found["models"][0]["rms_difference"] == pytest.approx(0, abs=1e-8)
-    assert len(found["models"]) == len(MODEL_KINDS) + len(BASELINES)
+    assert len(found["models"]) == len(MODEL_KINDS) + len(SHAPES)
     assert found["interval"]["points_asked"] == 5
     page = (tmp_path / "out" / "measured-curves.html").read_text(encoding="utf-8")
     assert "synthetic, by partial levitation" in page

@@ -12,7 +12,7 @@ from squeezefilm import quantities as si
 from squeezefilm.chain.friction_models import DEFAULT_MODEL
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
-from squeezefilm.measure.fits.friction.friction_scores import BASELINES
+from squeezefilm.measure.fits.friction.friction_scores import NO_PHYSICS
 from squeezefilm.measure.fits.friction.populations import PopulationComparison
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
@@ -39,8 +39,8 @@ PEOPLE_HEAD = ("model", "value", "share of measured below")
 FITTED = (
     "'Off by' is the root mean square of measured less computed friction, over one friction at "
     "rest that knows no model (the line through the first three points). The friction at rest is "
-    "fitted to each curve, whatever the model; of a baseline without physics the decay amplitude "
-    "too. Nothing else is fitted."
+    "fitted to each curve, whatever the model; of gaussian, exponential and levitation-2016 one "
+    "amplitude too. Nothing else is fitted."
 )
 SCORES = (
     "Each finger counts once, and so does each paper whose fingers are not told apart. The log "
@@ -51,7 +51,7 @@ SCORES = (
 
 
 def model_rows(compared: CurveComparison) -> list[tuple[str, ...]]:
-    """The models and baselines, the nearest first: how far each is off."""
+    """The models and shapes, the nearest first: how far each is off."""
     return [
         (
             _model_words(score.model),
@@ -99,7 +99,7 @@ def _valued(value: float, unit: str) -> str:
 
 
 def _model_words(model: str) -> str:
-    if model in BASELINES:
+    if model in NO_PHYSICS:
         return f"{model} (no physics)"
     return f"{model} (the default)" if model == DEFAULT_MODEL else model
 
@@ -179,7 +179,7 @@ def comparison_figure(compared: CurveComparison) -> Figure:
         look = strong.get(score.model, style.GUIDE)
         label = score.model if score.model in strong else None
         axes.plot(amplitude, score.friction, **look, label=label)
-    axes.plot([], [], **style.GUIDE, label="other models and baselines")
+    axes.plot([], [], **style.GUIDE, label="other models and shapes")
     measured_points(axes, curve)
     style.legend_beside(axes)
     return figure
@@ -277,7 +277,7 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
         body += picture_sections({f"curve-{number}": (told.name, figure)})
     files["measured-curves.html"] = page(
         "Measured friction", "Measured friction",
-        "beside every model, beside baselines without physics, and beside our interval", body,
+        "beside every model, beside fitted shapes, and beside our interval", body,
         stamped(summary_stamp, "SHA-256 of curves and answers"),
     )  # fmt: skip
     write_folder(folder, files)

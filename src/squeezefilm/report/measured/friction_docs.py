@@ -28,7 +28,7 @@ _HEAD = f"""# Published friction
 
 Written by `squeezefilm reproduce --data published --write-docs`; do not edit. Published
 measurements of fingers on ultrasonic plates that could be read, beside every model of friction and
-beside two shapes without physics.
+beside two shapes without physics and the published levitation model of 2016.
 
 {FITTED}
 

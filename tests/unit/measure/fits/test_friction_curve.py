@@ -13,7 +13,7 @@ from squeezefilm.chain.prediction import predict
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison, compare_friction_curve
-from squeezefilm.measure.fits.friction.friction_scores import BASELINES
+from squeezefilm.measure.fits.friction.friction_scores import SHAPES
 from squeezefilm.measure.recordings.kinds import FrictionCurve, Told
 
 AMPLITUDE = np.linspace(0.0, 2e-6, 9)
@@ -42,7 +42,7 @@ def compared() -> CurveComparison:
 
 @pytest.mark.slow
 def test_every_model_is_compared_and_the_maker_is_nearest(compared: CurveComparison) -> None:
-    assert {score.model for score in compared.models} == {*MODEL_KINDS, *BASELINES}
+    assert {score.model for score in compared.models} == {*MODEL_KINDS, *SHAPES}
     assert compared.nearest.model == "partial-levitation"
     for score in compared.models:
         off = np.sqrt(np.mean((compared.curve.friction - score.friction) ** 2))

@@ -10,11 +10,11 @@ from scipy.stats import norm
 
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.friction.friction_scores import (
-    BASELINES,
-    baseline_scores,
+    SHAPES,
     fitted_shape,
     rest_friction,
     scored,
+    shape_scores,
     total_scores,
 )
 from squeezefilm.measure.recordings.kinds import FrictionCurve, Told
@@ -37,13 +37,13 @@ def curve(friction: np.ndarray, finger: str = "a", **more: float) -> FrictionCur
     )
 
 
-@pytest.mark.parametrize("baseline", BASELINES)
-def test_a_baseline_finds_the_decay_that_made_a_curve(baseline: str) -> None:
-    made = 0.37 * BASELINES[baseline](AMPLITUDE / 0.83e-6)
-    decay, shape = fitted_shape(baseline, AMPLITUDE, made)
+@pytest.mark.parametrize("name", SHAPES)
+def test_a_shape_finds_the_amplitude_that_made_a_curve(name: str) -> None:
+    made = 0.37 * SHAPES[name](AMPLITUDE / 0.83e-6)
+    decay, shape = fitted_shape(name, AMPLITUDE, made)
     assert decay == pytest.approx(0.83e-6, rel=1e-5)
     assert 0.37 * shape == pytest.approx(made, rel=1e-4)
-    score = next(one for one in baseline_scores(curve(made)) if one.model == baseline)
+    score = next(one for one in shape_scores(curve(made)) if one.model == name)
     assert score.fitted == 2
     assert score.difference == pytest.approx(0.0, abs=1e-5)
 

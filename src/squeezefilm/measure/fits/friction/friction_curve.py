@@ -18,11 +18,11 @@ from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError, SqueezefilmError
 from squeezefilm.measure.fits.estimate import Adequacy, Observation
 from squeezefilm.measure.fits.friction.friction_scores import (
-    BASELINES,
+    SHAPES,
     ModelScore,
-    baseline_scores,
     rest_friction,
     scored,
+    shape_scores,
 )
 from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.progress import SayProgress
@@ -33,8 +33,8 @@ _SAMPLES = 64
 
 @dataclass(frozen=True, eq=False)
 class CurveComparison:
-    """A measured curve beside all models and baselines, of which its friction at rest alone was
-    fitted to it (of a baseline the decay too).
+    """A measured curve beside all models and shapes, of which its friction at rest alone was
+    fitted to it (of `SHAPES` an amplitude too).
 
     `models` have the nearest first; `at_rest` is the friction at rest that knows no model, in the
     curve's unit, by which `band`, the interval in which our default expects µ′/µ with everything
@@ -58,7 +58,7 @@ class CurveComparison:
     @property
     def nearest(self) -> ModelScore:
         """The model with the least difference among those that answer at every amplitude."""
-        return next(score for score in self.models if score.model not in BASELINES)
+        return next(score for score in self.models if score.model not in SHAPES)
 
     @property
     def default(self) -> ModelScore:
@@ -191,7 +191,7 @@ def compare_friction_curve(
         band = friction_band(display, prediction, amplitude[here], samples=_SAMPLES)
         low[here], high[here] = band.low, band.high
     scores = [scored(model, friction[model], curve) for model in MODEL_KINDS]
-    scores += baseline_scores(curve)
+    scores += shape_scores(curve)
     scores.sort(key=lambda score: (score.answered < count, score.difference or 0.0))
     relative = curve.friction / at_rest
     inside = tuple(

@@ -1,5 +1,5 @@
-"""How near a model comes to measured friction: a score that no normalisation decides, and
-baselines without physics.
+"""How near a model comes to measured friction: a score that no normalisation decides, beside
+shapes of which one amplitude is fitted.
 
 The friction at rest is fitted to each curve, whatever the model: an extrapolated one differs by
 25 to 35 % between models and would decide in place of the shape. Differences are over one friction
@@ -15,21 +15,25 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from squeezefilm import quantities as si
+from squeezefilm.contact.sharing.levitation import levitation_friction
 from squeezefilm.errors import InputError
 from squeezefilm.measure.recordings.kinds import FrictionCurve
 
 _FIRST_POINTS = 3
-BASELINES: Mapping[str, Callable[[si.FloatArray], si.FloatArray]] = {
+NO_PHYSICS = ("gaussian", "exponential")
+SHAPES: Mapping[str, Callable[[si.FloatArray], si.FloatArray]] = {
     "gaussian": lambda over: np.exp(-(over**2) / 2),
     "exponential": lambda over: np.exp(-over),
+    "levitation-2016": levitation_friction,
 }
-"""Shapes without physics over the amplitude in units of a decay amplitude, which is fitted."""
+"""Shapes over the amplitude in units of one that is fitted: those of `NO_PHYSICS`, and the
+published levitation model without a gap at rest."""
 
 
 @dataclass(frozen=True, eq=False)
 class ModelScore:
-    """One model beside a curve, with `fitted` numbers fitted to it: the friction at rest, and of a
-    baseline the decay amplitude too.
+    """One model beside a curve, with `fitted` numbers fitted to it: the friction at rest, and of
+    `SHAPES` the amplitude too.
 
     `friction` is the model's at the curve's amplitudes and in its unit, shape (points,), NaN where
     the model refuses one. `difference` is the root mean square of measured less computed over the
@@ -95,21 +99,21 @@ def scored(
     return _score(model, 1, _scaled(relative_friction, curve.friction), curve)
 
 
-def baseline_scores(curve: FrictionCurve) -> tuple[ModelScore, ...]:
-    """The scores of `BASELINES`."""
+def shape_scores(curve: FrictionCurve) -> tuple[ModelScore, ...]:
+    """The scores of `SHAPES`."""
     scores = []
-    for name in BASELINES:
+    for name in SHAPES:
         _, shape = fitted_shape(name, curve.vibration_amplitude, curve.friction)
         scores.append(_score(name, 2, _scaled(shape, curve.friction), curve))
     return tuple(scores)
 
 
 def fitted_shape(
-    baseline: str, amplitude: si.MetreArray, friction: si.FloatArray
+    name: str, amplitude: si.MetreArray, friction: si.FloatArray
 ) -> tuple[si.Metre, si.DimensionlessArray]:
-    """The decay amplitude (m) of a baseline by least squares, with the friction at rest free, and
-    the shape (points,) that it gives."""
-    shape, largest = BASELINES[baseline], float(np.max(amplitude))
+    """The amplitude (m) that a shape of `SHAPES` is over, by least squares with the friction at
+    rest free, and the relative friction (points,) that it gives."""
+    shape, largest = SHAPES[name], float(np.max(amplitude))
 
     def error(log_decay: float) -> float:
         model = _scaled(shape(amplitude / np.exp(log_decay)), friction)
