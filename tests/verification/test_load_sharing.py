@@ -19,7 +19,6 @@ from squeezefilm.contact.asperities import (
 )
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.sharing import film_panels
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.film_panels import DEEPEST_EXCURSION
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
@@ -30,9 +29,7 @@ from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.film.gap import PaperGap, squeeze_number
-from squeezefilm.film.periodic.batch import solve_films
 from squeezefilm.film.periodic.film import solve_uniform
-from squeezefilm.kept.folder import CACHE_VARIABLE
 from squeezefilm.materials import Gas
 
 GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)
@@ -120,24 +117,6 @@ def test_tables_across_frequencies_are_within_their_bound(slip: str) -> None:
         solved = over_pressure_solved(table, u, eps, 1e-5)
         assert found == pytest.approx(1e5 * solved, rel=table.relative_error)
         assert 0 < table.relative_error <= table.tolerance
-
-
-def test_tables_across_frequencies_solve_films_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    counted = list[int]()
-
-    def counting(squeeze_number: np.ndarray, *args: object, **named: object) -> object:
-        counted.append(squeeze_number.size)
-        return solve_films(squeeze_number, *args, **named)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(film_panels, "solve_films", counting)
-    monkeypatch.setenv(CACHE_VARIABLE, "off")
-    film_panels._octave.cache_clear()
-    counts = []
-    for frequency in np.linspace(30e3, 50e3, 30):
-        film_table(float(frequency), 251e-6, GAS, "second").over_pressure(2e-6, 1e-6)
-        counts.append(sum(counted))
-    # Two octaves of the slip length, where their border lies between.
-    assert len(set(counts)) <= 2
 
 
 @pytest.mark.parametrize(

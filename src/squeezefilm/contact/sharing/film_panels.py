@@ -1,13 +1,11 @@
 """Panels of the film table: their films, solved, kept, and shipped for the range that people use.
 
 A panel depends on gas, width and frequency through the slip length Λ/ℓ alone, and smoothly (see
-`gas_table`): it is solved at Chebyshev nodes of each octave of Λ/ℓ and interpolated between them,
-which errs by some 1e-5 of the over-pressure. So all plates, fingers and draws share some hundred
-panels. Those of usual laws at their tolerance for .002 < Λ/ℓ < .0625 come with the package
-(`tools/film_panels.py` writes them): plateaus of 100 to 500 µm at 20 to 100 kHz in air. Others are
-solved when first asked for, and kept (`kept.store`). A slip law with joints is not smooth, and a
-tolerance near the error of the interpolation leaves no room for it: such panels are solved at
-their own Λ/ℓ.
+`gas_table`). Those of usual laws at their tolerance for .002 < Λ/ℓ < .0625 come with the package
+(`tools/film_panels.py` writes them): plateaus of 100 to 500 µm at 20 to 100 kHz in air. They are
+solved at Chebyshev nodes of each octave of Λ/ℓ and interpolated between them, which errs by some
+1e-5 of the over-pressure. Others are solved at their own Λ/ℓ when first asked for, and kept
+(`kept.store`).
 """
 
 from __future__ import annotations
@@ -44,7 +42,6 @@ SHIPPED_PANELS: Mapping[str, tuple[int, ...]] = {
 SHIPPED_DIGITS = 7
 """The decimals of their coefficients, which are of logarithms."""
 
-_FINEST: si.Dimensionless = 1e-4  # the smallest tolerance that leaves room for the interpolation
 _PLACES = 0.5 * (1.0 - np.cos(np.pi * np.arange(5) / 4))
 _POWERS = np.arange(_PLACES.size)
 _TO_POWERS = np.linalg.inv(_PLACES[:, None] ** _POWERS)
@@ -62,11 +59,11 @@ class Panel(NamedTuple):
     def at(self, slip_length: si.Dimensionless) -> si.FloatArray:
         """The coefficients of the panel's three quantities at Λ/ℓ, and the bound on their relative
         error. Raises `ConvergenceError` for films that are not solved."""
-        if self.slip not in SMOOTH_LAWS or self.tolerance < _FINEST:
+        octave, place = divmod(float(np.log2(slip_length)), 1.0)
+        known = _shipped().get((int(octave), self))
+        if known is None:
             asked = repr((slip_length.hex(), *self))
             return _PANELS.found(asked, lambda: self.solved(slip_length))
-        octave, place = divmod(float(np.log2(slip_length)), 1.0)
-        known = _octave(int(octave), self)
         return np.append(
             (place**_POWERS @ _TO_POWERS) @ known[:-1].reshape(_POWERS.size, -1), known[-1]
         )
@@ -156,15 +153,6 @@ def _coefficients(values: si.FloatArray) -> si.FloatArray:
             ends[axis] = slice(end, end + 1)
             result[tuple(ends)] *= 0.5
     return np.ascontiguousarray(result)
-
-
-@lru_cache(maxsize=2048)
-def _octave(octave: int, panel: Panel) -> si.FloatArray:
-    """As `Panel.octave_solved`, from what is shipped or kept where it is there."""
-    shipped = _shipped().get((octave, panel))
-    if shipped is not None:
-        return shipped
-    return _PANELS.found(repr((octave, *panel)), lambda: panel.octave_solved(octave))
 
 
 @lru_cache(maxsize=1)
