@@ -56,9 +56,15 @@ class Held:
             self.page.send(text)
 
 
+@pytest.fixture
+def nothing_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plate that another test has solved would be there before its progress is."""
+    monkeypatch.setenv("SQUEEZEFILM_CACHE", "off")
+
+
 @pytest.mark.slow
 def test_numbers_of_an_older_design_are_grey_until_replaced(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, nothing_kept: None, running_lab: RunningLab
 ) -> None:
     held = Held()
     held.qualities = {"solved"}

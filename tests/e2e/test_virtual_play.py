@@ -85,10 +85,11 @@ def test_a_grating_is_felt_where_it_is(
             f"{judged.way.source}: kept {found.contrast_kept.round(3)}, lag "
             f"{1e3 * found.lag:.3f} mm, error {found.rms_error:.3f}"
         )
-        # The envelope alone keeps 98.9 % of a 4 mm grating at 60 mm/s; 0.56 ms of it are 34 um. In
-        # truth the skin is for a while faster or slower than the finger at each edge, and its
-        # friction is that at its own speed.
-        assert found.contrast_kept[0] > (0.97 if judged is session.by_record else 0.96)
+        # The envelope alone keeps 98.9 % of a 4 mm grating at 60 mm/s; 0.56 ms of it are 34 um.
+        # A finger takes most at small amplitudes, so that each rise begins slowly. In truth the
+        # skin is for a while faster or slower than the finger at each edge, and its friction is
+        # that at its own speed.
+        assert found.contrast_kept[0] > 0.93
         assert 0.0 < found.lag < 0.1e-3
     assert session.position_error is not None
     assert session.position_error < 50e-6

@@ -102,8 +102,10 @@ def test_the_map_is_the_solved_response_to_rounding_and_its_splines_follow() -> 
     assert scaled == pytest.approx(whole, rel=1e-10, abs=1e-10 * whole.max())
     # Beside the knots the splines miss by less than a thousandth of the best antinode.
     rng = np.random.default_rng(5)
-    at = np.sort(rng.uniform(0, 0.083, 60)), np.sort(rng.uniform(0, 0.049, 60))
-    assert at(shape, at[0][:, None], at[1][None, :]) == pytest.approx(shape.grid(*at), abs=1e-3)
+    places = np.sort(rng.uniform(0, 0.083, 60)), np.sort(rng.uniform(0, 0.049, 60))
+    assert at(shape, places[0][:, None], places[1][None, :]) == pytest.approx(
+        shape.grid(*places), abs=1e-3
+    )
 
 
 @pytest.mark.slow
