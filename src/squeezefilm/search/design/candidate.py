@@ -161,7 +161,7 @@ def evaluate(requirements: Requirements, design: Design, level: Level) -> Evalua
         # One design of thousands: a fault of ours is told, and the others are not lost.
         reason = f"not foreseen: {type(error).__name__}: {error}"
         return Evaluated(design, level, {}, reason=reason, seconds=_since(began), lasting=False)
-    if found is not None and found.mode.solid is None:
+    if found is not None and not found.mode.has_shape:
         return Evaluated(design, level, {}, reason=found.objections[-1], seconds=_since(began))
     return Evaluated(
         design,

@@ -40,9 +40,8 @@ def reference_of(requirements: Requirements) -> Evaluated:
     )
     try:
         found = predict(display, voltage=requirements.drive.voltage)
-        if found.mode.solid is None:
-            given = (f"'{display.name}' is no plate that was solved", *found.objections)
-            return _not_judged(given[-1])
+        if not found.mode.has_shape:
+            return _not_judged(found.objections[-1])
         numbers = numbers_of_prediction(requirements, display, found)
         numbers |= numbers_of_solved(requirements, display, found)
     except SqueezefilmError as error:

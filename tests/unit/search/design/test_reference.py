@@ -24,6 +24,14 @@ def test_the_papers_plate_is_judged_by_the_questions_of_the_search() -> None:
     assert found.broken == ()
 
 
+def test_a_disc_is_judged_too() -> None:
+    wanted = requirements(**{'compare_with = ""': 'compare_with = "winfield2007-tpad"'})
+    found = reference_of(wanted)
+    p = predict("winfield2007-tpad")
+    assert found.reason == ""
+    assert found.numbers["resonance_frequency"] == pytest.approx(p.mode.resonance_frequency)
+
+
 def test_a_reference_that_cannot_be_judged_says_why_and_nothing_beats_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
