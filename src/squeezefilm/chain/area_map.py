@@ -153,18 +153,16 @@ def _met(
 ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
     """What the points of pads meet at places of a grid, with weights: both (places, points)."""
     x, y = axes
-    if shape.along == "x":
-        dx, dy, length, width = points[:4]
-    else:
-        dy, dx, width, length = points[:4]
-    (across, by_x), (along, by_y) = (np.unique(one, return_index=True) for one in (dx, dy))
+    dx, dy, length, width = points.on_axes(shape.along)
+    across, by_x = np.unique(dx, return_index=True)
+    along, by_y = np.unique(dy, return_index=True)
     if at.shape[0] == x.size * y.size and across.size * along.size == dx.size:
         # Ridges along an axis, under every place of a grid: their points are a grid too.
         found, covered = (
-            one.reshape(x.size, across.size, y.size, along.size)
+            values.reshape(x.size, across.size, y.size, along.size)
             .transpose(0, 2, 1, 3)
             .reshape(at.shape[0], -1)
-            for one in shape.under_grid(
+            for values in shape.under_grid(
                 (x[:, None] + across).ravel(),
                 (y[:, None] + along).ravel(),
                 np.tile(length[by_x], x.size),
@@ -176,8 +174,10 @@ def _met(
         return found, weights / np.sum(weights, axis=1, keepdims=True)
     parts = np.array_split(at, -(-at.shape[0] * dx.size // _AT_A_TIME))
     met = [met_by_pads(shape, x[one[:, 0]], y[one[:, 1]], points) for one in parts]
-    swings, shares = (np.concatenate(one) for one in zip(*met, strict=True))
-    return swings, shares
+    return (
+        np.concatenate([swings for swings, _ in met]),
+        np.concatenate([shares for _, shares in met]),
+    )
 
 
 def _friction(

@@ -187,10 +187,7 @@ def met_by_pads(
 ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
     """The amplitudes over the antinode's under pads centred at places (m), and the shares of each
     pad that meet them, both of shape (places, points): what is beside the face carries nothing."""
-    if shape.along == "x":
-        dx, dy, length, width = points[:4]
-    else:
-        dy, dx, width, length = points[:4]
+    dx, dy, length, width = points.on_axes(shape.along)
     swings, covered = shape.under(x[:, None] + dx, y[:, None] + dy, length, width)
     shares = points.shares * covered
     return swings, shares / np.sum(shares, axis=1, keepdims=True)

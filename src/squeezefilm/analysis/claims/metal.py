@@ -196,7 +196,7 @@ def _() -> ClaimValue:
 
 @value_of("metal-prediction")
 def _() -> ClaimValue:
-    return ClaimValue(tuple(one.relative_friction[0] for one in _both()))
+    return ClaimValue(tuple(prediction.relative_friction[0] for prediction in _both()))
 
 
 @value_of("metal-compared")
@@ -213,7 +213,7 @@ def _() -> ClaimValue:
         for one in both
     )
     return ClaimValue(
-        tuple(one.relative_friction[-1] for one in both),
+        tuple(prediction.relative_friction[-1] for prediction in both),
         note=f"with {si.percent(LEVEL)} intervals, {said}; the intervals hold what the last digit "
         "of the fitted number and the ratio of amplitude to decay length leave open, and no other "
         "doubt",

@@ -90,7 +90,7 @@ class Panel(NamedTuple):
             for nodes, points in zip((XI, ETA), between, strict=True)
         )
         values, films_error = self.films(slip_length, x, y)
-        panels = np.stack([_coefficients(one[: nx * nt].reshape(nx, nt)) for one in values])
+        panels = np.stack([_coefficients(row[: nx * nt].reshape(nx, nt)) for row in values])
         deviation = _deviation(panels[0], between, values[0][nx * nt :])
         return np.append(panels.ravel(), 2.0 * deviation + films_error)
 

@@ -120,6 +120,15 @@ class PadPoints(NamedTuple):
     width: si.MetreArray
     shares: si.DimensionlessArray
 
+    def on_axes(
+        self, along: Literal["x", "y"]
+    ) -> tuple[si.MetreArray, si.MetreArray, si.MetreArray, si.MetreArray]:
+        """Places along x and y, and how far their cells reach along x and y (m), under a wave along
+        one of the axes."""
+        if along == "x":
+            return self.along, self.across, self.length, self.width
+        return self.across, self.along, self.width, self.length
+
 
 # Along a ridge at an angle to the nodal lines.
 _ALONG = 64
