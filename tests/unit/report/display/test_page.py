@@ -63,8 +63,8 @@ def written(
     analysis = analysis_of("biet2008-plate")
     steps: list[str] = []
     path = write_analysis(analysis, tmp_path_factory.mktemp("out") / "new", steps.append)
+    # Steps before these are told only where another test has not taken them already.
     assert steps[-2:] == ["figures", "writing the report"]
-    assert {"felt", "film models"} < set(steps)
     return path, analysis
 
 
