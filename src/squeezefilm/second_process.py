@@ -7,9 +7,13 @@ and meets the error if there is one. So nothing depends on it, and what comes of
 same with it and without.
 
 A verb has one for its time, `second_process`; what it calls asks for work by `later` and for what
-comes of it by `values`. Without one all of it is done here, when its value is asked for. Its start
-takes seconds of a processor, so that a verb that may find all it needs on disk leaves it to whoever
-finds something lacking, `start_second_process`.
+comes of it by `values`. Without one all of it is done here, when its value is asked for. A verb
+that may find all it needs on disk leaves its start to whoever finds something lacking,
+`start_second_process`.
+
+On Linux it is a copy of this process (fork), made once both have what they need. Elsewhere, and
+where a thread beside the main one asks, it is a new one that loads all again, which takes seconds
+of a processor. A copy asks for nothing that other threads may hold, as that of a progress line.
 """
 
 from __future__ import annotations
@@ -20,6 +24,7 @@ import os
 import pickle
 import queue
 import signal
+import sys
 import threading
 import warnings
 from collections import deque
@@ -31,7 +36,7 @@ from typing import Any
 
 from squeezefilm import quantities as si
 from squeezefilm.blas_threads import one_blas_thread
-from squeezefilm.loading import interrupts_held, loading
+from squeezefilm.loading import interrupts_held
 
 _PATIENCE: si.Second = 60.0
 _LEAVE: si.Second = 2.0
@@ -64,7 +69,8 @@ class Piece:
 
 class SecondProcess:
     """A process that takes pieces of work, once it is started. The first of `prepare` loads what
-    they need, before any is sent; the others follow whenever there is nothing to do."""
+    they need, before any is sent; the others follow, in a new process when there is nothing to do.
+    """
 
     def __init__(self, *prepare: Callable[[], object]) -> None:
         self._prepare, self._is_started = prepare, False
@@ -81,12 +87,21 @@ class SecondProcess:
         if self._is_started:
             return
         self._is_started = True
-        spawn = multiprocessing.get_context("spawn")
+        is_copy, lacking = _can_be_copied(), self._prepare
+        if is_copy:
+            for prepare in self._prepare:
+                _load(prepare)
+            lacking = ()
+        context: Any = multiprocessing.get_context("fork" if is_copy else "spawn")
         # Where the system has no room for a process, this one does everything.
         with contextlib.suppress(OSError):
-            ours, theirs = spawn.Pipe()
-            self._process = spawn.Process(target=_work, args=(theirs, self._prepare), daemon=True)
-            with theirs, interrupts_held():
+            ours, theirs = context.Pipe()
+            # A copy that kept our end would not hear that this process has ended.
+            arguments = theirs, lacking, [ours] if is_copy else []
+            self._process = context.Process(target=_work, args=arguments, daemon=True)
+            with theirs, interrupts_held(), warnings.catch_warnings():
+                # From 3.12 Python warns of every copy of a process with threads, as OpenBLAS has.
+                warnings.simplefilter("ignore", DeprecationWarning)
                 self._process.start()
             self._line, self._is_lost = ours, False
             threading.Thread(target=self._listen, args=(ours,), daemon=True).start()
@@ -262,21 +277,32 @@ def _processors() -> int:
     return (os.cpu_count() or 1) if allowed is None else len(allowed(0))
 
 
-def _work(line: Connection, prepare: Sequence[Callable[[], object]]) -> None:
+def _can_be_copied() -> bool:
+    """Whether a copy of this process can work: not on macOS, whose libraries forbid it."""
+    return sys.platform == "linux" and threading.current_thread() is threading.main_thread()
+
+
+def _work(
+    line: Connection, prepare: Sequence[Callable[[], object]], closed: Sequence[Connection]
+) -> None:
     """Say that it is ready, then do what comes, and answer each piece."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _PRESENT.set(None)
+    for other in closed:
+        other.close()
     messages: queue.SimpleQueue[Any] = queue.SimpleQueue()
     threading.Thread(target=_take, args=(line, messages), daemon=True).start()
-    first, *others = prepare
-    _load(first)
+    others = deque(prepare)
+    if others:
+        _load(others.popleft())
     with contextlib.suppress(OSError), one_blas_thread():
         line.send(None)
-        _answer(line, messages, deque(others))
+        _answer(line, messages, others)
 
 
 def _load(prepare: Callable[[], object]) -> None:
     """What fails here is done, and fails, where somebody sees it."""
-    with contextlib.suppress(Exception), loading():
+    with contextlib.suppress(Exception):
         prepare()
 
 

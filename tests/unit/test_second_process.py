@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 import warnings
 from types import SimpleNamespace
@@ -161,7 +162,7 @@ def test_where_no_process_can_be_started_all_is_done_here(monkeypatch: pytest.Mo
     def refuse(_: object) -> None:
         raise OSError("no room")
 
-    monkeypatch.setattr(multiprocessing.context.SpawnProcess, "start", refuse)
+    monkeypatch.setattr(multiprocessing.process.BaseProcess, "start", refuse)
     with second_process(nothing):
         assert values(later(ADD, 1, 2), later(ROOT, 4.0)) == [3, 2.0]
 
@@ -206,6 +207,30 @@ def test_one_that_is_not_needed_is_never_started() -> None:
         start_second_process()
         assert values(waiting, *(later(ADD, k, k) for k in range(6))) == [7, 0, 2, 4, 6, 8, 10]
     assert not process._process.is_alive()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="copies are made on Linux")
+def test_a_copy_has_what_was_loaded_and_a_thread_gets_a_new_one() -> None:
+    loaded: list[int] = []
+    copy = ready(SecondProcess(lambda: loaded.append(os.getpid())))
+    assert loaded == [os.getpid()]
+    # It has no second process of its own, though it was made while this one had it.
+    with second_process(time.time):
+        inner = ready(SecondProcess(time.time))
+    asked = Piece(is_present, ())
+    inner.ask(asked)
+    while not asked.is_done:
+        time.sleep(0.01)
+    assert asked.value is False
+    copy.end()
+    inner.end()
+    new = SecondProcess(time.time)
+    thread = threading.Thread(target=new.start)
+    thread.start()
+    thread.join()
+    assert isinstance(new._process, multiprocessing.context.SpawnProcess)
+    assert isinstance(copy._process, multiprocessing.context.ForkProcess)
+    new.end()
 
 
 def test_without_one_work_is_done_when_it_is_asked_for() -> None:

@@ -193,13 +193,19 @@ def analyze(asked: AnalyzeOptions) -> None:
 
 def _prepare() -> None:
     """Load what an analysis takes, before there is anything to analyse."""
-    import_module("squeezefilm.analysis.analyze")
-    import_module("squeezefilm.chain.friction").prepare()
+    from squeezefilm.loading import loading
+
+    with loading():
+        import_module("squeezefilm.analysis.analyze")
+        import_module("squeezefilm.chain.friction").prepare()
 
 
 def _prepare_figures() -> None:
     """Load what figures take, before there is anything to draw."""
-    import_module("squeezefilm.report.display.figures").prepare()
+    from squeezefilm.loading import loading
+
+    with loading():
+        import_module("squeezefilm.report.display.figures").prepare()
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from squeezefilm.loading import loading
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.page_style import FigureOf
 from squeezefilm.second_process import later, values
@@ -48,11 +49,12 @@ def png_files(found: Mapping[str, tuple[str, Picture]]) -> dict[str, str | bytes
 
 
 def load_drawing() -> None:
-    """What a second process needs before it draws."""
-    for name in ("page", "simulated_page"):
-        import_module(f"squeezefilm.report.study.{name}")
-    import_module("matplotlib.figure")
-    import_module("matplotlib.backends.backend_agg")
+    """Load what drawing takes, in a program, before there is anything to draw."""
+    with loading():
+        for name in ("page", "simulated_page"):
+            import_module(f"squeezefilm.report.study.{name}")
+        import_module("matplotlib.figure")
+        import_module("matplotlib.backends.backend_agg")
 
 
 def _picture(drawing: Drawing, result: Any, key: str) -> Picture:
