@@ -44,7 +44,7 @@ settings.load_profile("properties")
 # Tests that may go to any process, one by one; of other files one process takes all, since they
 # share what is dear. (xdist's own groups are passed over under pytest 9.2: it names tests anew.)
 _SPREAD = ("tests/e2e/", "tests/faults/", "tests/properties/")
-_TOGETHER = ("tests/e2e/test_report_page.py",)
+_TOGETHER = ("tests/e2e/test_lab_", "tests/e2e/test_report_page.py")
 
 
 _setattr = pytest.MonkeyPatch.setattr
@@ -87,7 +87,7 @@ def pytest_xdist_make_scheduler(config: Any, log: Any) -> Any:
     class ByFiles(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.partition("::")[0]
-            spread = file.startswith(_SPREAD) and file not in _TOGETHER
+            spread = file.startswith(_SPREAD) and not file.startswith(_TOGETHER)
             return nodeid if spread else file
 
     config.option.loadscopereorder = False

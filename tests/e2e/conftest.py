@@ -12,7 +12,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -38,14 +38,25 @@ def chromium_path() -> str:
 # Not for the session: while Playwright runs, its event loop does, and no other test of the process
 # could run one of its own.
 @pytest.fixture(scope="module")
-def chromium(chromium_path: str) -> Iterator[Browser]:
+def browser(chromium_path: str) -> Iterator[Browser]:
     """A running Chromium for all tests of one file."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium_path, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(
+            executable_path=chromium_path, args=["--no-sandbox", "--disable-gpu"]
+        )
         yield browser
         browser.close()
+
+
+@pytest.fixture
+def chromium(browser: Browser) -> Iterator[Browser]:
+    """The file's Chromium; pages that a test opens are closed after it, and draw no more."""
+    before = set(browser.contexts)
+    yield browser
+    for context in set(browser.contexts) - before:
+        context.close()
 
 
 class RunningLab:
@@ -97,6 +108,7 @@ class RunningLab:
             raise AssertionError(f"the lab did not start; it said {self.said!r}")
         self.link, self.port = found[0], int(found[1])
         self.address = self.link.split("?")[0]
+        self.cookies: list[Any] = []
 
     def stop(self) -> int:
         """End it as Ctrl-C does; its exit code."""
@@ -135,6 +147,14 @@ def start_lab() -> Iterator[Start]:
     yield start
     codes = [lab.stop() for lab in started if lab.process.returncode is None]
     assert codes == [0] * len(codes)
+
+
+@pytest.fixture(scope="session")
+def shared_lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningLab]:
+    """A lab for all tests that neither end it nor count on what its folder holds."""
+    lab = RunningLab(tmp_path_factory.mktemp("lab"))
+    yield lab
+    assert lab.stop() == 0
 
 
 @pytest.fixture

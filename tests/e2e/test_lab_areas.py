@@ -135,10 +135,10 @@ class Watched:
 
 
 @pytest.fixture(scope="module")
-def opened(chromium: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Watched]:
+def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Watched]:
     """One lab and one page for all tests of this file."""
     lab = RunningLab(tmp_path_factory.mktemp("areas"))
-    yield Watched(chromium, lab)
+    yield Watched(browser, lab)
     assert lab.stop() == 0
 
 

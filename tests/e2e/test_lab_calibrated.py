@@ -73,9 +73,9 @@ def compared(page: Page) -> list[str]:
 
 
 def test_design_shows_what_was_measured_beside_the_model(
-    chromium: Browser, running_lab: RunningLab, tmp_path: Path
+    chromium: Browser, shared_lab: RunningLab, tmp_path: Path
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "design")
+    page, complaints = opened(chromium, shared_lab, "design")
     page.get_by_role("button", name="No tour").click()
     card = page.locator("section.card", has_text="Predicted against measured")
     page.locator("#display-choice").wait_for()
@@ -127,13 +127,13 @@ def test_design_shows_what_was_measured_beside_the_model(
 
 
 def test_one_that_the_model_does_not_explain_says_so(
-    chromium: Browser, running_lab: RunningLab, tmp_path: Path
+    chromium: Browser, shared_lab: RunningLab, tmp_path: Path
 ) -> None:
     file = calibrated(tmp_path)
     text = file.read_text(encoding="utf-8")
     assert text.count("fits = true") == 1
     file.write_text(text.replace("fits = true", "fits = false"), encoding="utf-8")
-    page, _ = opened(chromium, running_lab, "design")
+    page, _ = opened(chromium, shared_lab, "design")
     page.get_by_role("button", name="No tour").click()
     page.locator("#display-choice").wait_for()
     page.locator("input[type=file]").first.set_input_files(file)

@@ -45,7 +45,10 @@ CONTRAST = """() => {
 
 
 def opened(browser: Browser, lab: RunningLab, area: str, **options: Any) -> tuple[Page, list[str]]:
-    page = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **options}).new_page()
+    # A mode in motion keeps the computer busy; where it moves is asked in test_lab_silent.
+    usual = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
+    context = browser.new_context(**usual | options)  # type: ignore[arg-type]
+    page = context.new_page()
     complaints: list[str] = []
     page.on("console", lambda message: complaints.append(message.text))
     page.on("pageerror", lambda error: complaints.append(str(error)))
@@ -56,7 +59,10 @@ def opened(browser: Browser, lab: RunningLab, area: str, **options: Any) -> tupl
             or complaints.append(f"asked elsewhere: {request.url}")
         ),
     )
-    page.goto(lab.link)
+    # The printed link lets one browser in, whose cookie later pages have.
+    context.add_cookies(lab.cookies)
+    page.goto(lab.address if lab.cookies else lab.link)
+    lab.cookies = context.cookies()
     page.goto(f"{lab.address}#{area}")
     return page, complaints
 
@@ -72,15 +78,15 @@ AREAS = ("design", "search", "feel", "device", "study", "results", "help")
 
 
 def test_what_is_pressed_before_the_lab_has_answered_breaks_nothing(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "help")
+    page, complaints = opened(chromium, shared_lab, "help")
     page.get_by_role("button", name="No tour").click()
     page.on("dialog", lambda dialog: dialog.accept("mine"))
     # A connection that opens and never answers.
     page.route_web_socket(re.compile("."), lambda _: None)
     for area in AREAS:
-        page.goto(f"{running_lab.address}#{area}")
+        page.goto(f"{shared_lab.address}#{area}")
         page.reload()
         page.locator("main > *").first.wait_for()
         for button in page.get_by_role("button").all():
@@ -92,9 +98,9 @@ def test_what_is_pressed_before_the_lab_has_answered_breaks_nothing(
 
 
 def test_a_display_is_changed_undone_saved_and_opened_again(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "design")
+    page, complaints = opened(chromium, shared_lab, "design")
     quality = page.locator(".quality")
     quality.filter(has_text="solved:").wait_for(timeout=SOLVED)
     frequency = page.locator(".number b").first
@@ -131,7 +137,7 @@ def test_a_display_is_changed_undone_saved_and_opened_again(
     page.on("dialog", lambda dialog: dialog.accept("thicker"))
     page.get_by_role("button", name="Save…").click()
     page.locator("#notice", has_text="Saved as thicker.toml").wait_for()
-    kept = load_display(running_lab.folder / "thicker.toml")
+    kept = load_display(shared_lab.folder / "thicker.toml")
     assert kept.actuator.thickness == pytest.approx(2.2e-3)  # type: ignore[union-attr]
     page.reload()
     page.locator("input[data-path='actuator.thickness'][type=text]").wait_for()
@@ -140,15 +146,15 @@ def test_a_display_is_changed_undone_saved_and_opened_again(
 
 
 def test_a_slider_moves_the_curve_and_says_which_model(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "design", color_scheme="dark")
+    page, complaints = opened(chromium, shared_lab, "design", color_scheme="dark")
     page.locator(".quality", has_text="solved:").wait_for(timeout=SOLVED)
     slider = page.locator("input[type=range][data-path='drive.voltage']")
     amplitude = page.locator(".number b").nth(1)
     before = amplitude.inner_text()
     slider.focus()
-    for _ in range(60):
+    for _ in range(12):
         slider.press("ArrowRight")
     page.wait_for_function(
         "text => document.querySelectorAll('.number b')[1].innerText !== text", arg=before
@@ -161,9 +167,9 @@ def test_a_slider_moves_the_curve_and_says_which_model(
 
 
 def test_a_texture_is_felt_recorded_replayed_and_saved(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "feel")
+    page, complaints = opened(chromium, shared_lab, "feel")
     page.locator(".parity", has_text="agree, greatest difference 0 m").wait_for(timeout=SOLVED)
     page.get_by_role("button", name="Record").click()
     box = page.locator("canvas.surface").bounding_box()
@@ -183,9 +189,9 @@ def test_a_texture_is_felt_recorded_replayed_and_saved(
     page.on("dialog", lambda dialog: dialog.accept("first"))
     page.get_by_role("button", name="Save the stroke…").click()
     page.locator("#notice", has_text="strokes/first.csv").wait_for()
-    stroke = read_trajectory(running_lab.folder / "strokes" / "first.csv")
+    stroke = read_trajectory(shared_lab.folder / "strokes" / "first.csv")
     assert stroke.duration > 0.05
-    felt = (running_lab.folder / "strokes" / "first.felt.csv").read_text().splitlines()
+    felt = (shared_lab.folder / "strokes" / "first.felt.csv").read_text().splitlines()
     assert felt[0].startswith("time_s,x_m,y_m,speed_m_per_s")
     with page.expect_download() as download:
         page.get_by_role("button", name="Download CSV").click()
@@ -196,9 +202,9 @@ def test_a_texture_is_felt_recorded_replayed_and_saved(
 
 
 def test_friction_met_and_wanted_are_of_the_same_speed(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "feel")
+    page, complaints = opened(chromium, shared_lab, "feel")
     page.locator(".parity", has_text="agree").wait_for(timeout=SOLVED)
     # An amplitude reached, without a wave: what is met is what is wanted, however fast.
     found = page.evaluate(
@@ -232,12 +238,12 @@ def test_friction_met_and_wanted_are_of_the_same_speed(
 
 
 def test_a_grating_is_composed_and_a_picture_dropped(
-    chromium: Browser, running_lab: RunningLab, tmp_path: Path
+    chromium: Browser, shared_lab: RunningLab, tmp_path: Path
 ) -> None:
     import numpy as np
     from tests.pictures import picture_bytes
 
-    page, complaints = opened(chromium, running_lab, "feel")
+    page, complaints = opened(chromium, shared_lab, "feel")
     page.locator(".parity", has_text="agree").wait_for(timeout=SOLVED)
     page.get_by_text("Compose a grating").click()
     page.get_by_label("spatial period").fill("8")
@@ -252,16 +258,16 @@ def test_a_grating_is_composed_and_a_picture_dropped(
     page.locator("input[type=file]").set_input_files(picture)
     page.locator("h2", has_text="stripes, 60 × 20 pixels of 0.2 mm").wait_for()
     page.locator(".parity", has_text="agree").wait_for(timeout=SOLVED)
-    assert (running_lab.folder / "textures" / "stripes.png").exists()
+    assert (shared_lab.folder / "textures" / "stripes.png").exists()
     assert complaints == []
 
 
 def test_every_quantity_is_explained_and_keys_reach_everything(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "help")
+    page, complaints = opened(chromium, shared_lab, "help")
     page.get_by_text("relative friction, µ′/µ").wait_for()
-    page.goto(f"{running_lab.address}#feel")
+    page.goto(f"{shared_lab.address}#feel")
     page.locator(".parity", has_text="agree").wait_for(timeout=SOLVED)
     unknown = page.evaluate(
         """async () => {

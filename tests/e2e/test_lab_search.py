@@ -136,9 +136,9 @@ def test_a_search_is_stopped_and_goes_on_from_what_is_known(
 
 
 def test_what_is_wrong_is_said_with_its_line_before_anything_is_computed(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "search")
+    page, complaints = opened(chromium, shared_lab, "search")
     page.locator(".asked li").first.wait_for(state="attached", timeout=SOLVED)
     text = page.locator("#requirements")
     text.fill(TEXT.replace('length = "83 mm"', 'length = "83"'))
@@ -211,9 +211,9 @@ FRONT = """async () => {
 
 
 def test_three_objectives_are_drawn_two_at_a_time(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "help")
+    page, complaints = opened(chromium, shared_lab, "help")
     page.get_by_role("heading", name="Quantities").wait_for()
     assert page.evaluate(FRONT) == {
         # What is not known has no place.

@@ -59,25 +59,25 @@ LATE = """async () => {
 
 
 def test_less_than_two_seconds_of_silence_are_said_and_so_is_their_end(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, _ = opened(chromium, running_lab, "help")
+    page, _ = opened(chromium, shared_lab, "help")
     silent, ended = page.evaluate(LATE)
     assert 1.7 <= silent < 2.0
     assert ended == 0
 
 
 def test_a_page_on_which_nothing_happens_leaves_the_computer_alone(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "help")
+    page, complaints = opened(chromium, shared_lab, "help", reduced_motion="no-preference")
     page.add_init_script(
         """window.frames_drawn = 0;
         const ask = requestAnimationFrame.bind(window);
         window.requestAnimationFrame = (draw) => ask((now) => { frames_drawn += 1; draw(now); });"""
     )
     for area in ("design", "feel", "device"):
-        page.goto(f"{running_lab.address}#{area}")
+        page.goto(f"{shared_lab.address}#{area}")
         page.reload()
         page.locator("main canvas").first.wait_for()
         if area == "design":
@@ -91,7 +91,7 @@ def test_a_page_on_which_nothing_happens_leaves_the_computer_alone(
         while drawn != (drawn := page.evaluate("frames_drawn")) and time.monotonic() < until:
             page.wait_for_timeout(1000)
         assert page.evaluate("frames_drawn") == drawn > 0, area
-    page.goto(f"{running_lab.address}#design")
+    page.goto(f"{shared_lab.address}#design")
     page.locator(".quality", has_text="solved:").wait_for(timeout=SOLVED)
     page.locator("canvas.plan").hover()
     before = page.evaluate("frames_drawn")
@@ -125,9 +125,9 @@ TOUCHES = """async ([x, y]) => {
 
 
 def test_a_second_finger_is_not_mixed_into_the_speed_of_the_first(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "feel")
+    page, complaints = opened(chromium, shared_lab, "feel")
     page.locator(".parity", has_text="agree").wait_for(timeout=SOLVED)
     page.locator("canvas.surface").scroll_into_view_if_needed()
     assert page.evaluate(TOUCHES, [60, 40]) == 0
@@ -191,9 +191,9 @@ STEPS = """async (steps) => {
 
 
 def test_edits_follow_one_another_and_as_many_steps_are_kept_as_there_is_room_for(
-    chromium: Browser, running_lab: RunningLab
+    chromium: Browser, shared_lab: RunningLab
 ) -> None:
-    page, complaints = opened(chromium, running_lab, "help")
+    page, complaints = opened(chromium, shared_lab, "help")
     assert page.evaluate(STEPS, {"long": 10, "count": 5}) == ["a1;b2;c3;", True, 8]
     edited, same, kept = page.evaluate(STEPS, {"long": 300_000, "count": 9})
     assert (edited, same) == ("a1;b2;c3;", True)

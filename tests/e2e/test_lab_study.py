@@ -625,20 +625,20 @@ def foreign_site() -> Iterator[str]:
     server.server_close()
 
 
-def test_a_page_of_another_origin_gets_nothing(chromium: Browser, running_lab: RunningLab) -> None:
-    page, _ = opened(chromium, running_lab, "help")
+def test_a_page_of_another_origin_gets_nothing(chromium: Browser, shared_lab: RunningLab) -> None:
+    page, _ = opened(chromium, shared_lab, "help")
     page.get_by_text("relative friction, µ′/µ").wait_for()
     with foreign_site() as foreign:
         other = page.context.new_page()  # The same browser: it has the experimenter's cookie.
         other.goto(foreign)
         found = other.evaluate(
             FOREIGN,
-            running_lab.address,
+            shared_lab.address,
         )
         # An opaque answer cannot be read; that the request was refused is tested at the guard.
         assert found.pop("opaque") in ("opaque", "refused")
         assert found == dict.fromkeys(found, "refused")
-        assert other.frames[-1].url != running_lab.address
+        assert other.frames[-1].url != shared_lab.address
 
 
 def test_a_stored_script_is_shown_as_text(chromium: Browser, running_lab: RunningLab) -> None:
@@ -728,8 +728,8 @@ def test_every_area_has_contrast_and_fits_its_width(
     assert complaints == []
 
 
-def test_the_tour_is_taken_left_and_remembered(chromium: Browser, running_lab: RunningLab) -> None:
-    page, complaints = opened(chromium, running_lab, "help")
+def test_the_tour_is_taken_left_and_remembered(chromium: Browser, shared_lab: RunningLab) -> None:
+    page, complaints = opened(chromium, shared_lab, "help")
     tour = page.locator("#tour")
     tour.get_by_text("1 of 4").wait_for()
     keep(page, "lab-tour-1280")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,17 +27,7 @@ def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     from squeezefilm.report.display.page import write_analysis
 
     folder = tmp_path_factory.mktemp(str(request.param))
-    return write_analysis(analyze(load_display(request.param)), folder)
-
-
-@pytest.fixture(scope="module")
-def browser(chromium_path: str) -> Iterator[Browser]:
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium_path, args=["--no-sandbox"])
-        yield browser
-        browser.close()
+    return write_analysis(analyze(load_display(request.param), samples=8), folder)
 
 
 @pytest.mark.parametrize("width", [1280, 1920])
