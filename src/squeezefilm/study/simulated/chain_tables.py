@@ -21,6 +21,7 @@ from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.perception.senses import Candidates
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.progress import SayProgress
+from squeezefilm.results import config_hash
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.simulated.causes import Causes, median_causes
 from squeezefilm.study.simulated.felt_surfaces import (
@@ -65,6 +66,19 @@ class ChainTables:
     plates: tuple[Display, ...] = ()
     across: Candidates | None = None
     across_rhythm: si.DimensionlessArray | None = None
+
+    @property
+    def asked(self) -> str:
+        """What simulated answers follow from, but for people and seed: under it they are kept."""
+        design = self.design
+        surfaces = [*design.stimuli, *(one.stimulus for one in design.catch)]
+        # Two kinds of texture may have the same numbers, and the text of an image has no pixels.
+        return " ".join(
+            [
+                *map(config_hash, (design, self.observer, *self.plates, *self.apparatus)),
+                *(f"{one.surface()!r} {one.surface_sha256}" for one in surfaces),
+            ]
+        )
 
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
         """Candidates of a surface that is not among the design's stimuli, such as a comparison

@@ -20,20 +20,26 @@ from scipy import stats
 from squeezefilm import quantities as si
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
+from squeezefilm.kept.store import Kept
 from squeezefilm.perception.observer import Observer
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.power import power_curve
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.simulated.answers import answers_of
 from squeezefilm.study.simulated.chain_tables import chain_tables
-from squeezefilm.study.simulated.judgements import simulate_judgements
-from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import (
     SIZES,
     PlannedPower,
     drawn_with_replacement,
 )
-from squeezefilm.study.simulated.planned_precision import PEOPLE, person_values
+from squeezefilm.study.simulated.planned_precision import (
+    PEOPLE,
+    person_values,
+    simulated_answers,
+)
+
+_DIFFERENCES: Kept[tuple[str, si.FloatArray]] = Kept(
+    "simulated-differences", tuple[str, si.FloatArray]
+)
 
 
 def planned_contrast(
@@ -76,13 +82,13 @@ def planned_contrast(
     tell = progress or (lambda _: None)
     both = dataclasses.replace(design, displays=(display, other))
     tables = chain_tables(both, observer, progress=tell)
-    tell(f"{people} simulated participants")
-    if design.task == "match-to-sample":
-        answers = answers_of(simulate_matches(both, observer, people, seed, tables))
-    else:
-        answers = simulate_judgements(both, observer, people, seed, tables, tell)
-    tell("each person's fits")
-    measure, differences = within_people(answers)
+
+    def simulated() -> tuple[str, si.FloatArray]:
+        answers = simulated_answers(tables, people, seed, tell)
+        tell("each person's fits")
+        return within_people(answers)
+
+    measure, differences = _DIFFERENCES.found(f"{tables.asked} {people} {seed}", simulated)
     curve = power_curve(
         drawn_with_replacement(differences),
         otherwise_than_0,

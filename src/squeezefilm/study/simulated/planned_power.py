@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from squeezefilm import quantities as si
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
+from squeezefilm.kept.store import Kept
 from squeezefilm.perception.observer import Observer
 from squeezefilm.results import stamp, to_json
 from squeezefilm.study.design.study_design import StudyDesign
@@ -31,6 +32,8 @@ from squeezefilm.study.simulated.participants import right_answers, simulate_mat
 SIZES = (2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32, 48)
 POOL = 4000
 """Simulated people that studies are drawn from: two of one study are hardly ever the same."""
+
+_SCORES: Kept[si.FloatArray] = Kept("simulated-scores", si.FloatArray)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +79,7 @@ def planned_power(
 
     Studies are drawn from `POOL` simulated participants who do the whole design; the test is
     `distinction` of match-to-sample, else Student's over people's `pair_scores`, one-sided. What
-    the observer assumes, this assumes: see its file.
+    the observer assumes, this assumes: see its file. What people felt and answered is kept on disk.
 
     Args:
         design: of any task, without adaptive series.
@@ -101,13 +104,16 @@ def planned_power(
     else:
         require_pair(alone, first, second)
     tables = chain_tables(alone, observer, progress=tell)
-    tell(f"{POOL} simulated participants")
-    if design.task == "match-to-sample":
-        counts = simulate_matches(alone, observer, POOL, seed, tables).participant_counts()
-        scores = distinction_scores(counts, a, b)
-    else:
+
+    def simulated() -> si.FloatArray:
+        tell(f"{POOL} simulated participants")
+        if design.task == "match-to-sample":
+            counts = simulate_matches(alone, observer, POOL, seed, tables).participant_counts()
+            return distinction_scores(counts, a, b)
         answers = simulate_judgements(alone, observer, POOL, seed, tables, tell)
-        scores = pair_scores(answers, first, second)
+        return pair_scores(answers, first, second)
+
+    scores = _SCORES.found(f"{tables.asked} {first!r} {second!r} {seed}", simulated)
     curve = power_curve(
         drawn_with_replacement(scores),
         lambda scores: above_0(scores)[1],

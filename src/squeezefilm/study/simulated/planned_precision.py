@@ -9,6 +9,7 @@ spoils intervals that ignore it.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,13 +19,14 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.kept.store import Kept
 from squeezefilm.perception.observer import Observer
 from squeezefilm.results import stamp, to_json
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.proportions import proportion_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.answers import answers_of
-from squeezefilm.study.simulated.chain_tables import chain_tables
+from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import SIZES, on_one_display
@@ -39,6 +41,15 @@ PEOPLE = 400
 """Simulated people that studies are drawn from; each one's fit takes some 20 ms."""
 _FEWEST, _MOST = 4, 96
 """People with whom a sequential study first looks at its interval, and at which it gives up."""
+
+_AT_ONCE = 20
+"""Sequential studies that are kept together: seconds of work."""
+
+_TRUTHS: Kept[tuple[str, float]] = Kept("simulated-truths", tuple[str, float])
+_SHARES: Kept[tuple[float, float]] = Kept("simulated-shares", tuple[float, float])
+_STOPPED: Kept[tuple[tuple[int, bool, bool], ...]] = Kept(
+    "simulated-stops", tuple[tuple[int, bool, bool], ...]
+)
 
 Ends = tuple[float, float, float]
 Interval = Callable[[si.IntArray], Ends]
@@ -137,6 +148,8 @@ def planned_precision(
         seed: of people, answers and studies.
         progress: is told each step.
 
+    What was found until it was stopped is kept on disk, and not computed again.
+
     Raises:
         InputError: a number out of range, or what the simulation refuses.
     """
@@ -150,13 +163,18 @@ def planned_precision(
     tell = progress or (lambda _: None)
     alone = on_one_display(design, display)
     tables = chain_tables(alone, observer, progress=tell)
-    tell(f"{people} simulated participants")
-    if design.task == "match-to-sample":
-        answers = answers_of(simulate_matches(alone, observer, people, seed, tables))
-    else:
-        answers = simulate_judgements(alone, observer, people, seed, tables, tell)
-    measure, interval = interval_of(answers, tell)
-    truth = interval(np.arange(people))[0]
+
+    @functools.cache
+    def fitted() -> tuple[str, Interval]:
+        return interval_of(simulated_answers(tables, people, seed, tell), tell)
+
+    def interval(who: si.IntArray) -> Ends:
+        return fitted()[1](who)
+
+    asked = f"{tables.asked} {people} {seed}"
+    measure, truth = _TRUTHS.found(
+        asked, lambda: (fitted()[0], float(interval(np.arange(people))[0]))
+    )
     relative = measure == "Weber fraction"
 
     def precise(found: Ends) -> bool:
@@ -165,19 +183,26 @@ def planned_precision(
             return low > 0 and math.sqrt(high / low) - 1.0 <= precision
         return 0.5 * (high - low) <= precision
 
+    def shares(size: int) -> tuple[float, float]:
+        random = np.random.default_rng([seed, size])
+        found = [interval(random.integers(0, people, size)) for _ in range(studies)]
+        holds = [low <= truth <= high for _, low, high in found]
+        return float(np.mean([precise(one) for one in found])), float(np.mean(holds))
+
     reached, held = np.zeros(len(sizes)), np.zeros(len(sizes))
     bounds = []
     for at, size in enumerate(sizes):
         tell(f"studies of {size} people")
-        random = np.random.default_rng([seed, size])
-        found = [interval(random.integers(0, people, size)) for _ in range(studies)]
-        reached[at] = np.mean([precise(one) for one in found])
-        held[at] = np.mean([low <= truth <= high for _, low, high in found])
+        reached[at], held[at] = _SHARES.found(
+            f"{asked} {precision} {studies} {size}", functools.partial(shares, size)
+        )
         bounds.append(
             proportion_interval(round(reached[at] * studies), studies, method="Clopper–Pearson")
         )
     tell("sequential studies")
-    sequential = _sequential(interval, precise, truth, people, studies, seed)
+    sequential = _sequential(
+        interval, precise, truth, people, studies, seed, f"{asked} {precision}"
+    )
     lasting = [size for at, size in enumerate(sizes) if np.all(reached[at:] >= target)]
     return PlannedPrecision(
         design=design.name,
@@ -197,6 +222,17 @@ def planned_precision(
         sequential=sequential,
         seed=seed,
     )
+
+
+def simulated_answers(
+    tables: ChainTables, people: int, seed: int, tell: Callable[[str], None]
+) -> Answers:
+    """What simulated people answer to the whole design of tables, of any task."""
+    tell(f"{people} simulated participants")
+    design, observer = tables.design, tables.observer
+    if design.task == "match-to-sample":
+        return answers_of(simulate_matches(design, observer, people, seed, tables))
+    return simulate_judgements(design, observer, people, seed, tables, tell)
 
 
 def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Interval]:
@@ -256,27 +292,36 @@ def _sequential(
     people: int,
     studies: int,
     seed: int,
+    asked: str,
 ) -> SequentialStudies:
-    random = np.random.default_rng([seed, 0])
-    stopped, held, unfinished = [], 0, 0
-    for _ in range(studies):
-        who = random.integers(0, people, _MOST)
+    """So many sequential studies; those of each few are kept under what was `asked`."""
+
+    def stop(who: si.IntArray) -> tuple[int, bool, bool]:
+        """With how many people a study stops, whether it gives up, and whether it holds."""
         for count in range(_FEWEST, _MOST + 1):
             found = interval(who[:count])
-            if precise(found):
+            if is_precise := bool(precise(found)):
                 break
-        else:
-            unfinished += 1
-        stopped.append(count)
-        held += found[1] <= truth <= found[2]
+        return count, not is_precise, bool(found[1] <= truth <= found[2])
+
+    def stops(groups: list[si.IntArray]) -> tuple[tuple[int, bool, bool], ...]:
+        return tuple(map(stop, groups))
+
+    random = np.random.default_rng([seed, 0])
+    drawn = [random.integers(0, people, _MOST) for _ in range(studies)]
+    ends: list[tuple[int, bool, bool]] = []
+    for first in range(0, studies, _AT_ONCE):
+        some = drawn[first : first + _AT_ONCE]
+        ends += _STOPPED.found(f"{asked} {first} {len(some)}", functools.partial(stops, some))
+    stopped, unfinished, held = (np.array(column) for column in zip(*ends, strict=True))
     low, high = np.quantile(stopped, [0.025, 0.975])
-    bounds = proportion_interval(int(held), studies, method="Clopper–Pearson")
+    bounds = proportion_interval(int(held.sum()), studies, method="Clopper–Pearson")
     return SequentialStudies(
         mean=float(np.mean(stopped)),
         low=float(low),
         high=float(high),
-        unfinished=unfinished / studies,
-        held=held / studies,
+        unfinished=float(unfinished.mean()),
+        held=float(held.mean()),
         held_low=bounds.low,
         held_high=bounds.high,
         most=_MOST,

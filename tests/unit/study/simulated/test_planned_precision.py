@@ -4,6 +4,7 @@ at what was asked."""
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,35 @@ def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "chain_tables", made)
     monkeypatch.setattr("squeezefilm.study.simulated.planned_power.chain_tables", made)
     monkeypatch.setattr("squeezefilm.study.simulated.planned_power.POOL", 60)
+
+
+def test_what_was_found_before_a_stop_is_not_computed_again(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Of precision and of power, whose numbers are those of one that was never stopped."""
+
+    def ask(**more: Any) -> list[Any]:
+        numbers: dict[str, Any] = {"participants": (2, 12), "studies": 10, "seed": 1, **more}
+        precise = planned_precision(NUMBERS, EXACT, 0.1, people=30, **numbers).summary()
+        names = (one.name for one in NUMBERS.stimuli[:2])
+        power = planned_power(NUMBERS, EXACT, *names, **numbers).summary()
+        return [{**one, "provenance": None} for one in (precise, power)]
+
+    def stop(step: str) -> None:
+        if step == "sequential studies":
+            raise KeyboardInterrupt
+
+    never_stopped = ask()
+    monkeypatch.setenv("SQUEEZEFILM_CACHE", str(tmp_path))
+    with pytest.raises(KeyboardInterrupt):
+        ask(progress=stop)
+    assert {one.name for one in tmp_path.iterdir()} == {"simulated-truths", "simulated-shares"}
+    assert len(list((tmp_path / "simulated-shares").iterdir())) == 2
+    assert ask() == never_stopped
+    # Now nothing is left to simulate.
+    monkeypatch.setattr(module, "simulated_answers", None)
+    monkeypatch.setattr(f"{planned_power.__module__}.simulate_judgements", None)
+    assert ask() == never_stopped
 
 
 @pytest.mark.parametrize("design", [ALIKE, NUMBERS], ids=lambda one: one.task)
