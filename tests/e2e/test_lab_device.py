@@ -104,6 +104,17 @@ def test_a_twin_passes_every_check(chromium: Browser, running_lab: RunningLab) -
     assert complaints == []
 
 
+BETWEEN_HEADS = """() => {
+  const spans = [...document.querySelectorAll(".confusion th[scope=col]")].map((head) => {
+    const range = document.createRange();
+    range.selectNodeContents(head);
+    return range.getBoundingClientRect();
+  });
+  return spans.slice(1).map((one, k) => one.left - spans[k].right);
+}"""
+"""How far the texts at the head of a table of confusions are apart (px)."""
+
+
 def answered(lab: RunningLab, people: int) -> list[str]:
     """A study in the lab's folder with answered trials; who answered them."""
     path = lab.folder / "studies" / "first.sqlite"
@@ -125,6 +136,7 @@ def test_a_study_is_looked_at_exported_and_somebody_taken_out(
     page, complaints = opened(chromium, running_lab, "results")
     page.get_by_text("Confusions, biet2008-plate").wait_for(timeout=60_000)
     assert page.locator(".confusion td.cell").count() == 9
+    assert min(page.evaluate(BETWEEN_HEADS)) > 8
     assert page.get_by_role("row", name="Proportion correct").count() >= 3
     page.locator(".figures img").first.wait_for()
     assert page.locator(".scroll th:not([data-tip]):not(.confusion th)").all_inner_texts() == []

@@ -97,6 +97,24 @@ def test_what_is_pressed_before_the_lab_has_answered_breaks_nothing(
     assert complaints == []
 
 
+def test_a_disc_is_solved_and_gets_its_drive_numbers(
+    chromium: Browser, running_lab: RunningLab
+) -> None:
+    page, complaints = opened(chromium, running_lab, "design")
+    page.get_by_role("button", name="No tour").click()
+    page.locator("#display-choice option", has_text="winfield2007-tpad").wait_for(state="attached")
+    page.locator("#display-choice").select_option("preset:winfield2007-tpad")
+    number = page.locator(".number")
+    frequency = number.filter(has_text="resonance frequency").locator("b")
+    frequency.filter(has_text=re.compile(r"^2[0-9.]+ kHz")).wait_for(timeout=SOLVED)
+    page.locator(".quality", has_text="solved: vibration by").wait_for(timeout=SOLVED)
+    for name, unit in (("drive current", "A"), ("drive power", "W"), ("matching inductor", "H")):
+        said = number.filter(has_text=name).locator("b").inner_text()
+        assert re.fullmatch(rf"[0-9.]+ [mµ]?{unit}", said), (name, said)
+    keep(page, "lab-design-disc-light-1280")
+    assert complaints == []
+
+
 def test_a_display_is_changed_undone_saved_and_opened_again(
     chromium: Browser, shared_lab: RunningLab
 ) -> None:
