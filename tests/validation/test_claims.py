@@ -1,6 +1,7 @@
 """Published claims: the numbers that must come out, and that a changed verdict is noticed."""
 
 import dataclasses
+from pathlib import Path
 
 import pytest
 
@@ -95,6 +96,18 @@ def test_a_changed_verdict_is_reported() -> None:
         reproduce((dataclasses.replace(claim, id="plate-areas"),))
     with pytest.raises(ConfigError, match="Did you mean 'speed'"):
         reproduce((dataclasses.replace(claim, id="speeds", model="partial-levitation"),))
+
+
+def test_a_claim_that_was_found_before_a_kill_is_not_computed_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SQUEEZEFILM_CACHE", str(tmp_path))
+    claims = tuple(one for one in read_claims().claims if one.id == "plate-area")
+    found = reproduce(claims).results
+    monkeypatch.setitem(CLAIM_VALUES, "plate-area", lambda: ClaimValue((0.0,)))
+    assert reproduce(claims).results == found
+    monkeypatch.setenv("SQUEEZEFILM_CACHE", "off")
+    assert reproduce(claims).results != found
 
 
 def test_the_solved_plate_stands_beside_the_papers_numbers(found: dict[str, ClaimResult]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,11 +22,14 @@ from squeezefilm.analysis.claims.record import (
 )
 from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue, paper_design
 from squeezefilm.errors import ConfigError
+from squeezefilm.kept.store import Kept
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import stamp, to_json
 
 # Registers what it computes; named so that the import is no accident.
 METAL_SPEEDS = metal.PREDICTED_SPEEDS
+
+_VALUES: Kept[ClaimValue] = Kept("claims", ClaimValue)
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,8 @@ def reproduce(
     progress: SayProgress | None = None,
 ) -> Reproduction:
     """Recompute every claim (those on record, or those given); with `prototype`, what studies the
-    paper's prototype (`measure.prototype.explanations.prototype_study`), also that.
+    paper's prototype (`measure.prototype.explanations.prototype_study`), also that. What was found
+    until it was stopped is kept on disk.
 
     Raises `ConfigError` for a claim that nothing computes.
     """
@@ -116,7 +121,8 @@ def _found(claim: Claim) -> ClaimValue:
             f"nothing computes the claim '{claim.id}'.{si.did_you_mean(claim.id, known)}",
             file=presets.claims_path(),
         )
-    return DIRECTION_VALUES[claim.id](claim.model) if claim.model else CLAIM_VALUES[claim.id]()
+    of_model = functools.partial(DIRECTION_VALUES[claim.id], claim.model) if claim.model else None
+    return _VALUES.found(f"{claim.id} {claim.model}", of_model or CLAIM_VALUES[claim.id])
 
 
 def judge(claim: Claim, found: ClaimValue) -> ClaimResult:

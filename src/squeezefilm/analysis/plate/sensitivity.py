@@ -19,6 +19,7 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.parameters import with_values
 from squeezefilm.analysis.plate.solved import sweep_around
 from squeezefilm.errors import InputError
+from squeezefilm.kept.store import Kept
 from squeezefilm.plate.layout import DiscPlate, GlueLayer, RectangularPlate
 from squeezefilm.plate.solid.modes import Label, PlateModes, tracked
 from squeezefilm.plate.solid.response import harmonic_response
@@ -84,19 +85,29 @@ class SensitivityTable:
     rows: tuple[Sensitivity, ...]
 
 
+_MODES: Kept[PlateModes] = Kept("compared-modes", PlateModes)
+_AMPLITUDES: Kept[float] = Kept("compared-amplitudes", float)
+
+
 @functools.lru_cache(maxsize=256)
 def _solved(plate: RectangularPlate, label: Label) -> PlateModes:
-    # Without what fields are evaluated on: megabytes each, and not asked for here.
-    return dataclasses.replace(solve_modes(plate, mode=label), _fields=(), _again=None)
+    def modes() -> PlateModes:
+        # Without what fields are evaluated on: megabytes each, and not asked for here.
+        return dataclasses.replace(solve_modes(plate, mode=label), _fields=(), _again=None)
+
+    return _MODES.found(repr((plate, label)), modes)
 
 
 @functools.lru_cache(maxsize=256)
 def _amplitude(
     plate: RectangularPlate, frequency: si.Hertz, quality: si.Dimensionless
 ) -> si.MetrePerVolt:
-    # The harmonic mesh is another one, so the peak need not lie at the middle exactly.
-    response = harmonic_response(plate, sweep_around(frequency, quality, _POINTS))
-    return float(np.max(response.maximum))
+    def largest() -> float:
+        # The harmonic mesh is another one, so the peak need not lie at the middle exactly.
+        response = harmonic_response(plate, sweep_around(frequency, quality, _POINTS))
+        return float(np.max(response.maximum))
+
+    return _AMPLITUDES.found(repr((plate, frequency, quality)), largest)
 
 
 def working_point(
@@ -134,7 +145,7 @@ def plate_sensitivity(
 
     `changes` default to `usual_changes`. Frequencies are extrapolated (error estimates of
     `solve_modes` apply to both plates alike, so that a shift is better than either); amplitudes are
-    of the same mesh. Takes a second or two a change; plates solved before are reused. Raises
+    of the same mesh. Takes a second or two a change; plates solved before are kept on disk. Raises
     `InputError` where a changed plate has no mode with this label that moves like the unchanged
     one: the change is too large to compare.
     """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,8 +26,8 @@ from squeezefilm.analysis.plate.sensitivity import (
 )
 from squeezefilm.display import load_display
 from squeezefilm.errors import ContradictionError, InputError
-from squeezefilm.materials import VACUUM_PERMITTIVITY
-from squeezefilm.plate.layout import GlueLayer, RectangularPlate
+from squeezefilm.materials import VACUUM_PERMITTIVITY, ElasticMaterial
+from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -151,6 +152,25 @@ def test_a_plate_is_solved_once_and_its_fields_are_not_kept(
     assert (len(bench.solved), len(bench.driven)) == (1, 1)
     kept = sensitivity._solved(paper, (8, 0))
     assert (kept._fields, kept._again) == ((), None)
+
+
+def test_what_was_solved_before_a_kill_is_read_from_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SQUEEZEFILM_CACHE", str(tmp_path))
+    steel = ElasticMaterial("steel", 200e9, 0.3, 7800.0)
+    ceramic = CeramicPatch(12e-3, 0.0, 16e-3, 20e-3, 0.5e-3)
+    paper = load_display("biet2008-plate").actuator
+    assert isinstance(paper, RectangularPlate)
+    plate = RectangularPlate(40e-3, 20e-3, 1.5e-3, 3, 60.0, steel, paper.ceramic, (ceramic,))
+    found = working_point(plate)
+    # As in another process, which solves nothing.
+    for one in (sensitivity._solved, sensitivity._amplitude):
+        one.cache_clear()
+    for name in ("solve_modes", "harmonic_response"):
+        monkeypatch.setattr(sensitivity, name, None)
+    assert working_point(plate) == found
+    assert {one.name for one in tmp_path.iterdir()} == {"compared-modes", "compared-amplitudes"}
 
 
 def test_what_nothing_drives_has_no_amplitude(bench: Bench, paper: RectangularPlate) -> None:
