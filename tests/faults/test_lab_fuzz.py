@@ -66,12 +66,12 @@ def _stormed(served: Served, count: int, seed: int, tablets: bool = False) -> No
 def test_fuzzed_connections_neither_hang_nor_fill_the_memory(
     serve: Callable[..., Served],
 ) -> None:
-    _stormed(serve(), 600, 1)
+    _stormed(serve(), 300, 1)
 
 
 @pytest.mark.slow
 def test_fuzzed_connections_by_tls(serve: Callable[..., Served]) -> None:
-    _stormed(serve(lan=ADDRESS), 200, 1, tablets=True)
+    _stormed(serve(lan=ADDRESS), 100, 1, tablets=True)
 
 
 @pytest.mark.nightly

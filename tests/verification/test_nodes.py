@@ -54,10 +54,16 @@ def test_so_are_those_of_the_glass_presets(name: str) -> None:
     test_the_nodes_of_a_preset_are_the_zeros_of_its_drawn_line(name)
 
 
-@pytest.mark.slow
-def test_so_are_those_of_ten_random_plates() -> None:
-    tried, seed = 0, 0
-    while tried < 10:
+@pytest.mark.parametrize(
+    ("count", "seed"),
+    [
+        pytest.param(2, 2, marks=pytest.mark.slow),
+        pytest.param(8, 4, marks=pytest.mark.nightly),
+    ],
+)
+def test_so_are_those_of_random_plates(count: int, seed: int) -> None:
+    tried = 0
+    while tried < count:
         seed += 1
         plate: RectangularPlate = affordable_plate(seed)
         try:

@@ -6,17 +6,21 @@ import json
 
 import numpy as np
 import pytest
+from tests.shared import shared
 
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.analysis.actuators.skin_stretch import SkinStretchAnalysis, analyze_skin_stretch
 from squeezefilm.errors import OutOfRangeError
+from squeezefilm.report.actuators.dispatch import analyze_actuator
 
 DESCRIBED = load_actuator("biet2008-skin-stretch")
 
 
 @pytest.fixture(scope="module")
 def found() -> SkinStretchAnalysis:
-    return analyze_skin_stretch(DESCRIBED)
+    found = shared(DESCRIBED.name, lambda: analyze_actuator(DESCRIBED.name)).found
+    assert isinstance(found, SkinStretchAnalysis)
+    return found
 
 
 @pytest.mark.slow

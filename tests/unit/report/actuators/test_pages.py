@@ -12,6 +12,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
+from tests.shared import shared
 
 from squeezefilm.actuators.described import is_actuator
 from squeezefilm.analysis.actuators.skin_stretch import SkinStretchAnalysis
@@ -31,7 +32,7 @@ KINDS = {
 
 @pytest.fixture(scope="module", params=NAMES)
 def analyzed(request: pytest.FixtureRequest) -> AnalyzedActuator:
-    return analyze_actuator(request.param)
+    return shared(request.param, lambda: analyze_actuator(request.param))
 
 
 @pytest.mark.slow
