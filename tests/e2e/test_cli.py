@@ -31,7 +31,7 @@ def test_help_and_package_load_neither_plots_nor_pydantic_nor_numpy() -> None:
 
 
 def test_analyze_prints_one_object_with_units_in_its_keys() -> None:
-    done = run("analyze", "biet2008-stator", "--json", "--samples", "16")
+    done = run("analyze", "biet2008-stator", "--json", "--samples", "8")
     assert done.returncode == 0
     result = json.loads(done.stdout)
     for key in (

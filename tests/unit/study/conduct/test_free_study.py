@@ -71,7 +71,7 @@ def test_exports_name_surfaces_and_measures(place: Path, form: str) -> None:
 
 def test_simulated_people_tell_the_surfaces_apart_better_than_by_guessing(place: Path) -> None:
     done = program(
-        "study", "simulate", "shapes-match", "--participants", "40", "--observer", "one.toml",
+        "study", "simulate", "shapes-match", "--participants", "12", "--observer", "one.toml",
         "--json", "--out", "sim", cwd=place,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
