@@ -38,11 +38,13 @@ lab: $(VENV)/run.stamp  ## open the lab in the browser
 # Twins and loops in real time are tested last and alone: a device stops when its host is held up
 # for 50 ms, as it must, and other tests would hold it up. Both runs happen even if the first fails.
 PYTEST := $(BIN)/python -m pytest
+# A second argument names a mark: only files that have it are read, which takes a second in place of ten.
 # Files of tests, all unless said: `TESTS="tests/unit/film"`, or those of a room or folder: `PART=film`.
 PART ?=
 TESTS ?= $(if $(PART),$(or $(shell $(BIN)/python tools/part_tests.py $(PART)),$(error no tests of PART=$(PART))),tests)
 define run_tests
 @failed=0; tests="$(TESTS)"; \
+$(if $(2),tests=$$(grep -rl --include='test_*.py' 'mark\.$(2)' $$tests); test -n "$$tests" || exit 0;) \
 $(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(1)" $$tests || failed=1; \
 realtime=$$(grep -rl --include='test_*.py' 'pytest.mark.realtime' $$tests); \
 test -z "$$realtime" || $(PYTEST) -m "not campaign and realtime $(1)" $$realtime; \
@@ -57,7 +59,7 @@ test: $(VENV)/test.stamp  ## run the quick tests, in some five minutes; of a roo
 
 slow: export PYTEST_ADDOPTS += --durations=40
 slow: $(VENV)/test.stamp  ## run the tests that take seconds each, as CI does after the quick ones
-	$(call run_tests,and slow and not nightly)
+	$(call run_tests,and slow and not nightly,slow)
 
 gate: $(VENV)/test.stamp  ## reliability: crash, kill, disk, fuzz, token, watchdog …, with a table
 	@$(BIN)/python tools/gate.py

@@ -208,6 +208,7 @@ class Nearness:
         self._after: dict[str, frozenset[str]] = {}
         self._steps: dict[str, dict[str, int]] = {}
         tests = tree / "tests"
+        named_by = functools.cache(lambda helper: import_graph.modules_named_by(helper, self.graph))
         for test in import_graph.test_files(tests):
             name = test.relative_to(tree).as_posix()
             self.texts[name] = test.read_text(encoding="utf-8")
@@ -217,7 +218,7 @@ class Nearness:
             for folder in [parent for parent in test.parents if tests in [parent, *parent.parents]]:
                 for helper in folder.glob("*.py"):
                     if helper.stem == "conftest" or f"{helper.stem} import" in self.texts[name]:
-                        named |= import_graph.modules_named_by(helper, self.graph)
+                        named |= named_by(helper)
             self._after[name] = import_graph.modules_in_the_name_of(test, tests, self.graph)
             self._steps[name] = import_graph.distances(named, self.graph)
 

@@ -82,6 +82,7 @@ def answer(
     return done.stdout.strip()
 
 
+@pytest.mark.slow
 def test_a_cache_is_used_until_something_changes(tmp_path: Path) -> None:
     assert answer(tmp_path) == "12.0 0"
     assert answer(tmp_path) == "12.0 1", "nothing changed and it was compiled again"

@@ -61,7 +61,7 @@ def test_a_very_narrow_beam_is_the_closed_form_within_one_per_cent() -> None:
 @pytest.mark.parametrize(
     ("ceramic", "shim", "lengths", "within"),
     [
-        (0.1e-3, 0.05e-3, (4, 5, 6, 8, 12, 20), 0.011),
+        (0.1e-3, 0.05e-3, (4, 8, 20), 0.011),
         (0.35e-3, 0.1e-3, (8, 12, 20), 0.01),
         (0.2e-3, 0.4e-3, (8, 12, 20), 0.02),
     ],

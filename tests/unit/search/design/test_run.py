@@ -118,7 +118,10 @@ def test_hosts_that_search_in_one_folder_end_with_what_all_have_solved(tmp_path:
     assert solved(0) >= second - first
 
 
-@pytest.mark.parametrize("after", [3, 40, 55, 80])
+@pytest.mark.parametrize(
+    "after",
+    [3, pytest.param(40, marks=pytest.mark.slow), 55, pytest.param(80, marks=pytest.mark.slow)],
+)
 @pytest.mark.usefixtures("by_formula")
 def test_a_search_that_was_stopped_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int, whole: DesignSearch
