@@ -223,7 +223,6 @@ if TYPE_CHECKING:
         wanted_friction: WantedFriction | str | None = ...,
         samples: int = ...,
         seed: int = ...,
-        tell_apart: bool = ...,
         points: int = ...,
         progress: SayProgress | None = ...,
     ) -> FrictionAnalysis:

@@ -49,7 +49,7 @@ def test_analyze_prints_one_object_with_units_in_its_keys() -> None:
     ):
         assert key in result
     assert result["squeeze_number"] == pytest.approx(20.418, abs=5e-4)
-    assert result["model"] == "partial-levitation-shear"
+    assert result["model"] == "levitation"
     low, high = result["relative_friction_interval"]
     assert low < result["relative_friction"] < high
     assert result["friction_reduction"] == pytest.approx(
@@ -86,7 +86,7 @@ def test_a_friction_has_its_interval_its_shares_and_what_to_measure_next(tmp_pat
     # What touches is elastic until it slips: it keeps less of the friction than of the load.
     assert 0 < result["relative_friction"] < shares["asperities"]
     assert abs(shares["residual"]) < 1e-6
-    assert result["model"] == "partial-levitation-shear"
+    assert result["model"] == "levitation"
     assert f"interval {low:.2f}–{high:.2f}" in result["verdict"][0]["text"]
     assert set(result["uncertainty"]["groups"]) == {"measurable", "unknown"}
     assert result["friction_reduction"] == pytest.approx(

@@ -106,8 +106,8 @@ def test_film_models_stand_side_by_side(plate: Analysis) -> None:
 def test_curves_pass_through_their_marked_points(plate: Analysis) -> None:
     for curve in plate.friction_curves:
         assert curve.amplitude_for_criterion is not None
-        if curve.model == "partial-levitation-shear":
-            # Asperities always carry something.
+        if curve.model == "levitation":
+            # Something always touches.
             assert curve.zero_friction_amplitude is None
             at = np.interp(curve.amplitude_for_criterion, curve.amplitude, curve.relative_friction)
             assert at == pytest.approx(0.7, abs=5e-3)
@@ -123,7 +123,7 @@ def test_curves_pass_through_their_marked_points(plate: Analysis) -> None:
 
 def test_the_verdict_speaks_of_validation_and_of_assumptions(plate: Analysis) -> None:
     text = " ".join(finding.text for finding in plate.verdict)
-    assert "refutes the default model" in text
+    assert "fitted to published friction of people" in text
     assert "assumed" in text
     assert any(finding.kind == "doubt" for finding in plate.verdict)
 

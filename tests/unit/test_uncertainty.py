@@ -51,7 +51,8 @@ from squeezefilm.quantities import Unit
 
 @pytest.fixture(scope="module")
 def point(stator: Display) -> Prediction:
-    return predict(stator, vibration_amplitude=2e-6)
+    # The model that draws most: laws of contact, of shear and of slip.
+    return predict(stator, vibration_amplitude=2e-6, model="partial-levitation-shear")
 
 
 def _given(display: Display, **ranges: tuple[float, float]) -> Display:
@@ -200,8 +201,21 @@ def test_a_model_by_name_in_which_all_slips_leaves_no_shear_to_draw(stator: Disp
     assert HEIGHT_LAW in paths
     held = predict(stator, vibration_amplitude=2e-6, model="paper2008")
     mixture = Mixture(stator, held, driven=False)
-    assert mixture.model == "partial-levitation-shear"
-    assert SHEAR in mixture.paths
+    assert mixture.model == "levitation"
+
+
+def test_the_default_draws_people_and_of_the_contact_what_the_plate_feels(
+    stator: Display,
+) -> None:
+    held = Mixture(stator, predict(stator, vibration_amplitude=2e-6), driven=False).paths
+    assert {"finger.contact_decay_length", "finger.decay_speed_exponent"} < set(held)
+    assert not [path for path in held if "asperities" in path or path in (HEIGHT_LAW, SHEAR)]
+    driven = Mixture(stator, predict(stator), driven=True).paths
+    assert HEIGHT_LAW in driven
+    rival = predict(stator, vibration_amplitude=2e-6, model="partial-levitation-shear")
+    paths = Mixture(stator, rival, driven=False).paths
+    assert SHEAR in paths
+    assert "finger.contact_decay_length" not in paths
 
 
 def test_a_draw_mixes_the_limits_of_the_skin(
@@ -231,7 +245,7 @@ def test_a_finger_takes_its_share_of_a_driven_amplitude(
 
     def touch(mode: _Mode, _: Any, free: float, *, tolerance: float) -> Any:
         touched.append((mode.quality_factor, free))
-        return SimpleNamespace(amplitude=0.5 * free, mode=None, sharing=None)
+        return SimpleNamespace(amplitude=0.5 * free, mode=None)
 
     monkeypatch.setattr(draws, "touch", touch)
     other = replaced(stator, {"actuator.quality_factor": 150.0})
@@ -257,30 +271,6 @@ def test_a_finger_takes_its_share_of_a_driven_amplitude(
     assert len(touched) == 1
 
 
-def test_a_limit_that_is_known_is_not_asked_for_again(stator: Display) -> None:
-    class Asked(_Law):
-        def sharing(self, amplitude: Any, limit: str) -> Any:
-            limits.append(limit)
-            return super().sharing(amplitude, limit)
-
-    law: Any = Asked()
-    at = np.array([1e-6])
-    for softness, known, asked in (
-        (0.3, None, ["own", "one-gap"]),
-        (0.3, "own", ["one-gap"]),
-        (0.3, "one-gap", ["own"]),
-        (1.0, None, ["own"]),
-        (1.0, "own", []),
-        (0.0, None, ["own", "one-gap"]),
-    ):
-        before = None if known is None else law.sharing(at, known)
-        limits: list[str] = []
-        draw = Draw(stator, 0.5, softness, "first", "persson")
-        found = draws.between_limits(law, draw, at, before)
-        assert found == pytest.approx(0.9 * softness + 0.8 * (1 - softness))
-        assert limits == asked
-
-
 class _Law:
     """A friction law that needs no film: each limit falls with the amplitude by its own slope."""
 
@@ -291,10 +281,9 @@ class _Law:
     def on_even_wave(self) -> Any:
         return self
 
-    def sharing(self, amplitude: Any, limit: str) -> Any:
-        a = np.atleast_1d(np.asarray(amplitude, dtype=float)) / 1e-6
+    def friction_in(self, limit: str, amplitude: Any) -> Any:
         slope = self.own if limit == "own" else self.tied
-        return SimpleNamespace(relative_friction=1 - 0.1 * slope * a, limit=limit)
+        return 1 - 0.1 * slope * amplitude / 1e-6
 
 
 def _predicted(**changes: Any) -> Any:
@@ -452,7 +441,7 @@ def test_why_there_is_no_interval_is_said(
     assert interval_or_reason(stator, point, samples=0) == (None, "no samples were asked for")
     monkeypatch.setattr(uncertainty, "uncertain_friction", refuse)
     assert interval_or_reason(stator, point) == (None, "nothing holds")
-    still = dataclasses.replace(point, touch=dataclasses.replace(point.touch, sharing=None))
+    still = dataclasses.replace(point, touch=dataclasses.replace(point.touch, law=None))
     assert interval_or_reason(stator, still)[1].startswith("nothing vibrates")
 
 
@@ -508,10 +497,10 @@ def test_a_band_ends_where_more_than_two_per_cent_are_refused(
             self.wide = wide
             self.on_even_wave = self
 
-        def sharing(self, amplitude: np.ndarray, limit: str) -> Any:
+        def friction_in(self, limit: str, amplitude: np.ndarray) -> Any:
             if self.wide > 1.1 and amplitude.max() > 2.5e-6:
                 raise OutOfRangeError("pressed through")
-            return _Law(self.wide, self.wide).sharing(amplitude, limit)
+            return _Law(self.wide, self.wide).friction_in(limit, amplitude)
 
     monkeypatch.setattr(Mixture, "law", lambda _, draw: Law(_length(draw)))
     told: list[tuple[str, float]] = []
@@ -536,7 +525,7 @@ def test_the_nominal_friction_is_as_described(stator: Display, point: Prediction
     # A model that shares no load has its interval by the default one, over an antinode as it is.
     held = predict(stator, vibration_amplitude=2e-6, model="paper2008")
     assert uncertainty._nominal(Mixture(stator, held, driven=False)) == pytest.approx(
-        float(point.law.on_even_wave.at(2e-6))
+        float(point.law.by("levitation").on_even_wave.at(2e-6))
     )
 
 
@@ -554,7 +543,9 @@ def test_a_range_that_is_known_better_narrows_the_interval(
 
 @pytest.mark.slow
 def test_a_hard_pressed_finger_has_no_interval(stator: Display) -> None:
-    hard = predict(stator, vibration_amplitude=3e-6, normal_force=5.0)
+    hard = predict(
+        stator, vibration_amplitude=3e-6, normal_force=5.0, model="partial-levitation-shear"
+    )
     found, why = interval_or_reason(stator, hard, samples=8)
     assert found is None
     assert "pressed through its asperities" in why
@@ -628,7 +619,9 @@ def test_a_disc_of_a_draw_is_told_from_few_solved_ones(monkeypatch: pytest.Monke
 
 def test_draws_beyond_the_range_of_their_law_count_without_a_warning_for_each() -> None:
     # Warnings are errors in tests: under 2 N some draws of separate asperities are pressed flat.
-    p = predict("biet2008-stator", vibration_amplitude=2e-6, normal_force=2.0)
+    p = predict(
+        "biet2008-stator", vibration_amplitude=2e-6, normal_force=2.0, model="partial-levitation"
+    )
     mixture = Mixture(load_display("biet2008-stator"), p, driven=False)
     drawn, _ = evaluate(mixture, sobol_points(mixture, 64, 3), lambda _: None)
     assert np.isfinite(drawn.friction).mean() > 0.95

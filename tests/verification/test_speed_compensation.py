@@ -63,8 +63,8 @@ def test_without_the_speed_it_is_missed_by_far_more() -> None:
     print(f"nominal speed alone: {missed.min():+.3f} to {missed.max():+.3f}, "
           f"RMS {np.sqrt(np.mean(missed**2)):.3f}")  # fmt: skip
     # Docs quote these: slower than 80 mm/s it is too slippery, faster too sticky.
-    assert np.min(missed) < -0.3
-    assert np.max(missed) > 0.05
+    assert np.min(missed) < -0.05
+    assert np.max(missed) > 0.03
     assert np.max(np.abs(missed)) > 20 * p.inverse.max_error
 
 

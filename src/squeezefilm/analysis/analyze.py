@@ -187,7 +187,7 @@ class Analysis(Result):
     def sensitivities(self) -> DisplaySensitivities | None:
         """What each uncertain or toleranced value does, with the `effort` asked for: about a
         second, or twice a solve for each value; None where nothing vibrates."""
-        if self.prediction.touch.sharing is None:
+        if self.prediction.touch.law is None:
             return None
         return display_sensitivities(self.display, self.prediction, self.effort)
 

@@ -87,7 +87,7 @@ def area_odds(
     `uncertain_friction`; None where the area has no friction, nothing vibrates or nothing
     touches."""
     p = prediction
-    if p.touch.sharing is None or p.vibration_amplitude == 0 or not area.of_note:
+    if p.touch.law is None or p.vibration_amplitude == 0 or not area.of_note:
         return None
     over = _elsewhere(display, p, area)
     mixture = mixture_of(display, p)
@@ -150,7 +150,7 @@ def _elsewhere(display: Display, p: Prediction, area: ActiveArea) -> list[_Elsew
 
 def _met(law: FrictionLaw, found: Outcome, over: list[_Elsewhere | None]) -> list[float]:
     """The friction of a draw at places; None stands for the prediction's own."""
-    tied = found.friction - float(law.sharing(found.amplitude, "own").relative_friction[0])
+    tied = found.friction - float(law.friction_in("own", np.array([found.amplitude]))[0])
     means = (
         found.friction - tied
         if one is None

@@ -156,7 +156,8 @@ COMPARED: tuple[tuple[FrictionModel, int], ...] = (
     ("paper2008", 101),
     ("film-smooth", 25),
     ("film-sealed", 25),
-    ("partial-levitation-shear", 81),
+    ("levitation", 81),
+    ("partial-levitation-shear", 41),
     ("partial-levitation", 41),
     ("partial-levitation-one-gap", 41),
 )

@@ -43,7 +43,6 @@ from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.touch import Touch, touch
 from squeezefilm.config.provenance import Provenance
-from squeezefilm.contact.sharing.pad import Limit, PadFriction
 from squeezefilm.display import Display
 from squeezefilm.errors import OutOfRangeWarning, SqueezefilmError
 from squeezefilm.plate.heat.warming import heat_source
@@ -149,6 +148,10 @@ class Tally:
         return Refusals(count, evaluations, self.reasons, self.heights, self.example)
 
 
+_OF_LIFT = ("finger.contact_decay_length", "finger.decay_speed_exponent")
+_OF_BALANCE = ("finger.asperities", "finger.plateau_width", "roughness")
+
+
 class Mixture:
     """All that a display may be at a prediction's working point: `inputs`, each with a coordinate
     from 0 to 1 that says which value or law is drawn.
@@ -168,16 +171,22 @@ class Mixture:
             driven=driven,
             normal_force=prediction.normal_force,
         )
-        sheared = law.kind.shear or not shared
-        if not sheared:
-            # µ and κ decide when what touches slips, and nothing else.
-            parameters = tuple(
-                one
-                for one in parameters
-                if not one.path.endswith((TANGENTIAL_RATIO, "friction_coefficient"))
-            )
+        sheared = law.kind.friction == "shear"
+        lifted = self.model == DEFAULT_MODEL
+        # µ and κ decide when what touches slips, and nothing else.
+        without: list[str] = [] if sheared else [TANGENTIAL_RATIO, "friction_coefficient"]
+        if not lifted:
+            without += _OF_LIFT
+        choices = model_choices(display, sheared=sheared)
+        if lifted and not driven:
+            # Asperities and films decide what the plate feels of the finger, and nothing else.
+            without += _OF_BALANCE
+            choices = ()
+        parameters = tuple(
+            one for one in parameters if not any(part in one.path for part in without)
+        )
         self.inputs: tuple[Input, ...] = calibrated_inputs(
-            parameters + model_choices(display, sheared=sheared), display.joint, driven=driven
+            parameters + choices, display.joint, driven=driven
         )
         # Laws of contact are compared at what a plateau carries as described.
         self._pressure = display.finger.plateau_pressure()
@@ -357,36 +366,29 @@ def outcome_of(
     """What comes of a draw at an amplitude (m) without its finger; `settled` as `touch` has its
     tolerance."""
     law, free_amplitude = mixture.law(draw), free_amplitude * draw.amplitude_share
-    amplitude, power, known = free_amplitude, None, None
+    amplitude, power = free_amplitude, None
     if mixture.prediction.voltage is not None and mixture.prediction.mode.modal_mass is not None:
         felt = touch(mixture.mode(draw), law, free_amplitude, tolerance=settled)
-        amplitude, known = felt.amplitude, felt.sharing
+        amplitude = felt.amplitude
         power = mixture.power(felt, draw.display.drive.voltage)
-    friction = float(between_limits(law, draw, np.array([amplitude]), known)[0])
+    friction = float(between_limits(law, draw, np.array([amplitude]))[0])
     return Outcome(friction, amplitude, np.nan if power is None else power)
 
 
-def between_limits(
-    law: FrictionLaw, draw: Draw, amplitude: si.MetreArray, known: PadFriction | None = None
-) -> si.DimensionlessArray:
-    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it; one limit may be `known`.
+def between_limits(law: FrictionLaw, draw: Draw, amplitude: si.MetreArray) -> si.DimensionlessArray:
+    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it.
 
     At a place what a stiff pad differs by from ridges that sink each by themselves is taken from an
     even wave of the same amplitude: on the solved shape the one ridge that moves most would press
     a pad at one mean gap through, and so refuse draws for what no real skin is. What a calibration
     found the laws to be off by is added where a finger still feels something.
     """
-
-    def limit(of: FrictionLaw, name: Limit) -> si.DimensionlessArray:
-        if of is law and known is not None and known.limit == name:
-            return known.relative_friction
-        return of.sharing(amplitude, name).relative_friction
-
-    found, soft = limit(law, "own"), draw.skin_compliance
+    found, soft = law.friction_in("own", amplitude), draw.skin_compliance
     if soft < 1:
         even = law.on_even_wave
-        alike = found if even is law else limit(even, "own")
-        found = np.clip(found + (1 - soft) * (limit(even, "one-gap") - alike), 0.0, 1.0)
+        alike = found if even is law else even.friction_in("own", amplitude)
+        tied = even.friction_in("one-gap", amplitude)
+        found = np.clip(found + (1 - soft) * (tied - alike), 0.0, 1.0)
     if draw.friction_offset:
         found = np.clip(found + draw.friction_offset, 0.0, np.maximum(found, 1.0))
     return found

@@ -128,7 +128,7 @@ def felt_gratings(
         law = functools.partial(described, speed=speed)
         nominal.append(_finest(senses, tau, p.vibration_amplitude, law, Rubbed(base, pad, speed)))
     found, why = (None, "no draws were asked for")
-    if draws and p.touch.sharing is not None:
+    if draws and p.touch.law is not None:
         found, why = _drawn(display, p, senses, speeds, draws)
     rows = []
     for k, speed in enumerate(speeds):

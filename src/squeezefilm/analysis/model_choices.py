@@ -1,8 +1,7 @@
 """Laws and mechanisms among which nobody can choose yet, each with the weight it is given.
 
-No measurement tells them apart (`analysis.friction.tell_apart` says which one would), so an
-interval draws them beside the parameters. **The weights are assumed**: they say how much this
-package would bet, and why.
+No measurement tells them apart, so an interval draws them beside the parameters. **The weights are
+assumed**: they say how much this package would bet, and why.
 """
 
 from __future__ import annotations

@@ -108,6 +108,15 @@ _ASSUMED: dict[str, _Assumed] = {
     ),
     _CHARGE: _Assumed(0.8, 1.2, _GRANT),
     _STRESS: _Assumed(0.8, 1.2, f"of d31: {_GRANT}"),
+    "finger.contact_decay_length": _Assumed(
+        0.5, 1.75, "as the decay amplitudes of seventy strokes of 14 people spread, 5 to 95 %"
+    ),
+    "finger.decay_speed_exponent": _Assumed(
+        0.0,
+        0.58,
+        "speed was never varied alone: none to twice what two laboratories differ by",
+        absolute=True,
+    ),
 }
 # Each other width takes a table of solved films, each other shape of a spectrum its law.
 _STEPS = {

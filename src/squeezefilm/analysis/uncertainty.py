@@ -208,7 +208,7 @@ def interval_or_reason(
     `InputError` as it does."""
     if not samples:
         return None, "no samples were asked for"
-    if prediction.touch.sharing is None:
+    if prediction.touch.law is None:
         return None, "nothing vibrates, or the model shares no load"
     try:
         found = uncertain_friction(

@@ -21,7 +21,7 @@ from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.analysis.plate.mode_doubts import mode_doubts, why_undriven
 from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.chain.active_area import CRITERIA
-from squeezefilm.chain.friction_models import MODEL_KINDS
+from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.config.stated import source_doubt
 from squeezefilm.display import Display
@@ -90,7 +90,10 @@ def verdict(
             yield Finding("doubt", doubt)
         yield Finding(
             "doubt",
-            "Published friction of people on glass refutes the default model (squeezefilm "
+            "Friction is by a model fitted to published friction of people on glass, and to nothing "
+            "else (squeezefilm reproduce --data published)."
+            if p.model == DEFAULT_MODEL
+            else f"Published friction of people on glass refutes the model '{p.model}' (squeezefilm "
             "reproduce --data published).",
         )
 

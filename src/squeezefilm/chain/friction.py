@@ -28,7 +28,7 @@ from squeezefilm.contact.sharing.film_load import FilmLoad, FilmModel, film_load
 from squeezefilm.contact.sharing.pad import Limit
 from squeezefilm.display import Display, Surface
 from squeezefilm.film.closed.limits import PaperModel, contact_mean_pressure
-from squeezefilm.film.gap import PaperGap
+from squeezefilm.film.gap import PaperGap, squeeze_number
 
 TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 47))
 """Where a law that depends on the speed is tabulated: toward rest, and from creeping to faster than
@@ -82,11 +82,20 @@ class FrictionLaw(PadLaw):
         if self.model == "paper2008-printed":
             over = float(contact_mean_pressure(self.gap(amplitude), "paper2008-printed")) - 1
             return FilmLoad("paper2008", over, 0.0, float("nan"), "closed form, as printed")
+        lifted = self.kind.friction == "lift"
         if self.kind.film == "shared":
-            return self._shared_load(amplitude)
+            return self._lifted_load(amplitude) if lifted else self._shared_load(amplitude)
         gap, model = self.gap(amplitude), cast(FilmModel, self.model)
         width = self.finger.plateau_width
         return film_load(gap, self.frequency, self.gas, model, plateau_width=width)
+
+    def _lifted_load(self, amplitude: si.Metre) -> FilmLoad:
+        ambient = self.gas.ambient_pressure
+        pressure = self.normal_force / self.finger.contact_area(self.normal_force)
+        over = (1 - self.at(amplitude)) * pressure / ambient
+        gap = self.finger.contact_decay_length
+        number = squeeze_number(self.frequency, self.contact_side, gap, self.gas.viscosity, ambient)
+        return FilmLoad(self.model, over, 0.0, float(number), "closed form of 2016, length fitted")
 
     def _shared_load(self, amplitude: si.Metre) -> FilmLoad:
         shared = self.sharing(amplitude)
@@ -112,8 +121,10 @@ class FrictionLaw(PadLaw):
         Toward rest a constant tangential stiffness keeps what the least pressure of a period
         holds, one that follows the load nothing."""
         a, speeds = np.ravel(amplitude), np.ravel(speed)
-        if not self.kind.shear:
+        if not self.kind.knows_speed:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
+        if self.kind.friction == "lift":
+            return self._lifted(a, speeds, limit or self.kind.limit)
         # A pad of thousands of ridges takes them in parts, within some 100 MB.
         parts = min(math.ceil(a.size * speeds.size * self.ridge_swings[0].size / 1e7), a.size)
         asked, kind = np.array_split(a, parts), limit or self.kind.limit
@@ -135,14 +146,14 @@ class FrictionLaw(PadLaw):
             # As printed, the mean pressure of small vibrations is a hair below the ambient one.
             return np.minimum(found, 1.0)
         if self.kind.film == "shared":
-            return self.sharing(np.ravel(amplitude)).relative_friction
+            return self.friction_in(self.kind.limit, np.ravel(amplitude))
         pressures = np.array([1 + self.load(float(a)).over_pressure for a in np.ravel(amplitude)])
         return np.asarray(self._shared(pressures))
 
     @si.checked_numbers
     def under(self, load: FilmLoad, amplitude: si.Metre) -> si.Dimensionless:
         """µ′/µ (dimensionless) with a film already solved at an amplitude (m), as `load` has it."""
-        if self.kind.film == "asymptote" or self.kind.shear:
+        if self.kind.film == "asymptote" or self.kind.knows_speed:
             return self.at(amplitude)
         if self.kind.film == "shared":
             # The contact grows with the force here, so the paper's fixed area will not do.
@@ -198,7 +209,7 @@ class FrictionLaw(PadLaw):
         count = (257 if self.kind.film == "asymptote" else 65) if points is None else points
         si.require("points", count, at_least=2)
         # A row of its own for the speed that is asked for most.
-        speeds = np.union1d(TABLE_SPEEDS, [self.speed]) if self.kind.shear else None
+        speeds = np.union1d(TABLE_SPEEDS, [self.speed]) if self.kind.knows_speed else None
         return tabulated(self, highest_amplitude, count, speeds)
 
 

@@ -18,10 +18,10 @@ FrictionModel = Literal[
     "partial-levitation",
     "partial-levitation-one-gap",
     "partial-levitation-shear",
+    "levitation",
 ]
-DEFAULT_MODEL: FrictionModel = "partial-levitation-shear"
-"""Film and asperities share the load, each ridge at its own balance, and what touches is elastic
-until it slips (decisions 0005 and 0013)."""
+DEFAULT_MODEL: FrictionModel = "levitation"
+"""The film lifts the contact off over a length fitted to people (decision 0018)."""
 
 
 class ModelKind(NamedTuple):
@@ -29,14 +29,20 @@ class ModelKind(NamedTuple):
 
     "asymptote": the paper's closed form at an infinite squeeze number; "held": a film solved (a
     hundred times slower) at a gap that does not yield; "shared": films that carry the finger
-    together with asperities, at the gap where both balance the load. With `shear`, what touches
-    within a period is elastic until it slips, so that friction depends on the finger's speed;
-    without it all that touches slips.
+    together with asperities, at the gap where both balance the load. Of what is shared `friction`
+    takes the part that asperities carry, all of it slipping ("load"); that part, elastic until it
+    slips ("shear"); or the closed form of 2016 with the finger's fitted length ("lift"), while the
+    balance only says what the plate feels of the finger.
     """
 
     film: Literal["asymptote", "held", "shared"]
     limit: Limit = "own"
-    shear: bool = False
+    friction: Literal["load", "shear", "lift"] = "load"
+
+    @property
+    def knows_speed(self) -> bool:
+        """Whether friction depends on the finger's speed."""
+        return self.friction != "load"
 
 
 MODEL_KINDS: dict[FrictionModel, ModelKind] = {
@@ -48,7 +54,8 @@ MODEL_KINDS: dict[FrictionModel, ModelKind] = {
     "film-smooth": ModelKind("held"),
     "partial-levitation": ModelKind("shared"),
     "partial-levitation-one-gap": ModelKind("shared", "one-gap"),
-    "partial-levitation-shear": ModelKind("shared", shear=True),
+    "partial-levitation-shear": ModelKind("shared", friction="shear"),
+    "levitation": ModelKind("shared", friction="lift"),
 }
 
 

@@ -27,6 +27,7 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.contact.sharing.balance import require_balanced
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
+from squeezefilm.contact.sharing.levitation import levitation_friction, levitation_scale
 from squeezefilm.contact.sharing.pad import (
     FrictionRipple,
     Limit,
@@ -46,6 +47,7 @@ from squeezefilm.plate.loaded_mode import mean_square_wave
 if TYPE_CHECKING:
     from squeezefilm.contact.sharing.kernel import CompiledPad
 
+_RIPPLE_POSITIONS = 24
 PascalPerMetreComplex = Annotated[complex, si.Unit("Pa/m")]
 
 
@@ -117,12 +119,43 @@ class PadLaw:
     def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
         """µ′/µ in both limits of the skin at amplitudes (m); with shear where the model has it."""
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
-        own, tied = (self.sharing(a, one).relative_friction for one in ("own", "one-gap"))
-        return FrictionLimits(a, own, tied)
+        return FrictionLimits(a, self.friction_in("own", a), self.friction_in("one-gap", a))
+
+    def friction_in(self, limit: Limit, amplitude: si.MetreArray) -> si.DimensionlessArray:
+        """µ′/µ in a limit of the skin at amplitudes (m), shape (n,), at the law's speed."""
+        if self.kind.friction == "lift":
+            return np.asarray(self._lifted(amplitude, self.speed, limit)[0])
+        return self.sharing(amplitude, limit).relative_friction
+
+    def _lifted(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecondLike, limit: Limit
+    ) -> si.DimensionlessArray:
+        """µ′/µ by `levitation_friction`, shape (speeds, amplitudes): the mean over ridges that each
+        meet their own amplitude, or one film that meets the root of their mean square."""
+        met, shares = self.ridge_swings
+        _require_tabulated(amplitude, met)
+        if limit == "one-gap":
+            met, shares = np.sqrt(met**2 @ shares)[None], np.ones(1)
+        relative = amplitude[:, None] * met
+        scales = [self._scale(float(pace)) for pace in np.atleast_1d(speed)]
+        return np.stack([levitation_friction(relative / scale) @ shares for scale in scales])
+
+    def _scale(self, speed: si.MetrePerSecond) -> si.Metre:
+        """The scale g of the levitation model (m) at a speed (m/s)."""
+        pressure = self.normal_force / self.finger.contact_area(self.normal_force)
+        length = float(self.finger.decay_length_at(speed))
+        return levitation_scale(length, pressure, self.gas.ambient_pressure)
 
     def ripple(self, amplitude: si.Metre) -> FrictionRipple:
-        """µ′/µ along the wave by partial levitation at an amplitude (m), each ridge at its own
-        balance, whatever the model. See `friction_ripple`."""
+        """µ′/µ along an even wave at an amplitude (m), each ridge by itself: by the law's
+        levitation, else by partial levitation whatever the model. See `friction_ripple`."""
+        if self.kind.friction == "lift":
+            position = np.arange(_RIPPLE_POSITIONS) / _RIPPLE_POSITIONS * self.half_wavelength
+            along = [replace(self, place=None, position=float(x)) for x in position]
+            lifted = [law.friction_in("own", np.array([amplitude]))[0] for law in along]
+            return FrictionRipple(
+                position, np.array(lifted), self.contact_side, self.half_wavelength
+            )
         return friction_ripple(
             self._films,
             self.asperities,
@@ -237,6 +270,8 @@ class PadLaw:
     def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,): the pad's in the limit
         "own" is the mean over its ridges."""
+        if self.kind.friction == "lift":
+            return levitation_friction(amplitude / self._scale(self.speed))
         posture, at = PadPosture(swings=np.ones(1)), np.zeros(1)
         found = self._pad(amplitude, self.speed, limit="own", points=at, posture=posture)
         return found.relative_friction
@@ -292,7 +327,7 @@ class PadLaw:
             raise OutOfRangeError(f"under a normal force of {shown}: {error}") from error
 
     def _shear(self, speed: si.MetrePerSecondLike) -> AsperityShear | None:
-        if not self.kind.shear:
+        if self.kind.friction != "shear":
             return None
         finger = self.finger
         return AsperityShear(

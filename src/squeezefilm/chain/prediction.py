@@ -1,8 +1,8 @@
 """The chain of one display: volts, frequency and finger to the friction and the tangential force.
 
 Each link names the model that made its numbers: the solved plate, a beam or the measured stator the
-amplitude, the finger on it what is left of it, and partial levitation, the paper's asymptote or a
-solved film the friction.
+amplitude, the finger on it what is left of it, and the closed form of 2016, the paper's
+asymptote or a solved film the friction.
 """
 
 from __future__ import annotations
@@ -239,8 +239,8 @@ def predict(
     where a plate is taken as a beam, or by a model that knows no other place.
     `theory` says how a plate is computed; without one it is solved in three dimensions, and taken
     as a beam, with a warning, where its working mode cannot be found so.
-    Without a `model`, film and asperities share the load of each ridge (partial levitation), and
-    what touches is elastic until it slips.
+    Without a `model`, the film lifts the contact off over a length fitted to published friction of
+    people; film and asperities share the load of each ridge in what the plate feels of the finger.
 
     `pace` says how long a solve may take and who is told of it; what its budget does not allow is
     left coarser, with a warning.
@@ -363,7 +363,12 @@ def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
             f"under {asked} most asperities are pressed flat even at rest: this contact's law "
             f"holds to {held}. Press less, or take asperities of type 'rough_contact'"
         )
-    if film == "shared":
+    if p.law.kind.friction == "lift":
+        messages.append(
+            f"the model '{p.model}' is fitted to people on glass, in two laboratories, each at its "
+            "own speed: a new person differs, and so may another surface"
+        )
+    elif film == "shared":
         spread = (
             "A skin so stiff that all ridges hang on one mean gap is out of this contact's range"
             if limits is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, NamedTuple
@@ -34,19 +35,27 @@ _LEAST_AMPLITUDE: si.Metre = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Touch:
-    """A finger on a mode: the amplitude it is left with, and how the load is shared there.
+    """A finger on a mode: the amplitude it is left with, and what the plate feels of it.
 
     `free_amplitude` is the one without the finger at the same voltage and frequency; `mode` how
     the finger detunes and damps it, None where the modal mass is not known and the finger is taken
-    to change nothing; `sharing` None where the surface stands still, and so is `impedance`: what
-    the plate feels of the finger at this amplitude, as `finger_impedance` gives it (N·s/m).
+    to change nothing; `law` the pad that is carried, None where the surface stands still, and so
+    is `impedance`: what the plate feels of the finger at this amplitude, as `finger_impedance`
+    gives it (N·s/m).
     """
 
     free_amplitude: si.Metre
     amplitude: si.Metre
     mode: LoadedMode | None
-    sharing: PadFriction | None
+    law: FrictionLaw | None
     impedance: NewtonSecondPerMetreComplex | None = None
+
+    @functools.cached_property
+    def sharing(self) -> PadFriction | None:
+        """How film and asperities share the load at this amplitude, each ridge where it is; None
+        where the surface stands still. Raises what the load balance raises."""
+        law = self.law
+        return None if law is None else law.sharing(self.amplitude, law.kind.limit)
 
     @property
     def kept(self) -> si.Dimensionless:
@@ -64,8 +73,7 @@ def touch(
 ) -> Touch:
     """The vibration with a finger on it, whose load depends on the amplitude.
 
-    Solved until amplitude and load fit to a `tolerance`, a share of the free amplitude; `sharing`
-    is at an amplitude within it.
+    Solved until amplitude and load fit to a `tolerance`, a share of the free amplitude.
 
     The finger rests where the law has it, film and asperities in the balance of the law (partial
     levitation, whatever its model). Where several amplitudes fit (a finger that lets go as the film
@@ -76,10 +84,8 @@ def touch(
     if free_amplitude < _LEAST_AMPLITUDE:
         return Touch(free_amplitude, free_amplitude, None, None)
     left = _touched(mode, _Pad.of(law), free_amplitude, tolerance)
-    # How the load is shared is asked of the ridges where they are.
-    sharing = law.sharing(left.amplitude, law.kind.limit)
     impedance = left.felt.impedance(law.frequency)
-    return Touch(free_amplitude, left.amplitude, left.mode, sharing, impedance)
+    return Touch(free_amplitude, left.amplitude, left.mode, law, impedance)
 
 
 @si.checked_numbers
@@ -93,8 +99,7 @@ def held_touch(mode: WorkingMode, law: FrictionLaw, amplitude: si.Metre) -> Touc
     kept = 1.0 if loaded is None else loaded.amplitude_ratio(law.frequency) / _alone(mode, law)
     if amplitude / kept < _LEAST_AMPLITUDE:
         return Touch(amplitude, amplitude, None, None)
-    sharing = law.sharing(amplitude, law.kind.limit)
-    return Touch(amplitude / kept, amplitude, loaded, sharing, felt.impedance(law.frequency))
+    return Touch(amplitude / kept, amplitude, loaded, law, felt.impedance(law.frequency))
 
 
 @si.checked_numbers

@@ -113,8 +113,9 @@ OnPlace = Annotated[
 Model = Annotated[
     str | None,
     typer.Option(
-        help="Friction model: partial-levitation-shear (the default), partial-levitation, "
-        "partial-levitation-one-gap, paper2008, film-sealed, film-open, film-plateau, film-smooth."
+        help="Friction model: levitation (the default), partial-levitation-shear, "
+        "partial-levitation, partial-levitation-one-gap, paper2008, film-sealed, film-open, "
+        "film-plateau, film-smooth."
     ),
 ]
 

@@ -223,12 +223,6 @@ class FrictionOptions(PointOptions):
         typer.Option(help='Ambient pressure, like "2 kPa" for a vacuum experiment.'),
     ] = None
     seed: Annotated[int, typer.Option(help="Seed of the random samples.")] = 1
-    tell_apart: Annotated[
-        bool,
-        typer.Option(
-            "--tell-apart", help="Which experiment would tell the laws of friction apart."
-        ),
-    ] = False
     out: Annotated[Path | None, written_to("Folder for friction.json and figures.")] = None
 
 

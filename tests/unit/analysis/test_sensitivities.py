@@ -45,7 +45,7 @@ def test_a_row_is_the_prediction_of_the_changed_display() -> None:
             assert (end.frequency_shift, end.amplitude_shift) == pytest.approx((f, a), abs=1e-9)
             # Another plate's shape differs a little from the described one's, which stands in.
             assert end.relative_friction == pytest.approx(there.relative_friction, abs=2e-4)
-    for path in ("finger.plateau_width", "surfaces.0.friction_coefficient"):
+    for path in ("finger.plateau_width", "finger.contact_decay_length"):
         row = _row(found, path)
         for end in (row.low, row.high):
             there = predict(replaced(display, {path: end.value}))
@@ -70,8 +70,8 @@ def test_the_most_telling_stand_first_and_ranges_that_are_given_count() -> None:
     found = display_sensitivities(display, p)
     changes = [one.friction_change for one in found.rows]
     assert changes == sorted(changes, reverse=True)
-    path = "finger.plateau_width"
-    known = {**display.provenance, path: Provenance("me", "measured", Uniform(249e-6, 251e-6))}
+    path = "finger.contact_decay_length"
+    known = {**display.provenance, path: Provenance("me", "measured", Uniform(9.5e-6, 9.7e-6))}
     narrow = display_sensitivities(dataclasses.replace(display, provenance=known), p)
     row = _row(narrow, path)
     assert (row.origin, row.source) == ("given", "me")

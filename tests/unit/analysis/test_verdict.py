@@ -246,8 +246,8 @@ def test_the_last_word_is_that_nothing_is_validated(point: Prediction) -> None:
     last = said(point)[-1]
     assert last == Finding(
         "doubt",
-        "Published friction of people on glass refutes the default model (squeezefilm reproduce "
-        "--data published).",
+        "Friction is by a model fitted to published friction of people on glass, and to nothing "
+        "else (squeezefilm reproduce --data published).",
     )
     # With what is said of the friction, and that no file says where these values are from.
     assert len(said(point, relative_friction=0.5)) == 3

@@ -129,7 +129,7 @@ def test_a_plate_that_hardly_moves_has_its_best_place_where_it_moves_most() -> N
     p = predict(display, vibration_amplitude=1e-13)
     assert p.law.place is not None
     assert (p.law.place.x, p.law.place.y) == (0.0, 0.0)
-    assert p.relative_friction == pytest.approx(1.0, abs=1e-6)
+    assert p.relative_friction == pytest.approx(1.0, abs=1e-4)
 
 
 # The map.

@@ -68,10 +68,29 @@ def test_the_asymptote_promises_twice_what_its_own_equation_gives(stator: Displa
     assert 2.0 < ratio < 2.2
 
 
-def test_film_and_asperities_share_the_load_by_default(stator: Display, plate: Display) -> None:
+def test_the_film_lifts_the_contact_off_by_default(stator: Display, plate: Display) -> None:
     for display in (stator, plate):
         p = predict(display)
-        assert p.model == "partial-levitation-shear"
+        assert p.model == "levitation"
+        # Film and contact carry the finger between them.
+        pressure = p.normal_force / display.finger.contact_area(p.normal_force)
+        lifted = (p.mean_pressure - 1) * display.gas.ambient_pressure / pressure
+        assert lifted == pytest.approx(1 - p.relative_friction)
+        # A slow finger is lifted by less; beyond the measured speeds nothing is known to change.
+        slow, fast, faster = (predict(display, speed=v).relative_friction for v in (0.01, 0.2, 3.0))
+        assert slow < p.relative_friction < fast == faster
+        assert p.relative_friction_limits is not None
+        own, tied = p.relative_friction_limits
+        assert own == p.relative_friction
+        # One film over the whole contact meets its root mean square, and friction is convex.
+        assert own - 0.1 < tied < own
+
+
+def test_film_and_asperities_share_the_load_where_a_rival_is_asked_for(
+    stator: Display, plate: Display
+) -> None:
+    for display in (stator, plate):
+        p = predict(display, model="partial-levitation-shear")
         sharing = p.touch.sharing
         assert sharing is not None
         assert p.relative_friction == pytest.approx(float(sharing.relative_friction[0]))
@@ -83,7 +102,9 @@ def test_film_and_asperities_share_the_load_by_default(stator: Display, plate: D
         assert float(sharing.film_share[0]) == pytest.approx(float(carried.film_share[0]))
         assert p.relative_friction < alone.relative_friction
         # A finger too fast for it slips all through; one that creeps keeps little.
-        slow, fast = (predict(display, speed=v).relative_friction for v in (0.01, 3.0))
+        slow, fast = (
+            predict(display, speed=v, model=p.model).relative_friction for v in (0.01, 3.0)
+        )
         assert slow < p.relative_friction < fast == pytest.approx(alone.relative_friction, rel=0.05)
         assert p.relative_friction_limits is not None
         own, tied = p.relative_friction_limits
@@ -96,7 +117,7 @@ def test_film_and_asperities_share_the_load_by_default(stator: Display, plate: D
 
 
 def test_a_stiff_pad_out_of_range_does_not_take_the_friction_with_it() -> None:
-    p = predict("biet2008-stator", vibration_amplitude=45e-6)
+    p = predict("biet2008-stator", vibration_amplitude=45e-6, model="partial-levitation-shear")
     with pytest.raises(OutOfRangeError, match="pressed through"):
         p.law.limits(45e-6)
     assert p.relative_friction_limits is None
@@ -135,7 +156,7 @@ def test_the_voltage_for_a_friction_gives_that_friction(plate: Display, stator: 
             assert p.vibration_amplitude == pytest.approx(amplitude, rel=1e-5)
     assert voltage_for_friction(plate, 1.0) == (0.0, 0.0)
     with pytest.raises(UnreachableError, match="at the least"):
-        voltage_for_friction(plate, 0.001)
+        voltage_for_friction(plate, 0.001, model="partial-levitation")
     with pytest.raises(UnreachableError, match="2000 V"):
         voltage_for_friction(stator, 0.6, frequency=30e3)
 
@@ -157,8 +178,11 @@ def test_a_vacuum_takes_the_film_s_reduction_away_and_leaves_the_taps_(stator: D
     thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(2e3))
     here, there = (predict(one, model="partial-levitation") for one in (stator, thin))
     assert 1 - there.relative_friction < 0.2 * (1 - here.relative_friction)
-    # What touches in bursts shears off in a vacuum just as well: most of the reduction stays.
     here, there = predict(stator), predict(thin)
+    # Measured at a sixtieth of an atmosphere: 0.60 to 0.82, which this model cannot give.
+    assert 0.2 < (1 - there.relative_friction) / (1 - here.relative_friction) < 0.5
+    # What touches in bursts shears off in a vacuum just as well: most of the reduction stays.
+    here, there = (predict(one, model="partial-levitation-shear") for one in (stator, thin))
     assert there.relative_friction > 1.3 * here.relative_friction
     assert 1 - there.relative_friction > 0.5 * (1 - here.relative_friction)
 
@@ -207,7 +231,7 @@ def test_an_asymptote_out_of_range_warns_or_is_refused(stator: Display) -> None:
     with pytest.raises(OutOfRangeError, match="strict=False"):
         predict(stator, model="paper2008", strict=True)
     # Without a model asked for, strictness has nothing to refuse: the film is solved.
-    assert predict(stator, strict=True).model == "partial-levitation-shear"
+    assert predict(stator, strict=True).model == "levitation"
 
 
 @pytest.mark.parametrize(

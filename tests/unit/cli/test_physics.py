@@ -36,7 +36,6 @@ def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: P
     assert asked.named == {
         "voltage": None, "frequency": None, "vibration_amplitude": None, "normal_force": None,
         "surface": None, "model": None, "position": None, "place": None, "speed": None,
-        "tell_apart": False,
         "ambient_pressure": None, "wanted_friction": None, "samples": 32, "seed": 1,
     }  # fmt: skip
     assert shown.given == (ANSWER,)
@@ -54,7 +53,7 @@ def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: P
         "voltage": 15.0, "frequency": 34e3, "vibration_amplitude": None, "normal_force": 0.3,
         "surface": "copper", "model": "film-open", "position": pytest.approx(2e-3),
         "speed": pytest.approx(0.05), "ambient_pressure": 2000.0, "wanted_friction": 0.7,
-        "samples": 8, "seed": 5, "tell_apart": False, "place": None,
+        "samples": 8, "seed": 5, "place": None,
     }  # fmt: skip
     assert written.given == (ANSWER, tmp_path)
     assert done.stdout == "figures: a/folder\n"

@@ -56,6 +56,7 @@ DIFFER = {
 LEFT_OUT = {
     "duty", "duty_window", "slew", "continuous_voltage", "heat", "lowest_frequency",
     "highest_frequency", "emissivity", "temperature_coefficient", "contact_area_exponent",
+    "decay_speed_exponent",
     "hurst_exponent", "longest_wavelength", "shortest_wavelength", "tangential_ratio",
     "ambient_temperature", "mass_per_area", "damping_per_area", "ridge_angle",
 }  # fmt: skip

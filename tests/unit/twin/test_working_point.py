@@ -51,7 +51,7 @@ class Laws:
                 else (np.repeat(curve(amplitude)[None, :], speed.size, axis=0))
             )
 
-        kind = SimpleNamespace(shear=self.shear)
+        kind = SimpleNamespace(knows_speed=self.shear)
         return SimpleNamespace(over_speeds=over_speeds, force=force, kind=kind, place="a place")
 
 

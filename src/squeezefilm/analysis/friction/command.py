@@ -12,7 +12,6 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.analysis.claims.record import missed_by
 from squeezefilm.analysis.curves import ModelCurve, as_far_as_it_goes, model_curves
-from squeezefilm.analysis.friction.tell_apart import ToldApart, tell_apart
 from squeezefilm.analysis.friction.wanted import Wanted, wanted_friction
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
 from squeezefilm.analysis.verdict import Finding, friction_verdict, held_back, why_not_good
@@ -70,7 +69,6 @@ class FrictionAnalysis(Result):
     wanted: Wanted | None
     tapping: Tapping
     verdict: tuple[Finding, ...]
-    apart: ToldApart | None = None
     active_area: JudgedArea | None = None
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.vibration_amplitude "
@@ -80,7 +78,7 @@ class FrictionAnalysis(Result):
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
         p = self.prediction
-        sharing = p.touch.sharing
+        sharing = None if p.law.kind.friction == "lift" else p.touch.sharing
         unsure = self.uncertainty
         return {
             "display": self.display.name,
@@ -133,7 +131,6 @@ class FrictionAnalysis(Result):
             "measurements_missed": _missed(p.model),
             "uncertainty": None if unsure is None else unsure.summary(),
             "verdict": to_json(self.verdict),
-            "tell_apart": None if self.apart is None else self.apart.summary(),
             "warnings": list(p.warnings),
             "provenance": stamp(self.display),
         }
@@ -159,7 +156,6 @@ class FrictionRequest:
     wanted_friction: WantedFriction | None = None
     samples: int = SAMPLES
     seed: int = 1
-    tell_apart: bool = False
     points: int = 40
     progress: SayProgress | None = None
 
@@ -172,7 +168,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     Arguments as `prediction.predict`; `ambient_pressure` (Pa) puts display and finger into another
     atmosphere, `speed` (m/s) is the finger's for the competing mechanism, `wanted_friction` asks
     for the voltage that reaches it, `samples` (0: none) is the base of the uncertainty's design,
-    `tell_apart` asks which experiment would tell the laws apart, `points` is the side of the map.
+    `points` is the side of the map.
     Raises what `predict` and `voltage_for_friction` raise, and `InputError` for `samples` that are
     no power of two.
     """
@@ -213,11 +209,6 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     unsure, why_not = interval_or_reason(
         display, prediction, samples=asked.samples, seed=asked.seed, progress=asked.progress
     )
-    apart = (
-        tell_apart(display, prediction, seed=asked.seed, progress=tell)
-        if asked.tell_apart
-        else None
-    )
     why = why_not_good(display, prediction)
     tell("ripple of the standing wave, and the active area")
     area = judged_area(display, prediction, samples=asked.samples, seed=asked.seed)
@@ -234,7 +225,6 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
             held_back(finding, why)
             for finding in friction_verdict(prediction, unsure, why_not, area)
         ),
-        apart,
         area,
     )
 
@@ -278,7 +268,7 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
     amplitude = np.linspace(0, max(3e-6, 2 * p.vibration_amplitude), points)
     force = np.geomspace(0.1 * p.normal_force, 4 * p.normal_force, points)
     law = dataclasses.replace(
-        p.law, model=p.law.model if p.law.model.startswith("partial") else DEFAULT_MODEL
+        p.law, model=p.law.model if p.law.kind.film == "shared" else DEFAULT_MODEL
     )
     rows = np.empty((points, points))
     for number, one in enumerate(force):
@@ -288,6 +278,6 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
 
 
 def _ripple(p: Prediction) -> FrictionRipple | None:
-    if p.touch.sharing is None or p.place_was_asked:
+    if p.touch.law is None or p.place_was_asked:
         return None
     return p.law.ripple(p.vibration_amplitude)

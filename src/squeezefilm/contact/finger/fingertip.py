@@ -40,6 +40,17 @@ FRICTION_OF_MOISTURE: dict[Moisture, float] = {"dry": 0.6, "normal": 1.0, "moist
 EXPLORING_SPEED: si.MetrePerSecond = 0.08
 """Between 77 and 86 mm/s: Smith, Gosselin and Houde 2002, 10.1007/s00221-002-1240-4."""
 
+CONTACT_DECAY_LENGTH: si.Metre = 9.6e-6
+"""Geometric mean of what friction at 10 mm/s (7.4 µm, three people) and in free strokes (12.5 µm,
+seventy strokes of 14 people, 0.5 N assumed) says: `tools/levitation_fit.py`."""
+
+DECAY_SPEED_EXPONENT: si.Dimensionless = 0.23
+"""Takes the one into the other where free strokes slide at 100 mm/s, assumed. Speed was never
+varied alone, so that this may be the difference of two laboratories."""
+
+DECAY_SPEED: si.MetrePerSecond = 0.032
+_SPEEDS = 0.01, 0.2
+
 # Frozen, so that every finger may share them.
 _ASPERITIES, _SKIN, _FINGERPAD = RoughContact(), Skin(), FingerpadDynamics()
 
@@ -66,6 +77,10 @@ class Finger:
     friction without vibration, τ times the real contact area; without it (None) the friction
     coefficient of the surface stands, at every load.
 
+    Over `contact_decay_length` ℓ the pressure of the contact falls by e as a film lifts it off, at
+    32 mm/s; it grows with `decay_speed_exponent` of the speed. Both are fitted to published
+    friction of people (`contact.sharing.levitation`).
+
     `skin` is the tissue at ultrasonic frequency, `fingerpad` the pad as a hand moves it. All of
     these defaults are assumed and illustrative: they control the friction predicted, so give your
     own where you can.
@@ -89,6 +104,10 @@ class Finger:
     tangential_stiffness: TangentialStiffness = "following"
     tangential_ratio: Annotated[si.Dimensionless, si.Above(0), si.AtMost(100)] = MINDLIN_RATIO
     shear_strength: Annotated[si.Pascal, PRESSURE] | None = None
+    contact_decay_length: Annotated[si.Metre, si.Above(0), si.AtMost(1e-3)] = CONTACT_DECAY_LENGTH
+    decay_speed_exponent: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(2)] = (
+        DECAY_SPEED_EXPONENT
+    )
 
     def __post_init__(self) -> None:
         if self.shear_strength is not None and not isinstance(self.asperities, RoughContact):
@@ -125,6 +144,13 @@ class Finger:
         area = self.contact_length**2 * float((force / reference) ** self.contact_area_exponent)
         _require_ridges(math.sqrt(area), self.ridge_period)
         return area
+
+    @si.checked_numbers
+    def decay_length_at(self, speed: si.MetrePerSecondLike) -> si.MetreLike:
+        """ℓ (m) at speeds of sliding (m/s): `contact_decay_length` at 32 mm/s, held beyond the 10
+        to 200 mm/s at which friction was measured."""
+        paces = np.clip(np.abs(speed), *_SPEEDS)
+        return self.contact_decay_length * (paces / DECAY_SPEED) ** self.decay_speed_exponent
 
     @si.checked_numbers
     def plateau_pressure(self, normal_force: si.Newton | None = None) -> si.Pascal:

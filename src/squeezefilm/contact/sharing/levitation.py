@@ -1,4 +1,4 @@
-"""The published levitation model of 2016 in closed form: one film over the whole contact.
+"""The levitation model of 2016 in closed form: a film lifts off a contact that reaches high.
 
 Wiertlewski, Fenton Friesen and Colgate, PNAS 113 (2016) 9210, supporting information: the squeezed
 film lifts a skin whose contact pressure falls off with the gap u as exp(−u/ℓ),
@@ -13,15 +13,26 @@ below √(p_s/(1.25 p0)), 0.15 for 2.8 kPa in air.
 
 from __future__ import annotations
 
-import math
+import functools
 from typing import Annotated
 
 import numpy as np
 
 from squeezefilm import quantities as si
 
-_STEPS = 60
-_LEAST_LIFTED = 1 - math.exp(-1.0)
+# Of z: from where µ′/µ is 1 to rounding to where it has left the range of a float.
+_LIFT = np.geomspace(1e-18, 745.0, 12000)
+
+
+@si.checked_numbers
+def levitation_scale(
+    decay_length: Annotated[si.Metre, si.Above(0.0)],
+    contact_pressure: Annotated[si.Pascal, si.Above(0.0)],
+    ambient_pressure: Annotated[si.Pascal, si.Above(0.0)],
+) -> si.Metre:
+    """The amplitude g (m) in which the model counts, of a decay length ℓ (m), the pressure of the
+    finger on the surface and the ambient one (Pa): g = ℓ √(p_s/(1.25 p0))."""
+    return decay_length * float(np.sqrt(contact_pressure / (1.25 * ambient_pressure)))
 
 
 @si.checked_numbers
@@ -29,18 +40,21 @@ def levitation_friction(
     relative_amplitude: Annotated[si.DimensionlessArray, si.AtLeast(0.0), si.AtMost(1e6)],
     rest_gap: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1e6)] = 0.0,
 ) -> si.DimensionlessArray:
-    """µ′/µ over the amplitude in scales g, any shape; `rest_gap` is u0/ℓ.
+    """µ′/µ within 1e-5 over the amplitude in scales g, any shape; `rest_gap` is u0/ℓ.
 
     Without a gap at rest friction falls at once, with one it falls as a Gaussian at first. Range:
     amplitudes small against the gap, a contact of many wavelengths of the squeezed film (a squeeze
     number of hundreds). Raises `InputError` for what is out of range.
     """
-    wanted = relative_amplitude**2
-    low = np.zeros(wanted.shape)
-    # From z = 1 on the left side is at least (1 − 1/e) z².
-    high = np.maximum(1.0, np.sqrt(wanted / _LEAST_LIFTED))
-    for _ in range(_STEPS):
-        middle = 0.5 * (low + high)
-        lifted = -np.expm1(-middle) * (middle + rest_gap) ** 2 >= wanted
-        low, high = np.where(lifted, low, middle), np.where(lifted, middle, high)
-    return np.exp(-high)
+    log_amplitude, log_lift = _table(rest_gap)
+    # At rest the logarithm is -inf, which the table's first lift answers.
+    with np.errstate(divide="ignore"):
+        lift = np.interp(np.log(relative_amplitude), log_amplitude, log_lift)
+    return np.exp(-np.exp(lift))
+
+
+@functools.lru_cache(maxsize=8)
+def _table(rest_gap: float) -> tuple[si.FloatArray, si.FloatArray]:
+    """Logarithms of the amplitude that makes a lift z, and of z."""
+    amplitude = np.sqrt(-np.expm1(-_LIFT)) * (_LIFT + rest_gap)
+    return np.log(amplitude), np.log(_LIFT)

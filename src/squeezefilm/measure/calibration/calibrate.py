@@ -210,7 +210,7 @@ def _felt(mixture: Mixture, draw: Draw, mode: WorkingMode, free: si.Metre) -> tu
     if mixture.prediction.voltage is None or mode.modal_mass is None:
         return free, float(between_limits(law, draw, np.array([free]))[0])
     felt = touch(mode, law, free, tolerance=1e-4)
-    friction = between_limits(law, draw, np.array([felt.amplitude]), felt.sharing)
+    friction = between_limits(law, draw, np.array([felt.amplitude]))
     return felt.amplitude, float(friction[0])
 
 

@@ -207,7 +207,7 @@ def _expected(
     """What a bench will see, and why there is nothing (of the plate) where it is so."""
     asked = [] if why_not else [Observation(name, 0.0, 0.0) for name in ASKED]
     amplitude = prediction.vibration_amplitude
-    if amplitude > 0 and prediction.touch.sharing is not None:
+    if amplitude > 0 and prediction.touch.law is not None:
         under = {"normal_force": prediction.normal_force, "finger_speed": prediction.speed}
         asked += [
             Observation(FRICTION, 0.0, 0.0, {"vibration_amplitude": share * amplitude, **under})

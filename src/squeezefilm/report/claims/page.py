@@ -43,8 +43,8 @@ is named: Biet, Giraud, Lemaire-Semail, *The implementation of tactile feedback 
 effect devices*. Claims on friction by others were read in abstracts, and are compared at one frozen
 set of assumed parameters (`analysis/claims/frozen.py`).
 
-**Published measurements of friction against amplitude refute the default model**: see [Published
-friction](published-friction.md), every data set beside every model. What follows compares with what
+**The default model is fitted to published friction of people against amplitude**, which refutes all
+others here: see [Published friction](published-friction.md), every data set beside every model. What follows compares with what
 the paper printed, and says where and why the numbers differ. "Printed formula" is what the formula
 gives as it stands in the paper, where that differs from the corrected one.
 """
@@ -194,7 +194,7 @@ def _page(result: Reproduction, figures: list[str]) -> str:
 <h1>{title}</h1>
 <p>Source: Biet, Giraud, Lemaire-Semail, <em>The implementation of tactile feedback using squeeze
 film effect devices</em>. Published friction against amplitude is compared by
-<code>squeezefilm reproduce --data published</code>; it refutes the default model.</p>
+<code>squeezefilm reproduce --data published</code>; the default model is fitted to it.</p>
 </header><main>
 <section><h2>What the verdicts say</h2>{_table(verdict_table(result.results))}</section>
 <section><h2>Claims</h2>{_table(((*_HEAD, "why"), claims))}</section>

@@ -163,7 +163,7 @@ def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
     yield (
         "doubt",
         "No plate here was built. The quality factor is assumed, and with it every amplitude; the "
-        "friction is by a model that published curves refute.",
+        "friction is by a model fitted to people on glass alone.",
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.report.friction.told_apart import told_apart
+from squeezefilm.chain.friction_models import MODEL_KINDS
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.folder import json_text, write_folder
 from squeezefilm.report.kit.model_looks import look_of
@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from squeezefilm.chain.friction import FrictionLaw
     from squeezefilm.chain.prediction import Prediction
 
-_SHEARED = "partial-levitation-shear"
-_HELD = ("paper2008", "film-smooth", "film-sealed")
+_LINES = ("paper2008", "film-smooth", "film-sealed", "partial-levitation-shear", "levitation")
 _NAMES_OF_PARAMETERS = {
     "finger.asperities.roughness": "roughness of skin and surface",
     "finger.asperities.modulus": "modulus of the outermost skin",
@@ -39,6 +38,8 @@ _NAMES_OF_PARAMETERS = {
     "finger.asperities.decay_length": "decay length of the asperities",
     "finger.plateau_width": "width of a ridge's plateau",
     "finger.contact_length": "length of the contact",
+    "finger.contact_decay_length": "decay length of the contact's pressure",
+    "finger.decay_speed_exponent": "growth of the decay length with speed",
     "finger.contact_area_exponent": "growth of the contact with force",
     "finger.normal_force": "force of the finger",
     "finger.moisture": "moisture of the finger",
@@ -69,14 +70,15 @@ def _models(
     said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
     figure = style.new_figure(
         f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(p.surface.name, 20)} {said}: the "
-        "model decides, and measured curves refute the default",
+        "model decides; one is fitted to measured curves",
         f"as in the legend; {shown(p.normal_force, N)}",
         5.4,
     )
     axes = figure.subplots()
     for curve in curves:
-        if curve.model in _HELD:
+        if curve.model in _LINES:
             color, dashes, name = look_of(curve.model)
+            name += f", at {shown(p.speed, SPEED)}" if MODEL_KINDS[curve.model].knows_speed else ""
             x = 1e6 * curve.amplitude
             axes.plot(x, curve.relative_friction, color=color, ls=dashes, label=name)
     own = next(c for c in curves if c.model == "partial-levitation")
@@ -87,11 +89,6 @@ def _models(
     look = look_of("partial-levitation")
     name = f"{look.name}, each ridge at its own balance"
     axes.plot(x, own.relative_friction, color=look.color, lw=2.4, label=name)
-    for curve in curves:
-        if curve.model == _SHEARED:
-            look = look_of(_SHEARED)
-            name = f"{look.name}, at {shown(p.speed, SPEED)}"
-            axes.plot(1e6 * curve.amplitude, curve.relative_friction, color=look.color, label=name)
     at, words = 1e6 * p.vibration_amplitude, f"{p.relative_friction:.2f}"
     if unsure is not None:
         low, high = unsure.interval
@@ -207,13 +204,13 @@ def ripple(result: FrictionAnalysis) -> Figure:
     """The friction as the pad moves along the standing wave, at constant amplitude."""
     found = result.ripple
     assert found is not None, "nothing vibrates"
-    half, sheared = found.half_wavelength, result.prediction.model == _SHEARED
+    half, model = found.half_wavelength, result.prediction.model
     x = np.concatenate([found.position, found.position + half, [2 * half]])
     y = np.concatenate([found.relative_friction] * 2 + [found.relative_friction[:1]])
     figure = style.new_figure(
         f"The wave itself is felt: {100 * found.ripple:.2g} % of ripple every "
         f"{shown(half, M, 3)} under a contact of {shown(found.contact_length, M, 3)}",
-        f"{_SHEARED if sheared else 'partial-levitation'}, each ridge at its own balance",
+        f"{model if MODEL_KINDS[model].knows_speed else 'partial-levitation'}, ridge by ridge",
         4.0,
     )
     axes = figure.subplots()
@@ -239,9 +236,6 @@ FIGURES = (
     FigureOf("map", "Friction over amplitude and force", friction_map),
     FigureOf("uncertainty", "How sure it is", uncertainty, has=lambda one: one.uncertainty),
     FigureOf("ripple", "The standing wave", ripple, has=lambda one: one.ripple),
-    FigureOf(
-        "apart", "Which experiment tells the laws apart", told_apart, has=lambda one: one.apart
-    ),
 )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
-from squeezefilm.report.friction.told_apart import show_told_apart
 from squeezefilm.report.kit.decisions import interval_rows, wanted_rows
 from squeezefilm.report.kit.model_rows import group_words, influence_rows, weight_rows
 from squeezefilm.report.kit.numbers import HZ, M, N, V, printable, shown
@@ -47,8 +46,6 @@ def show_friction(result: FrictionAnalysis) -> None:
     show_missed(console, p.model)
     if unsure is not None:
         _ranking(unsure)
-    if result.apart is not None:
-        show_told_apart(result.apart)
     for text in p.warnings:
         console.print(f"! {printable(text)}")
 
@@ -88,8 +85,9 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
         speed_row(p),
         ("Ambient pressure", shown(result.display.gas.ambient_pressure, si.Unit("Pa")), ""),
     ]
-    sharing = p.touch.sharing
-    if sharing is not None:
+    if p.law.kind.friction == "lift":
+        rows.append(("Film carries", f"{100 * (1 - p.relative_friction):.3g} %", "of the load"))
+    elif (sharing := p.touch.sharing) is not None:
         rows += [
             ("Film carries", f"{100 * float(sharing.film_share[0]):.3g} %", "of the load"),
             (

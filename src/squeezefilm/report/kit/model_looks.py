@@ -16,7 +16,8 @@ class Look(NamedTuple):
 
 
 _LOOKS = {
-    "partial-levitation-shear": Look(style.INK, "-", "partial levitation with shear"),
+    "levitation": Look(style.INK, "-", "levitation, fitted to people"),
+    "partial-levitation-shear": Look(style.BLUE, (0, (6, 1.6)), "partial levitation with shear"),
     "partial-levitation": Look(style.BLUE, "-", "partial levitation"),
     "partial-levitation-one-gap": Look(
         style.BLUE, (0, (1.4, 1.2)), "partial levitation, one mean gap"

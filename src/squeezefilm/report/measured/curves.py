@@ -171,7 +171,9 @@ def comparison_figure(compared: CurveComparison) -> Figure:
     amplitude = 1e6 * curve.vibration_amplitude
     level = si.percent(compared.band.level)
     axes.fill_between(
-        amplitude, compared.at_rest * compared.band.low, compared.at_rest * compared.band.high,
+        amplitude,
+        compared.fitted_at_rest * compared.band.low,
+        compared.fitted_at_rest * compared.band.high,
         color=style.BAND, label=f"{level} interval of the default",
     )  # fmt: skip
     strong = {compared.default.model: style.RENDERED, nearest.model: style.WANTED}

@@ -19,6 +19,7 @@ from squeezefilm.analysis.friction.command import (
     friction_map,
 )
 from squeezefilm.analysis.verdict import Finding
+from squeezefilm.chain.friction_models import MODEL_KINDS, ModelKind
 from squeezefilm.display import Display
 from squeezefilm.errors import OutOfRangeError
 from squeezefilm.progress import NO_HURRY
@@ -38,6 +39,10 @@ class Law:
     finger: Any = None
     surface: Any = None
 
+    @property
+    def kind(self) -> ModelKind:
+        return MODEL_KINDS[self.model]
+
     def at(self, amplitude: float) -> float:
         if self.normal_force > 1.99 and amplitude > 2.01e-6:
             raise OutOfRangeError("pressed through")
@@ -50,17 +55,18 @@ class Law:
         return np.array([0.9 - amplitude / 1e-5 - speed, 7.0])
 
 
-def prediction(**changes: Any) -> Any:
+def prediction(law: Any = None, **changes: Any) -> Any:
+    law = law or Law()
     sharing = SimpleNamespace(
         film_share=np.array([0.6, 9.0]), relative_friction=np.array([0.4, 9.0]),
         mean_gap=np.array([1.5e-6, 9.0]), residual=1e-9,
         relative_friction_error=np.array([1e-3, 9.0]),
     )  # fmt: skip
     values: dict[str, Any] = {
-        "law": Law(), "voltage": 15.0, "vibration_amplitude": 2e-6, "frequency": 40e3,
+        "law": law, "voltage": 15.0, "vibration_amplitude": 2e-6, "frequency": 40e3,
         "normal_force": 0.5, "surface": SimpleNamespace(name="bare"),
         "touch": SimpleNamespace(
-            free_amplitude=2.5e-6, kept=0.8, sharing=sharing, impedance=1.5 - 2j
+            free_amplitude=2.5e-6, kept=0.8, law=law, sharing=sharing, impedance=1.5 - 2j
         ),
         "amplitude_model": "an-amplitude", "relative_friction": 0.4, "model": "a-model",
         "relative_friction_limits": (0.35, 0.45), "friction_reduction": 0.24,
@@ -93,8 +99,8 @@ def test_a_map_goes_over_amplitudes_and_forces(stator: Display) -> None:
     [
         ("partial-levitation-one-gap", "partial-levitation-one-gap"),
         ("partial-levitation", "partial-levitation"),
-        ("paper2008", "partial-levitation-shear"),
-        ("film-open", "partial-levitation-shear"),
+        ("paper2008", "levitation"),
+        ("film-open", "levitation"),
     ],
 )
 def test_a_map_is_by_a_model_that_balances_loads(stator: Display, model: str, mapped: str) -> None:
@@ -105,7 +111,7 @@ def test_the_ripple_is_of_the_standing_wave_under_the_finger() -> None:
     law = SimpleNamespace(ripple=lambda amplitude: ("ripple", amplitude), place=None)
     assert command._ripple(prediction(law=law)) == ("ripple", 2e-6)
     # A model that holds the gap has no balance that could ripple.
-    assert command._ripple(prediction(law=law, touch=SimpleNamespace(sharing=None))) is None
+    assert command._ripple(prediction(law=law, touch=SimpleNamespace(law=None))) is None
     # At a place of the face that was asked for the wave is no even one.
     assert command._ripple(prediction(law=law, place_was_asked=True)) is None
 
@@ -124,7 +130,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
     stand_in("predict", PREDICTION)
     stand_in("wanted_friction", "the wanted")
-    names = ("model_curves", "friction_map", "_ripple", "tell_apart", "judged_area")
+    names = ("model_curves", "friction_map", "_ripple", "judged_area")
     for name in names:
         stand_in(name, f"the {name}")
     stand_in("interval_or_reason", ("the interval", "a reason"))
@@ -134,7 +140,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     return asked
 
 
-PREDICTION = prediction(law="the law")
+PREDICTION = prediction(law=SimpleNamespace(kind=MODEL_KINDS["partial-levitation"]))
 
 
 def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any]) -> None:
@@ -143,7 +149,7 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     found = analyze_friction(
         stator, voltage=100.0, frequency=41e3, normal_force=0.3, surface="bare", model="film-open",
         position=1e-3, speed=0.1, ambient_pressure=5e4, wanted_friction=0.6, samples=16, seed=9,
-        points=7, tell_apart=True, progress=said,
+        points=7, progress=said,
     )  # fmt: skip
     thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(5e4))
     point = {"frequency": 41e3, "normal_force": 0.3, "surface": "bare", "model": "film-open"}
@@ -161,10 +167,9 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
             "interval_or_reason", (thin, PREDICTION),
             {"samples": 16, "seed": 9, "progress": said},
         ),
-        ("tell_apart", (thin, PREDICTION), {"seed": 9, "progress": said}),
         ("judged_area", (thin, PREDICTION), {"samples": 16, "seed": 9}),
         ("_ripple", (PREDICTION,), {}),
-        ("without_gas", ("the law", 2e-6), {}),
+        ("without_gas", (PREDICTION.law, 2e-6), {}),
         ("friction_verdict", (PREDICTION, "the interval", "a reason", "the judged_area"), {}),
     ]  # fmt: skip
     assert (found.display, found.prediction) == (thin, PREDICTION)
@@ -174,7 +179,6 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     assert found.wanted == "the wanted"
     assert found.tapping == Tapping(0.1, 0.6)
     assert found.verdict == (Finding("doubt", "the verdict"),)
-    assert found.apart == "the tell_apart"
     assert found.active_area == "the judged_area"
     assert told == [
         "amplitude and load balance", "models side by side", "map over amplitude and force",
@@ -192,7 +196,7 @@ def test_what_is_not_asked_for_is_not_computed(stator: Display, parts: list[Any]
     assert parts[0][2]["vibration_amplitude"] == 2e-6
     assert parts[0][2]["speed"] is None
     assert parts[3][2]["samples"] == 0
-    assert (found.wanted, found.apart) == (None, None)
+    assert found.wanted is None
 
 
 def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
@@ -229,7 +233,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
         # In the middle of 0.8 at 1 µm and 0.4 at 3 µm.
         "models": [{"model": "paper2008", "relative_friction": pytest.approx(0.6)}],
         "measurements_missed": None, "uncertainty": {"seed": 1}, "warnings": ["mind this"],
-        "verdict": [{"kind": "limit", "text": "open"}], "tell_apart": None,
+        "verdict": [{"kind": "limit", "text": "open"}],
     }  # fmt: skip
 
 

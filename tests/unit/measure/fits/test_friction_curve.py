@@ -59,13 +59,13 @@ def test_the_default_is_said_to_miss_it_and_points_are_counted_in_our_interval(
     assert "does not describe the curve" in compared.adequacy.sentence
     assert compared.adequacy.where in compared.adequacy.sentence
     low, high = compared.band.low, compared.band.high
-    friction = compared.curve.friction / compared.at_rest
+    friction = compared.curve.friction / compared.fitted_at_rest
     expected = [bool(a <= x <= b) for a, x, b in zip(low, friction, high, strict=True)]
     # Where nothing vibrates no model can be wrong, and no point is judged.
     assert list(compared.inside) == [None, *expected[1:]]
     assert compared.points_inside == (sum(expected[1:]), 8)
-    # The law that made it is one of those drawn.
-    assert sum(expected[1:]) >= 7
+    # What a level between them fits is not far off.
+    assert sum(expected[1:]) >= 5
     json.dumps(compared.summary(), allow_nan=False)
 
 

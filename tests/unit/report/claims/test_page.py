@@ -89,7 +89,7 @@ def test_the_document_has_a_row_for_each_claim() -> None:
 def test_the_document_says_why_and_in_which_order() -> None:
     text = validation_markdown(FOUND)
     assert text.startswith("# Validation\n\nWritten by `squeezefilm reproduce --write-docs`")
-    assert "refute the default model**" in text
+    assert "which refutes all\nothers here" in text
     said = [line for line in text.splitlines() if line.startswith("* **")]
     assert said == [
         "* **statement 1 <b>** (misprint): why 1.",
@@ -207,7 +207,7 @@ def test_the_page_has_claims_figures_procedure_and_errata(
     assert "Directions" not in text
     places = [text.index(one) for one in ("<h2>Claims", "5 &lt; 6", "<h2>The paper", "<h2>Errata")]
     assert places == sorted(places)
-    assert "it refutes the default model" in text
+    assert "the default model is fitted to it" in text
     # Nothing may be loaded from elsewhere.
     assert "default-src 'none'; style-src 'unsafe-inline'\"" in text
     data = json.loads((tmp_path / "new" / "claims.json").read_text(encoding="utf-8"))

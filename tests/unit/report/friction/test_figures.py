@@ -91,7 +91,7 @@ FIELD[4, 6] = np.nan
 MAP = FrictionMap(COLUMNS, FORCES, FIELD, "the model of the map")
 RIPPLE = FrictionRipple(np.array([0.0, 2e-3, 4e-3]), np.array([0.5, 0.6, 0.7]), 10e-3, 6e-3)
 RESULT: Any = SimpleNamespace(
-    curves=CURVES, prediction=POINT, uncertainty=UNSURE, map=MAP, ripple=RIPPLE, apart=None,
+    curves=CURVES, prediction=POINT, uncertainty=UNSURE, map=MAP, ripple=RIPPLE,
     summary=lambda: {"display": "µ"},
 )  # fmt: skip
 
@@ -129,7 +129,7 @@ def test_with_shear_the_curve_is_drawn_that_the_working_point_is_on() -> None:
     line = labelled(figure.axes[0])["partial levitation with shear, at 80 mm/s"]
     assert line.get_ydata() == pytest.approx(1 - 0.5 * np.linspace(0, 1, 9))
     assert words(ripple(without(prediction=point)).get_supxlabel()).startswith(
-        "Model: partial-levitation-shear, each ridge"
+        "Model: partial-levitation-shear, ridge by ridge"
     )
 
 
@@ -153,8 +153,8 @@ def test_the_working_point_stands_on_its_interval() -> None:
     assert all(one.get_xdata() == pytest.approx(1.5) for one in others)
     figure = models(RESULT)
     assert words(figure.get_suptitle()) == (
-        "At 1.5 µm on glass µ′/µ = 0.62 as described (0.41–0.83, median 0.60): the model decides, "
-        "and measured curves refute the default"
+        "At 1.5 µm on glass µ′/µ = 0.62 as described (0.41–0.83, median 0.60): the model decides; "
+        "one is fitted to measured curves"
     )
     assert words(figure.get_supxlabel()) == "Model: as in the legend; 0.4 N"
 

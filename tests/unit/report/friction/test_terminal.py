@@ -40,7 +40,10 @@ LOADED = SimpleNamespace(
 
 def touched(mode: Any = LOADED, sharing: Any = SHARING) -> Touch:
     """A finger that leaves three quarters of 2 µm."""
-    return Touch(2e-6, 1.5e-6, mode, sharing, 1.2345 - 0.6789j)
+    law = sharing and SimpleNamespace(
+        sharing=lambda *_: sharing, kind=SimpleNamespace(limit="own", friction="load")
+    )
+    return Touch(2e-6, 1.5e-6, mode, law, 1.2345 - 0.6789j)
 
 
 def prediction(**changes: Any) -> SimpleNamespace:
@@ -48,7 +51,7 @@ def prediction(**changes: Any) -> SimpleNamespace:
     values = {
         "relative_friction": 0.43216, "voltage": 15.0, "vibration_amplitude": 1.5e-6,
         "frequency": 33580.0, "touch": touched(), "normal_force": 0.5,
-        "model": "a-model",
+        "model": "a-model", "law": SimpleNamespace(kind=SimpleNamespace(friction="load")),
         "surface": SimpleNamespace(name="copper", roughness=0.7e-6), "friction_reduction": 0.11357,
         "friction_coefficient": 0.2, "tangential_force": 0.043216, "speed": 0.08,
         "relative_friction_limits": (0.41, 0.49), "heat": WARM,

@@ -21,7 +21,7 @@ def test_the_page_has_every_curve_and_every_number_of_people(tmp_path: Path) -> 
     (tmp_path / "pyproject.toml").write_text("")
     text = write_friction_docs(folder(), tmp_path).read_text(encoding="utf-8")
     assert (tmp_path / "docs" / "pictures" / "published-friction.png").stat().st_size > 1000
-    assert text.count("| partial-levitation-shear (the default) | 0.240 |") == 2
+    assert text.count("| levitation (the default) | 0.240 |") == 2
     assert "decay amplitude τ: median 2 µm" in text
     assert "| partial-levitation | 0.008 | 1.50 | 1 |" in text
 
@@ -29,7 +29,7 @@ def test_the_page_has_every_curve_and_every_number_of_people(tmp_path: Path) -> 
 def test_the_committed_page_says_what_readme_and_index_say() -> None:
     rows = [line.split(" | ") for line in PAGE.read_text(encoding="utf-8").splitlines()]
     off = {row[0].strip("| "): float(row[1]) for row in rows if len(row) == 4 and "0." in row[1]}
-    default = off["partial-levitation-shear (the default)"]
+    default = off["levitation (the default)"]
     baseline = off["exponential (no physics)"]
     for page in (PAGE.parents[1] / "index.md", PAGE.parents[2] / "README.md"):
         said = " ".join(page.read_text(encoding="utf-8").split())

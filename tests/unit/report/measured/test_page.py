@@ -215,10 +215,11 @@ def compared() -> CurveComparison:
         display="biet2008-plate",
         models=(
             ModelScore("partial-levitation", 1, np.array([1, 0.71, 0.49]), 0.008, 0.2),
-            ModelScore("partial-levitation-shear", 1, np.array([1, 0.4, 0.2]), 0.24, 4.9),
+            ModelScore("levitation", 1, np.array([1, 0.4, 0.2]), 0.24, 4.9),
             ModelScore("film-open", 1, np.full(3, np.nan), None, None),
         ),
         at_rest=1.0,
+        fitted_at_rest=1.0,
         normal_force=0.5,
         speed=0.02,
         assumed=("speed",),
@@ -232,7 +233,7 @@ def folder() -> FolderComparison:
     """Two curves and one number of many people, made up for showing."""
     people = PopulationComparison(
         TOLD, "a", "30 kHz", "decay amplitude τ", "m", np.array([1e-6, 2e-6, 3e-6]),
-        (("partial-levitation-shear", 1.5e-6), ("film-open", None)),
+        (("levitation", 1.5e-6), ("film-open", None)),
     )  # fmt: skip
     total = TotalScore("partial-levitation", 1, 2, 0.008, 1.5, None)
     return FolderComparison((compared(), compared()), (total,), (people,))
@@ -241,12 +242,12 @@ def folder() -> FolderComparison:
 def test_curves_are_shown_beside_all_models(tmp_path: Path) -> None:
     lines = printed(lambda: show_comparisons(folder()))
     assert "partial-levitation 0.008 0.2 3 of 3 1" in lines
-    assert "partial-levitation-shear (the default) 0.240 4.9 3 of 3 1" in lines
+    assert "levitation (the default) 0.240 4.9 3 of 3 1" in lines
     assert "film-open – – 0 of 3 1" in lines
     assert any(line.startswith("2 of 2 points that vibrate lie in the 90 %") for line in lines)
     assert any("20 mm/s (assumed)" in line for line in lines)
     assert "partial-levitation 0.008 1.50 1" in lines
-    assert "partial-levitation-shear (the default) 1.5 µm 33 %" in lines
+    assert "levitation (the default) 1.5 µm 33 %" in lines
     assert any("1 of 1 fingers or papers lie in the interval" in line for line in lines)
     assert any("friction at rest is fitted to each curve" in line for line in lines)
     text = write_comparisons(folder(), tmp_path).read_text(encoding="utf-8")

@@ -37,10 +37,10 @@ class CurveComparison:
     fitted to it (of `SHAPES` an amplitude too).
 
     `models` have the nearest first; `at_rest` is the friction at rest that knows no model, in the
-    curve's unit, by which `band`, the interval in which our default expects µ′/µ with everything
-    but the amplitude uncertain, is compared: `inside` says of each measured point whether it lies
-    there (where the band is not known it does not; None where nothing vibrates). `adequacy` is the
-    default model's. `normal_force` and `speed` are those that were computed with, `assumed` names
+    curve's unit, and `fitted_at_rest` that of our default's fit, by which `band`, the interval in
+    which the default expects µ′/µ with everything but the amplitude uncertain, is compared:
+    `inside` says of each measured point whether it lies there (where the band is not known it does
+    not; None where nothing vibrates). `adequacy` is the default model's. `normal_force` and `speed` are those that were computed with, `assumed` names
     the ones that the recording does not tell.
     """
 
@@ -48,6 +48,7 @@ class CurveComparison:
     display: str
     models: tuple[ModelScore, ...]
     at_rest: float
+    fitted_at_rest: float
     normal_force: si.NewtonLike
     speed: si.MetrePerSecondLike
     assumed: tuple[str, ...]
@@ -193,16 +194,19 @@ def compare_friction_curve(
     scores = [scored(model, friction[model], curve) for model in MODEL_KINDS]
     scores += shape_scores(curve)
     scores.sort(key=lambda score: (score.answered < count, score.difference or 0.0))
-    relative = curve.friction / at_rest
+    default = next(score for score in scores if score.model == DEFAULT_MODEL)
+    # Where the default falls steeply from rest on, a line through its first points starts too low.
+    fitted = float(np.nanmean(default.friction / friction[DEFAULT_MODEL]))
+    relative = curve.friction / fitted
     inside = tuple(
         None if a == 0 else bool(low[k] <= relative[k] <= high[k]) for k, a in enumerate(amplitude)
     )
-    default = next(score for score in scores if score.model == DEFAULT_MODEL)
     return CurveComparison(
         curve=curve,
         display=display.name,
         models=tuple(scores),
         at_rest=at_rest,
+        fitted_at_rest=fitted,
         normal_force=force,
         speed=speed,
         assumed=assumed,
