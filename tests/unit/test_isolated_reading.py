@@ -108,8 +108,10 @@ def test_time_and_memory_end() -> None:
     reader = IsolatedReader(memory=5e8, processor_time=0.2)
     with pytest.raises(ConfigError, match="a: cannot be read: reading it takes more than 200 ms"):
         reader.read(endless, file="a")
+    roomy = IsolatedReader(memory=5e8)
     with pytest.raises(ConfigError, match=r"b: .* takes more than .* GB"):
-        reader.read(unpacking, 10**9, file="b")
+        roomy.read(unpacking, 10**9, file="b")
+    roomy.end()
     with pytest.raises(ConfigError, match="takes more than"):
         IsolatedReader(patience=0.5).read(waiting, file="c")
     assert reader.read(doubled, 1.0, file="d")[0]["size"] == 0

@@ -99,7 +99,8 @@ def test_the_standing_wave_moves_the_rows_of_8_and_10_mm() -> None:
     felt, ignored = base(PLATE), still
     shares = [answers(one).confusion().proportions for one in (felt, ignored)]
     moved = np.abs(shares[0] - shares[1])[3:, 3:]
-    assert moved.max() > FOUR_SIGMA * math.sqrt(2)
+    # Nine answers in ten are right, which scatter by less than half of what FOUR_SIGMA allows for.
+    assert moved.max() > FOUR_SIGMA
     assert felt.explain()["10 mm"].ripple_share > 0.05
     assert ignored.explain()["10 mm"].ripple_share == 0.0
 

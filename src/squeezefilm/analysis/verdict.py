@@ -90,11 +90,11 @@ def verdict(
             yield Finding("doubt", doubt)
         yield Finding(
             "doubt",
-            "Friction is by a model fitted to published friction of people on glass, and to nothing "
-            "else (squeezefilm reproduce --data published)."
+            "Friction is by a model fitted to published friction of people on glass, and to "
+            "nothing else (squeezefilm reproduce --data published)."
             if p.model == DEFAULT_MODEL
-            else f"Published friction of people on glass refutes the model '{p.model}' (squeezefilm "
-            "reproduce --data published).",
+            else f"Published friction of people on glass refutes the model '{p.model}' "
+            "(squeezefilm reproduce --data published).",
         )
 
     yield from (held_back(finding, why) for finding in found())

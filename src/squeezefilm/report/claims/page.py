@@ -44,8 +44,9 @@ effect devices*. Claims on friction by others were read in abstracts, and are co
 set of assumed parameters (`analysis/claims/frozen.py`).
 
 **The default model is fitted to published friction of people against amplitude**, which refutes all
-others here: see [Published friction](published-friction.md), every data set beside every model. What follows compares with what
-the paper printed, and says where and why the numbers differ. "Printed formula" is what the formula
+others here: see [Published friction](published-friction.md), every data set beside every model.
+What follows compares with what the paper printed, and says where and why the numbers differ.
+"Printed formula" is what the formula
 gives as it stands in the paper, where that differs from the corrected one.
 """
 

@@ -40,8 +40,8 @@ class CurveComparison:
     curve's unit, and `fitted_at_rest` that of our default's fit, by which `band`, the interval in
     which the default expects µ′/µ with everything but the amplitude uncertain, is compared:
     `inside` says of each measured point whether it lies there (where the band is not known it does
-    not; None where nothing vibrates). `adequacy` is the default model's. `normal_force` and `speed` are those that were computed with, `assumed` names
-    the ones that the recording does not tell.
+    not; None where nothing vibrates). `adequacy` is the default model's. `normal_force` and `speed`
+    are those that were computed with, `assumed` names the ones that the recording does not tell.
     """
 
     curve: FrictionCurve
