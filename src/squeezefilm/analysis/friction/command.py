@@ -78,7 +78,8 @@ class FrictionAnalysis(Result):
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
         p = self.prediction
-        sharing = None if p.law.kind.friction == "lift" else p.touch.sharing
+        lifted = p.law.kind.friction == "lift"
+        sharing = None if lifted else p.touch.sharing
         unsure = self.uncertainty
         return {
             "display": self.display.name,
@@ -108,7 +109,9 @@ class FrictionAnalysis(Result):
             "friction_coefficient": p.friction_coefficient,
             "tangential_force_N": p.tangential_force,
             "model": p.model,
-            "load_shares": None
+            "load_shares": {"film": 1 - p.relative_friction, "asperities": p.relative_friction}
+            if lifted
+            else None
             if sharing is None
             else {
                 "film": float(sharing.film_share[0]),
