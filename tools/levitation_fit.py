@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -108,45 +109,72 @@ def left_out(
     return scores
 
 
-def main() -> None:
-    """Fit and print."""
-    checks = check_folder(presets.friction_folder()).checks
-    recordings = [check.recording for check in checks]
+class Fits(NamedTuple):
+    """What is fitted: of each person decay length (m), friction at rest (N) and what is left; the
+    mean (geometric, m) and the logarithms' spread of strokes, their correlation with the friction
+    at rest; the exponent of the speed, and the length (m) at the reference speed."""
+
+    curves: list[FrictionCurve]
+    laws: list[FrictionLaw]
+    people: list[tuple[float, float, float]]
+    slow: float
+    strokes: float
+    spread: float
+    ends: tuple[float, float]
+    correlation: float
+    exponent: float
+    at_reference: float
+
+
+def fits() -> Fits:
+    """Fit the published friction that comes with the package."""
+    recordings = [check.recording for check in check_folder(presets.friction_folder()).checks]
     curves = [one for one in recordings if isinstance(one, FrictionCurve) and one.speed is not None]
-    laws = [
-        law_of(one.display, one.frequency, float(one.normal_force or 0.0), 0.01) for one in curves
-    ]
-    lengths = []
-    print("person          decay length  friction at rest  left")
-    for curve, law in zip(curves, laws, strict=True):
-        length, rest, left = fitted(curve, law)
-        lengths.append(length)
-        print(f"{curve.told.name:14}  {1e6 * length:9.2f} um  {rest:13.3f} N    {left:.3f}")
-    slow = math.exp(float(np.mean(np.log(lengths))))
+    laws = [law_of(one.display, one.frequency, float(one.normal_force), 0.01) for one in curves]
+    people = [fitted(curve, law) for curve, law in zip(curves, laws, strict=True)]
+    slow = math.exp(float(np.mean([math.log(length) for length, _, _ in people])))
     strokes = next(one for one in recordings if isinstance(one, FrictionDecays))
     free = law_of(strokes.display, strokes.frequency, FREE_STROKES_FORCE, FREE_STROKES_SPEED)
-    of_strokes = [
-        half_friction_length(free, float(tau) * math.sqrt(2 * math.log(2)))
-        for tau in strokes.decay_amplitude
-    ]
-    logs = np.log(of_strokes)
-    fast, spread = math.exp(float(np.mean(logs))), float(np.std(logs, ddof=1))
-    print(
-        f"strokes: {1e6 * fast:.2f} um, standard deviation of the logarithm {spread:.3f}, "
-        f"5 to 95 % {np.exp(np.quantile(logs - logs.mean(), [0.05, 0.95])).round(2)}"
-    )
-    mu = np.log(strokes.friction_coefficient)
-    print(f"with the friction at rest: correlation {np.corrcoef(logs, mu)[0, 1]:.2f}")
+    halves = strokes.decay_amplitude * math.sqrt(2 * math.log(2))
+    logs = np.log([half_friction_length(free, float(half)) for half in halves])
+    fast = math.exp(float(np.mean(logs)))
     exponent = math.log(fast / slow) / math.log(FREE_STROKES_SPEED / 0.01)
-    print(
-        f"people at 10 mm/s: {1e6 * slow:.2f} um; exponent of the speed {exponent:.3f}; "
-        f"at {1e3 * DECAY_SPEED:.0f} mm/s {1e6 * math.sqrt(slow * fast):.2f} um"
+    low, high = np.exp(np.quantile(logs - logs.mean(), [0.05, 0.95]))
+    return Fits(
+        curves,
+        laws,
+        people,
+        slow,
+        fast,
+        float(np.std(logs, ddof=1)),
+        (float(low), float(high)),
+        float(np.corrcoef(logs, np.log(strokes.friction_coefficient))[0, 1]),
+        exponent,
+        slow * (DECAY_SPEED / 0.01) ** exponent,
     )
-    scores = np.array(left_out(curves, laws, lengths, spread))
+
+
+def main() -> None:
+    """Fit and print."""
+    found = fits()
+    print("person                      decay length  friction at rest  left")
+    for curve, (length, rest, left) in zip(found.curves, found.people, strict=True):
+        print(f"{curve.told.name:26}  {1e6 * length:9.2f} um  {rest:13.3f} N    {left:.3f}")
+    print(
+        f"strokes: {1e6 * found.strokes:.2f} um, standard deviation of the logarithm "
+        f"{found.spread:.3f}, 5 to 95 % {found.ends[0]:.2f} to {found.ends[1]:.2f} of it; "
+        f"correlation with the friction at rest {found.correlation:.2f}"
+    )
+    print(
+        f"people at 10 mm/s: {1e6 * found.slow:.2f} um; exponent of the speed "
+        f"{found.exponent:.3f}; at {1e3 * DECAY_SPEED:.0f} mm/s {1e6 * found.at_reference:.2f} um"
+    )
+    lengths = [length for length, _, _ in found.people]
+    scores = np.array(left_out(found.curves, found.laws, lengths, found.spread))
     difference = scores[:, 0] - scores[:, 1]
     print("left out: log density of a point, by the model and by the others' mean and spread")
-    for curve, (by_model, by_others) in zip(curves, scores, strict=True):
-        print(f"{curve.told.name:14}  {by_model:6.2f}  {by_others:6.2f}")
+    for curve, (by_model, by_others) in zip(found.curves, scores, strict=True):
+        print(f"{curve.told.name:26}  {by_model:6.2f}  {by_others:6.2f}")
     error = np.std(difference, ddof=1) / math.sqrt(difference.size)
     print(f"paired difference {difference.mean():.2f} +- {error:.2f}")
 

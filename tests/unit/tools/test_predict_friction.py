@@ -1,0 +1,31 @@
+"""Friction that was kept back is predicted in a sealed file, by people as they are fitted."""
+
+from __future__ import annotations
+
+import tomllib
+
+import pytest
+
+from levitation_fit import fits
+from predict_disc import is_sealed
+from predict_friction import FILE
+from squeezefilm.contact.finger.fingertip import CONTACT_DECAY_LENGTH, DECAY_SPEED_EXPONENT
+
+
+def test_the_predictions_are_as_they_were_sealed() -> None:
+    text = FILE.read_text(encoding="utf-8")
+    assert is_sealed(text)
+    for name, made in tomllib.loads(text)["prediction"].items():
+        rows = [row for key, row in made.items() if "5_" in key]
+        for row in rows:
+            several = row if isinstance(row[0], list) else [row]
+            assert all(one == sorted(one) for one in several), name
+
+
+@pytest.mark.slow
+def test_the_default_finger_is_what_published_friction_fits() -> None:
+    found = fits()
+    assert found.at_reference == pytest.approx(CONTACT_DECAY_LENGTH, rel=5e-3)
+    assert found.exponent == pytest.approx(DECAY_SPEED_EXPONENT, abs=5e-3)
+    assert max(left for _, _, left in found.people) < 0.05
+    assert len(found.people) == 3
