@@ -296,7 +296,7 @@ def test_every_quantity_is_explained_and_keys_reach_everything(
     )
     assert unknown == []
     page.locator("[data-tip=relative_friction]").first.hover()
-    assert "Not validated" in page.locator("#tip").inner_text()
+    assert "fitted to published friction" in page.locator("#tip").inner_text()
     page.locator(".skip").focus()
     reached = set()
     for _ in range(60):
