@@ -13,6 +13,8 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from squeezefilm import quantities as si
 from squeezefilm.contact.asperities import (
     MINDLIN_RATIO,
@@ -24,6 +26,7 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
+from squeezefilm.contact.sharing.levitation import levitation_friction, levitation_scale
 from squeezefilm.contact.sharing.pad import PadPosture, pad_friction, pad_points
 from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
 from squeezefilm.contact.sharing.tapping import tapping_friction
@@ -35,16 +38,20 @@ from squeezefilm.materials import Gas
 class FrozenModel:
     """A model that published directions are asked of: its law of contact and of shear.
 
-    `film` is False for contact alone, without a gas (`contact.sharing.tapping`).
+    `film` is False for contact alone, without a gas (`contact.sharing.tapping`); a model that is
+    `lifted` is the closed form of `contact.sharing.levitation`, which takes neither law.
     """
 
     law: ContactLaw
     stiffness: TangentialStiffness
     film: bool = True
+    lifted: bool = False
 
     @property
     def words(self) -> str:
         """What it is, in words."""
+        if self.lifted:
+            return "a film lifts the contact off over a length fitted to people on glass"
         if not self.film:
             return "taps of a linear skin that shears until it slips, no gas"
         shear = {
@@ -59,6 +66,7 @@ MODELS: Mapping[str, FrozenModel] = MappingProxyType(
     {
         "partial-levitation": FrozenModel(AsperityLaw(), "rigid"),
         "partial-levitation-shear": FrozenModel(RoughContact(), "following"),
+        "levitation": FrozenModel(RoughContact(), "rigid", lifted=True),
         "intermittent-contact": FrozenModel(AsperityLaw(), "constant", film=False),
     }
 )
@@ -125,6 +133,9 @@ class FrozenContact:
         """µ′/µ by a model, with what is given changed (`changes` by the names above) and all else
         as it is frozen. Raises `InputError` for a model that is not known."""
         here = replace(self, **changes)
+        if _model(model).lifted:
+            scale = here._levitation_scale(ambient_pressure)
+            return float(levitation_friction(np.array([here.amplitude / scale]))[0])
         if not _model(model).film:
             # Without gas neither pressure nor a skin that the gas would move makes a difference.
             return here._tapped(model)
@@ -138,6 +149,10 @@ class FrozenContact:
         """µ′/µ by a model of a whole pad over an antinode, its ridges turned by an angle (rad) out
         of the nodal lines, each place at its own balance. Raises as `relative_friction`."""
         points = pad_points(replace(self.finger, ridge_angle=ridge_angle))
+        if _model(model).lifted:
+            wave = np.abs(np.cos(np.pi * points.along / self.half_wavelength))
+            met = self.amplitude * wave / self._levitation_scale(None)
+            return float(levitation_friction(met) @ points.shares)
         found = pad_friction(
             self._films(None),
             self.law(model),
@@ -149,6 +164,11 @@ class FrozenContact:
             shear=self._shear(model),
         )
         return float(found.relative_friction[0])
+
+    def _levitation_scale(self, ambient_pressure: si.Pascal | None) -> si.Metre:
+        finger, ambient = self.finger, ambient_pressure or self.gas.ambient_pressure
+        pressure = self.plateau_pressure * finger.plateau_width / finger.ridge_period
+        return levitation_scale(float(finger.decay_length_at(self.speed)), pressure, ambient)
 
     def _films(self, ambient_pressure: si.Pascal | None) -> FilmTable:
         gas = self.gas if ambient_pressure is None else self.gas.at_pressure(ambient_pressure)
