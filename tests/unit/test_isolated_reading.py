@@ -105,13 +105,12 @@ def test_a_crash_is_told_with_the_file_and_the_next_is_read() -> None:
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="limits of POSIX")
 def test_time_and_memory_end() -> None:
-    reader = IsolatedReader(memory=5e8, processor_time=0.2)
-    with pytest.raises(ConfigError, match="a: cannot be read: reading it takes more than 200 ms"):
+    # The time that the child takes to load this module counts.
+    reader = IsolatedReader(memory=5e8, processor_time=2.0)
+    with pytest.raises(ConfigError, match="a: cannot be read: reading it takes more than 2 s"):
         reader.read(endless, file="a")
-    roomy = IsolatedReader(memory=5e8)
     with pytest.raises(ConfigError, match=r"b: .* takes more than .* GB"):
-        roomy.read(unpacking, 10**9, file="b")
-    roomy.end()
+        reader.read(unpacking, 10**9, file="b")
     with pytest.raises(ConfigError, match="takes more than"):
         IsolatedReader(patience=0.5).read(waiting, file="c")
     assert reader.read(doubled, 1.0, file="d")[0]["size"] == 0
