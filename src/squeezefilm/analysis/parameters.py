@@ -113,7 +113,7 @@ _ASSUMED: dict[str, _Assumed] = {
     ),
     "finger.decay_speed_exponent": _Assumed(
         0.0,
-        0.58,
+        0.46,
         "speed was never varied alone: none to twice what two laboratories differ by",
         absolute=True,
     ),

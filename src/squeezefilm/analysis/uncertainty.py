@@ -150,7 +150,7 @@ def uncertain_friction(
     seed: int = 1,
     progress: SayProgress | None = None,
 ) -> UncertainFriction:
-    """A prediction's friction with all that is uncertain drawn at once, by partial levitation.
+    """A prediction's friction with all that is uncertain drawn at once.
 
     What is drawn, and with which weights, says `draws.Mixture`. The interval is that of 4 × samples
     Sobol' points (`samples` a power of two, 8 to 65 536). The influences are by Saltelli's design,
@@ -189,7 +189,7 @@ def uncertain_friction(
         groups=groups_of(kept),
         refused=refused,
         seed=seed,
-        model="film and asperities share the load; laws and mechanisms by their assumed weights",
+        model=f"{mixture.model}; laws and mechanisms by their assumed weights",
         amplitude_interval=_interval(drawn.amplitude) if driven else None,
         power=power,
         power_interval=None if power is None else _interval(drawn.power),
