@@ -17,6 +17,7 @@ import pytest
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell that starts tests in the background has them, and all they start, ignore Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+_ON_INTERRUPT = signal.getsignal(signal.SIGINT)
 
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
@@ -92,3 +93,10 @@ def pytest_xdist_make_scheduler(config: Any, log: Any) -> Any:
 
     config.option.loadscopereorder = False
     return ByFiles(config, log)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown() -> None:
+    """No test leaves the next one deaf to Ctrl-C."""
+    if signal.getsignal(signal.SIGINT) is not _ON_INTERRUPT:
+        signal.signal(signal.SIGINT, _ON_INTERRUPT)

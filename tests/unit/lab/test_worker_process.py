@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import warnings
 from types import SimpleNamespace
@@ -59,8 +60,11 @@ def test_one_piece_is_answered_after_the_other_until_the_line_is_closed(
     prepared: list[Any] = []
     monkeypatch.setattr(worker, "prepare", lambda: prepared.append(worker._line))
     monkeypatch.setattr(worker, "_line", None)
+    ignored: list[Any] = []
+    monkeypatch.setattr(worker.signal, "signal", lambda *given: ignored.append(given))
     line: Any = Line((max, (1, 2)), (min, (1, 2)), end)
     worker._work(line)
+    assert ignored == [(signal.SIGINT, signal.SIG_IGN)]
     assert line.said == [(True, 2), (True, 1)]
     # Whoever tells how far it is does so over this line, once the process is ready.
     assert prepared == [None]
