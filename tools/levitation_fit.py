@@ -84,12 +84,12 @@ def left_out(
         others = [j for j in range(len(curves)) if j != k]
         middle = float(np.mean([math.log(lengths[j]) for j in others]))
         wide = spread * math.sqrt(1 + 1 / len(others))
-        draws = np.exp(middle + wide * np.sqrt(2) * np.polynomial.hermite.hermgauss(31)[0])
-        weights = np.polynomial.hermite.hermgauss(31)[1] / math.sqrt(math.pi)
+        nodes, weights = np.polynomial.hermite.hermgauss(31)
+        draws = np.exp(middle + wide * np.sqrt(2) * nodes)
         model = np.array([with_length(law, float(one)).curve(amplitude) for one in draws])
         # What a fitted person leaves, and the reading.
         error = 0.03
-        density = weights @ np.exp(-0.5 * ((relative - model) / error) ** 2)
+        density = weights / math.sqrt(math.pi) @ np.exp(-0.5 * ((relative - model) / error) ** 2)
         by_model = np.log(density / (error * math.sqrt(2 * math.pi)))
         beside = np.array(
             [

@@ -39,7 +39,7 @@ from squeezefilm.analysis.parameters import (
     with_values,
 )
 from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
+from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.chain.touch import Touch, touch
 from squeezefilm.config.provenance import Provenance
@@ -171,8 +171,8 @@ class Mixture:
             driven=driven,
             normal_force=prediction.normal_force,
         )
-        sheared = law.kind.friction == "shear"
-        lifted = self.model == DEFAULT_MODEL
+        friction = MODEL_KINDS[self.model].friction
+        sheared, lifted = friction == "shear", friction == "lift"
         # µ and κ decide when what touches slips, and nothing else.
         without: list[str] = [] if sheared else [TANGENTIAL_RATIO, "friction_coefficient"]
         if not lifted:

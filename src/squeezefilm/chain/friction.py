@@ -91,8 +91,7 @@ class FrictionLaw(PadLaw):
 
     def _lifted_load(self, amplitude: si.Metre) -> FilmLoad:
         ambient = self.gas.ambient_pressure
-        pressure = self.normal_force / self.finger.contact_area(self.normal_force)
-        over = (1 - self.at(amplitude)) * pressure / ambient
+        over = (1 - self.at(amplitude)) * self.contact_pressure / ambient
         gap = self.finger.contact_decay_length
         number = squeeze_number(self.frequency, self.contact_side, gap, self.gas.viscosity, ambient)
         return FilmLoad(self.model, over, 0.0, float(number), "closed form of 2016, length fitted")

@@ -142,9 +142,8 @@ class PadLaw:
 
     def _scale(self, speed: si.MetrePerSecond) -> si.Metre:
         """The scale g of the levitation model (m) at a speed (m/s)."""
-        pressure = self.normal_force / self.finger.contact_area(self.normal_force)
         length = float(self.finger.decay_length_at(speed))
-        return levitation_scale(length, pressure, self.gas.ambient_pressure)
+        return levitation_scale(length, self.contact_pressure, self.gas.ambient_pressure)
 
     def ripple(self, amplitude: si.Metre) -> FrictionRipple:
         """µ′/µ along an even wave at an amplitude (m), each ridge by itself: by the law's
@@ -179,6 +178,11 @@ class PadLaw:
     def contact_side(self) -> si.Metre:
         """The side of the square contact at this force (m)."""
         return float(np.sqrt(self.finger.contact_area(self.normal_force)))
+
+    @property
+    def contact_pressure(self) -> si.Pascal:
+        """The finger's mean pressure on the contact at this force (Pa), grooves included."""
+        return self.normal_force / self.finger.contact_area(self.normal_force)
 
     @si.checked_numbers
     def felt_stiffness(
