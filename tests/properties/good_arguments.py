@@ -197,11 +197,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "film.gap.PaperGap.wave_phase": {"X": _GRID},
     "film.gap.PaperGap.ridge_phase": {"X": _GRID},
     "film.planar.gap.PlanarGap.__call__": {"X": _GRID, "Y": _GRID, "T": _GRID},
-    "film.planar.teeth.compare_teeth": {
-        "tooth_width": 0.2,
-        "tooth_pitch": 0.25,
-        "squeeze_number": 10.0,
-    },
     "formats.hjif.friction_along": {"document": Later(hjif_document)},
     "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
     "formats.drawing.Layer": {"colour": 7},

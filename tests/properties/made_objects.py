@@ -24,7 +24,6 @@ from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.sharing.balance import LoadSharing, share_load
-from squeezefilm.contact.sharing.film_load import FilmLoad, film_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import FrictionRipple, PadPosture
 from squeezefilm.contact.sharing.shear import AsperityShear
@@ -195,7 +194,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     AsperityShear: lambda: AsperityShear(0.1),
     LoadSharing: lambda: share_load(MADE[FilmTable](), AsperityLaw(), 1e-6, 5e3),
     FilmTable: lambda: film_table(30e3, 250e-6, AIR),
-    FilmLoad: lambda: film_load(MADE[PaperGap](), 30e3, AIR, "paper2008"),
     Occlusion: Occlusion,
     PadPosture: PadPosture,
     FrictionRipple: lambda: FrictionRipple(WAYS, np.linspace(0.5, 1, 9), 1e-2, 8e-3),

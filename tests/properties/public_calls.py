@@ -45,14 +45,14 @@ NOT_CALLED = {
     plate.electronics.Amplifier
     plate.electronics.ElectricalLoad plate.electronics.RingAdmittance
     film.periodic.solution.Asked film.periodic.solution.Found
-    contact.sharing.film_load.FilmLoad contact.sharing.pad.PadFriction
+    chain.friction.FilmLoad contact.sharing.pad.PadFriction
     contact.sharing.balance.LoadSharing
     contact.sliding.skin_vibration.SkinVibration
     contact.sliding.march.Sliding
     contact.sharing.tapping.Tapping
     film.periodic.balance.LoadBalance
     film.periodic.batch.FilmBatch film.periodic.solution.FilmSolution
-    film.planar.film.FilmPlanar film.transient.settling.FilmSettled film.planar.teeth.ToothedFilm
+    film.planar.film.FilmPlanar film.transient.settling.FilmSettled
     film.transient.march.FilmTransient film.transient.march.MovedFilm
     film.validity.FilmValidity film.validity.ValidityCheck
     formats.hjif.HjifExport plate.ring.modes.AnnularMode

@@ -72,37 +72,6 @@ def test_what_takes_long_beside_an_analysis_is_found_on_disk(
     assert len(asked) == 4
 
 
-@pytest.mark.slow
-def test_the_pressure_s_mean_is_the_predicted_one(plate: Analysis) -> None:
-    assert plate.film_models is not None
-    for profile in pressure_profiles(plate.prediction):
-        mean = np.trapezoid(profile.mean_pressure, profile.position) / np.ptp(profile.position)
-        # Over-pressure, not pressure, is what must agree.
-        expected = plate.film_models.result(profile.model).over_pressure
-        assert mean - 1 == pytest.approx(expected, rel=5e-3)
-
-
-def test_film_models_stand_side_by_side(plate: Analysis) -> None:
-    films = plate.film_models
-    assert films is not None
-    paper, sealed, opened = (
-        films.result(m).over_pressure for m in ("paper2008", "film-sealed", "film-open")
-    )
-    assert paper > sealed > opened > 0
-    assert films.result("film-plateau").relative_friction == 0
-    curve = next(one for one in plate.model_curves if one.model == "film-sealed")
-    used = films.result("film-sealed")
-    assert used.relative_friction == pytest.approx(
-        curve.at(plate.prediction.vibration_amplitude), abs=1e-4
-    )
-    for curve, result in zip(films.curves, films.results, strict=True):
-        at = np.interp(plate.prediction.vibration_amplitude, curve.amplitude, curve.load_share)
-        assert at == pytest.approx(result.load_share, rel=0.1)
-    assert films.teeth is None
-    assert films.balance is not None
-    assert films.balance.least_gap > 0
-
-
 def test_curves_pass_through_their_marked_points(plate: Analysis) -> None:
     for curve in plate.friction_curves:
         assert curve.amplitude_for_criterion is not None

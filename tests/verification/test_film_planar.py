@@ -15,7 +15,6 @@ from squeezefilm.film.planar.cut import cut_ellipse_grid
 from squeezefilm.film.planar.film import solve_planar
 from squeezefilm.film.planar.gap import PlanarGap
 from squeezefilm.film.planar.grid import disc_grid, ellipse_grid, graded_line, rectangle_grid
-from squeezefilm.film.planar.teeth import compare_teeth
 from squeezefilm.film.transient.settling import settle_to_periodic
 from squeezefilm.hard_limits import PLANAR_MEMORY
 
@@ -311,18 +310,6 @@ def test_open_grooves_converge_on_grids_of_two_kinds():
         grid = rectangle_grid(np.linspace(0, 0.5, 2 * k + 1), np.linspace(0, 0.5, k // 16 + 1))
         uniform.append(Balancer(equations, grid, 13).solve(None, 1e-8).over_pressure)
     assert uniform[1] + (uniform[1] - uniform[0]) / 3 == pytest.approx(film.over_pressure, rel=1e-2)
-
-
-def test_teeth_matter_where_the_film_is_smooth():
-    smooth = compare_teeth(20.418, PlanarGap(0.04), tooth_width=0.13, tooth_pitch=0.187)
-    # So narrow a tooth lets the gas out: its own squeeze number is 60 times smaller.
-    assert smooth.tooth_squeeze_number == pytest.approx(20.418 * 0.13**2)
-    assert smooth.ratio < 0.01
-    stiff = compare_teeth(1e6, PlanarGap(0.5), tooth_width=0.13, tooth_pitch=0.187)
-    # No gas moves at all: what is left is the area.
-    assert stiff.ratio == pytest.approx(0.13 / 0.187, rel=0.03)
-    with pytest.raises(InputError, match="tooth_width"):
-        compare_teeth(20.0, PlanarGap(0.5), tooth_width=0.2, tooth_pitch=0.1)
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,6 @@ from squeezefilm.analysis.drawn import description_of
 from squeezefilm.analysis.ears import EarExposure, ear_exposure
 from squeezefilm.analysis.felt import DRAWS as FELT_DRAWS
 from squeezefilm.analysis.felt import FeltGratings, felt_gratings
-from squeezefilm.analysis.film.models import FilmComparison, compare_film_models
 from squeezefilm.analysis.friction.wanted import Wanted
 from squeezefilm.analysis.friction.wanted import wanted_friction as friction_wanted
 from squeezefilm.analysis.other_models import (
@@ -54,7 +53,6 @@ from squeezefilm.analysis.uncertainty import (
 from squeezefilm.analysis.verdict import (
     Finding,
     ears_finding,
-    film_findings,
     held_back,
     model_form,
     rival_frictions,
@@ -83,13 +81,13 @@ BAND_POINTS, BAND_SAMPLES = 9, 64
 BAND_REACH = 1.5
 """How far the band goes, in vibration amplitudes: beyond, draws are pressed through."""
 
-KEPT = ("film_models", "sensitivities", "ears", "friction_curves", "model_curves", "other_models")
+KEPT = ("sensitivities", "ears", "friction_curves", "model_curves", "other_models")
 """Properties that take tenths of a second to seconds, kept on disk (`Analysis.compute`)."""
 
 _GRATINGS: Kept[FidelityTable] = Kept("gratings", FidelityTable)
 
-# What these steps take (s), measured on the presets; a budget without room for one leaves it out.
-_INTERVAL, _FILMS = 6.0, 4.0
+# What the interval takes (s), measured on the presets; a budget without room for it leaves it out.
+_INTERVAL = 6.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -111,7 +109,6 @@ class Analysis(Result):
     verdict: tuple[Finding, ...]
     wanted: Wanted | None = None
     effort: Effort = "quick"
-    with_films: bool = True
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.frequency "
         "prediction.vibration_amplitude prediction.relative_friction uncertainty.interval "
@@ -203,18 +200,6 @@ class Analysis(Result):
         return model_curves(self.prediction)
 
     @functools.cached_property
-    def film_models(self) -> FilmComparison | None:
-        """The film under the finger as each model reads it; None where nothing vibrates, or a
-        budget left no time for it."""
-        return compare_film_models(self.display, self.prediction) if self.with_films else None
-
-    @functools.cached_property
-    def film_findings(self) -> tuple[Finding, ...]:
-        """What the readings of the film amount to, in sentences."""
-        films = self.film_models
-        return () if films is None else tuple(film_findings(self.prediction, films))
-
-    @functools.cached_property
     def other_models(self) -> tuple[OtherModel, ...]:
         """The same plate by other theories."""
         return tuple(other_models(self.display, self.prediction))
@@ -241,7 +226,7 @@ class Analysis(Result):
         types = tuple(get_type_hints(getattr(Analysis, name).func)["return"] for name in dear)
         kept: Kept[tuple[Any, ...]] = Kept("beside", tuple[types], large=True)  # type: ignore[valid-type]
         unsure = None if self.uncertainty is None else self.uncertainty.summary()
-        more = (dear, self.effort, self.with_films, unsure)
+        more = (dear, self.effort, unsure)
         asked = description_of(self.display, self.prediction, more)
         known = kept.get(asked)
         vars(self).update(zip(dear, known or (), strict=False))
@@ -299,17 +284,10 @@ class Analysis(Result):
                 }
                 for curve in self.friction_curves
             ],
-            "film_models": None
-            if self.film_models is None
-            else {
-                "results": to_json(self.film_models.results),
-                "teeth": to_json(self.film_models.teeth),
-                "plateau_balance": to_json(self.film_models.balance),
-            },
             "other_models": to_json(self.other_models),
             "measured": [to_json(one) | {"difference": one.difference} for one in self.measured],
             "drive_electronics": to_json(self.drive_electronics),
-            "verdict": to_json((*self.findings, *self.film_findings)),
+            "verdict": to_json(self.findings),
             "provenance": stamp(self.display),
         }
 
@@ -421,5 +399,4 @@ def _what_follows(
         uncertainty=unsure,
         fidelity=table,
         verdict=tuple(verdict(display, prediction, area, own, table, unsure, why_not)),
-        with_films=deadline is None or deadline.allows(_FILMS),
     )

@@ -157,14 +157,15 @@ class Mixture:
     from 0 to 1 that says which value or law is drawn.
 
     `driven` is whether a voltage moves it, so that its actuator is uncertain too. The model is the
-    prediction's where film and asperities share the load in it, else the default one.
+    prediction's where its inputs are uncertain, else the default one: those of the paper and of
+    2016 are closed forms with constants of their own.
     """
 
     def __init__(self, display: Display, prediction: Prediction, *, driven: bool) -> None:
         self.display, self.prediction = display, prediction
         law = prediction.law
-        shared = law.kind.film == "shared"
-        self.model: FrictionModel = law.model if shared else DEFAULT_MODEL
+        own = law.kind.shares_load and law.model != "levitation-2016"
+        self.model: FrictionModel = law.model if own else DEFAULT_MODEL
         parameters = uncertain_parameters(
             display,
             prediction.surface.name,

@@ -17,7 +17,6 @@ from squeezefilm.analysis.curves import (
     as_far_as_it_goes,
 )
 from squeezefilm.analysis.ears import AUDIBLE, EarExposure
-from squeezefilm.analysis.film.models import FilmComparison
 from squeezefilm.analysis.plate.mode_doubts import mode_doubts, why_undriven
 from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.chain.active_area import CRITERIA
@@ -84,7 +83,7 @@ def verdict(
             yield Finding("limit", hot)
         if table is not None:
             yield _of_gratings(table, p.relative_friction)
-        if MODEL_KINDS[p.model].film == "asymptote":
+        if not MODEL_KINDS[p.model].shares_load:
             yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
         if (doubt := source_doubt(display.provenance)) is not None:
             yield Finding("doubt", doubt)
@@ -210,7 +209,7 @@ def _probability(value: si.Dimensionless) -> str:
 
 def _of_needed_amplitude(p: Prediction, own: FrictionCurve) -> Iterator[Finding]:
     """What the paper's criterion takes where the display as described misses it."""
-    papers = MODEL_KINDS[p.model].film == "asymptote"
+    papers = not MODEL_KINDS[p.model].shares_load
     by = "By the paper's model" if papers else f"By the model '{p.model}'"
     if papers or p.relative_friction > PAPER_CRITERION:
         needed = own.amplitude_for_criterion
@@ -301,30 +300,3 @@ def _of_gratings(table: FidelityTable, relative_friction: si.Dimensionless) -> F
         f"up to {1e3 * fastest[worst]:.0f} mm/s. Of the fundamental "
         f"{100 * table.fundamental_at_limit:.0f} % are left there.{unfelt}",
     )
-
-
-def film_findings(p: Prediction, films: FilmComparison) -> Iterator[Finding]:
-    """What the readings of the film say of one another; no verdict on the display, whose friction
-    one of them gives."""
-    paper, sealed = films.result("paper2008"), films.result("film-sealed")
-    open_, plateau = films.result("film-open"), films.result("film-plateau")
-    if sealed.over_pressure > 0 and open_.over_pressure > 0:
-        yield Finding(
-            "doubt",
-            f"The paper's asymptote promises {paper.over_pressure / sealed.over_pressure:.3g} "
-            f"times the over-pressure of the solved film with sealed grooves (squeeze number "
-            f"{p.squeeze_number:.3g}), and {paper.over_pressure / open_.over_pressure:.3g} "
-            f"times that with grooves open at the edge of the contact.",
-        )
-    yield Finding(
-        "doubt",
-        f"How ridges are drawn decides: sinusoidal ridges with open grooves carry "
-        f"{si.percent(open_.load_share, 1)} of the finger, ridges pressed flat "
-        + ("all of it." if plateau.load_share >= 1 else f"{si.percent(plateau.load_share)} of it.")
-        + " Partial levitation, where film and asperities share the load of a "
-        "flattened ridge, lies between.",
-    )
-    if films.balance is not None:
-        yield Finding("limit", films.balance.sentence)
-    if films.teeth is not None:
-        yield Finding("limit", films.teeth.sentence)

@@ -77,7 +77,7 @@ def at_best_place(display: Display, mode: WorkingMode, law: FrictionLaw) -> Fric
     little beside it. As it is, over an antinode of an even wave, where the plate is taken as a
     beam, or friction is not known.
     """
-    if not mode.has_shape or law.kind.film != "shared" or law.kind.limit != "own":
+    if not mode.has_shape or not law.kind.shares_load:
         return law
     own = free_vibration(display, mode, law.frequency, display.drive.voltage or 1.0, None)
     found = area_map(display, mode, law, own)
@@ -186,7 +186,7 @@ def _friction(
     """µ′/µ of pads whose points meet amplitudes (m) and carry shares of the load, both of shape
     (places, points)."""
     kind = law.kind
-    if kind.film != "shared" or kind.limit != "own":
+    if not kind.shares_load:
         raise OutOfRangeError(
             f"the model '{law.model}' does not give each ridge a balance of its own, and so no "
             "friction beside the antinodes"

@@ -6,17 +6,12 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.sharing.pad import Limit
 
 FrictionModel = Literal[
     "paper2008",
     "paper2008-printed",
-    "film-sealed",
-    "film-open",
-    "film-plateau",
-    "film-smooth",
+    "levitation-2016",
     "partial-levitation",
-    "partial-levitation-one-gap",
     "partial-levitation-shear",
     "levitation",
 ]
@@ -25,37 +20,37 @@ DEFAULT_MODEL: FrictionModel = "levitation"
 
 
 class ModelKind(NamedTuple):
-    """What a friction model makes of the film, and in which limit it takes the skin.
+    """What a friction model makes of film and skin.
 
-    "asymptote": the paper's closed form at an infinite squeeze number; "held": a film solved (a
-    hundred times slower) at a gap that does not yield; "shared": films that carry the finger
-    together with asperities, at the gap where both balance the load. Of what is shared `friction`
-    takes the part that asperities carry, all of it slipping ("load"); that part, elastic until it
-    slips ("shear"); or the closed form of 2016 with the finger's fitted length ("lift"), while the
-    balance only says what the plate feels of the finger.
+    `friction` is what the model takes: the paper's closed form at an infinite squeeze number and a
+    gap that does not yield ("asymptote"); or films that carry the finger together with asperities,
+    at the gap where both balance the load. Of that it takes the part that asperities carry, all of
+    it slipping ("load"); that part, elastic until it slips ("shear"); or the closed form of 2016
+    ("lift"), while the balance only says what the plate feels of the finger. `fitted` is whether
+    the closed form has the finger's length, fitted to people, or the constants published in 2016.
     """
 
-    film: Literal["asymptote", "held", "shared"]
-    limit: Limit = "own"
-    friction: Literal["load", "shear", "lift"] = "load"
+    friction: Literal["asymptote", "load", "shear", "lift"]
+    fitted: bool = False
+
+    @property
+    def shares_load(self) -> bool:
+        """Whether film and asperities share the load, at a gap that yields."""
+        return self.friction != "asymptote"
 
     @property
     def knows_speed(self) -> bool:
         """Whether friction depends on the finger's speed."""
-        return self.friction != "load"
+        return self.fitted or self.friction == "shear"
 
 
 MODEL_KINDS: dict[FrictionModel, ModelKind] = {
     "paper2008": ModelKind("asymptote"),
     "paper2008-printed": ModelKind("asymptote"),
-    "film-sealed": ModelKind("held"),
-    "film-open": ModelKind("held"),
-    "film-plateau": ModelKind("held"),
-    "film-smooth": ModelKind("held"),
-    "partial-levitation": ModelKind("shared"),
-    "partial-levitation-one-gap": ModelKind("shared", "one-gap"),
-    "partial-levitation-shear": ModelKind("shared", friction="shear"),
-    "levitation": ModelKind("shared", friction="lift"),
+    "levitation-2016": ModelKind("lift"),
+    "partial-levitation": ModelKind("load"),
+    "partial-levitation-shear": ModelKind("shear"),
+    "levitation": ModelKind("lift", fitted=True),
 }
 
 

@@ -27,7 +27,12 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.contact.sharing.balance import require_balanced
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.contact.sharing.levitation import levitation_friction, levitation_scale
+from squeezefilm.contact.sharing.levitation import (
+    PUBLISHED_DECAY_LENGTH,
+    levitation_friction,
+    levitation_scale,
+    published_rest_gap,
+)
 from squeezefilm.contact.sharing.pad import (
     FrictionRipple,
     Limit,
@@ -78,10 +83,10 @@ class PadLaw:
 
     def __post_init__(self) -> None:
         elsewhere = self.position != 0 or self.place is not None
-        if elsewhere and self.kind.film != "shared":
+        if elsewhere and not self.kind.shares_load:
             raise InputError(
                 f"the model '{self.model}' knows the finger over an antinode only; ask a "
-                "partial-levitation model, or leave position and place out",
+                "levitation model, or leave position and place out",
                 quantity="place" if self.place is not None else "position",
             )
         if self.position and self.place is not None:
@@ -96,22 +101,14 @@ class PadLaw:
     def sharing(
         self,
         amplitude: si.MetreLike,
-        limit: Limit | None = None,
+        limit: Limit = "own",
         *,
         posture: PadPosture | None = None,
         yielding: bool = False,
     ) -> PadFriction:
-        """How film and asperities share the load at amplitudes (m), in the model's limit or in
-        the one named; how the pad lies (None: at `position`, level); and whether the
-        finger's skin yields at the ultrasonic frequency. Raises `InputError` for a model that does
-        not share the load."""
-        if limit is None:
-            if self.kind.film != "shared":
-                raise InputError(
-                    f"the model '{self.model}' holds the gap and shares no load; ask a "
-                    "partial-levitation model, or name a limit"
-                )
-            limit = self.kind.limit
+        """How film and asperities share the load at amplitudes (m), whatever the model, in a limit
+        of the skin; how the pad lies (None: at `position`, level); and whether the finger's skin
+        yields at the ultrasonic frequency."""
         skin = self.finger.skin if yielding else None
         return self._pad(amplitude, self.speed, limit=limit, posture=posture, skin=skin)
 
@@ -136,14 +133,21 @@ class PadLaw:
         _require_tabulated(amplitude, met)
         if limit == "one-gap":
             met, shares = np.sqrt(met**2 @ shares)[None], np.ones(1)
-        relative = amplitude[:, None] * met
-        scales = [self._scale(float(pace)) for pace in np.atleast_1d(speed)]
-        return np.stack([levitation_friction(relative / scale) @ shares for scale in scales])
+        at_ridges = amplitude[:, None] * met
+        speeds = np.atleast_1d(speed).tolist()
+        return np.stack([self._lifted_ridge(at_ridges, pace) @ shares for pace in speeds])
 
-    def _scale(self, speed: si.MetrePerSecond) -> si.Metre:
-        """The scale g of the levitation model (m) at a speed (m/s)."""
-        length = float(self.finger.decay_length_at(speed))
-        return levitation_scale(length, self.contact_pressure, self.gas.ambient_pressure)
+    def _lifted_ridge(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecond
+    ) -> si.DimensionlessArray:
+        """µ′/µ of a ridge by `levitation_friction` at the amplitudes that it meets (m), any shape,
+        with the length fitted to people or the gap and length of 2016."""
+        pressure, ambient = self.contact_pressure, self.gas.ambient_pressure
+        if self.kind.fitted:
+            length = float(self.finger.decay_length_at(speed))
+            return levitation_friction(amplitude / levitation_scale(length, pressure, ambient))
+        scale = levitation_scale(PUBLISHED_DECAY_LENGTH, pressure, ambient)
+        return levitation_friction(amplitude / scale, published_rest_gap(pressure))
 
     def ripple(self, amplitude: si.Metre) -> FrictionRipple:
         """µ′/µ along an even wave at an amplitude (m), each ridge by itself: by the law's
@@ -189,19 +193,11 @@ class PadLaw:
         self, amplitude: Annotated[si.Metre, si.AtLeast(0.0)]
     ) -> PascalPerMetreComplex:
         """What the plate feels of the finger per area of contact (Pa/m, complex) at an amplitude
-        (m) of an even wave, wherever the pad is, in the model's limit: of `sharing` what the
-        vibration depends on, without the friction. See `load_kernel.between`."""
-        from squeezefilm.contact.finger.load_kernel import felt
+        (m) of an even wave, wherever the pad is: of `sharing` what the vibration depends on,
+        without the friction. See `load_kernel.between`."""
         from squeezefilm.contact.sharing import kernel
 
-        (met, shares), known = self._even_swings, self._compiled
-        if self.kind.limit != "own":
-            at, wave = np.zeros(met.size), PadPosture(swings=met, shares=shares)
-            limit = self.kind.limit
-            tied = self._pad(amplitude, self.speed, limit=limit, points=at, posture=wave)
-            gap = float(tied.mean_gap[0])
-            swing = min(amplitude, 0.9 * gap, gap - known.least_gap)
-            return complex(felt(gap, swing, known.finger, known.asperities))
+        met, known = self._even_swings[0], self._compiled
         _require_tabulated(amplitude, met)
         rows, table = np.zeros((met.size, kernel.COLUMNS)), self._films
         while True:
@@ -275,7 +271,7 @@ class PadLaw:
         """µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,): the pad's in the limit
         "own" is the mean over its ridges."""
         if self.kind.friction == "lift":
-            return levitation_friction(amplitude / self._scale(self.speed))
+            return self._lifted_ridge(amplitude, self.speed)
         posture, at = PadPosture(swings=np.ones(1)), np.zeros(1)
         found = self._pad(amplitude, self.speed, limit="own", points=at, posture=posture)
         return found.relative_friction

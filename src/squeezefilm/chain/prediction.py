@@ -276,7 +276,7 @@ def predict(
         )
         if place is None and position is None:
             law = at_best_place(display, mode, law)
-        asked_for_asymptote = model is not None and law.kind.film == "asymptote"
+        asked_for_asymptote = model is not None and not law.kind.shares_load
         found = _felt(display, mode, drive, law, strict=strict and asked_for_asymptote)
     objections = (*unusual, *replaced)
     doubts = (*objections, *_doubts(caught, found))
@@ -294,8 +294,8 @@ def _felt(
     gap, gas = law.gap(felt.amplitude), law.gas
     validity = film_validity(gap, drive.frequency, gas, strict=strict)
     load = law.load(felt.amplitude)
-    friction, limits = law.under(load, felt.amplitude), None
-    if law.kind.film == "shared":
+    friction, limits = law.at(felt.amplitude), None
+    if law.kind.shares_load:
         # The limit that is not the model's own may be out of reach where the model is not.
         with contextlib.suppress(OutOfRangeError):
             found = law.limits(felt.amplitude)
@@ -339,36 +339,38 @@ def _felt(
 
 def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
     """What was warned of on the way, and what the models leave out."""
-    film, limits = p.law.kind.film, p.relative_friction_limits
-    # Where the film is solved, what fails of the asymptote is no doubt about this number.
+    kind, limits = p.law.kind, p.relative_friction_limits
+    # Of a film that is solved, what fails of the asymptote is no doubt about this number.
     messages = [
         str(item.message)
         for item in caught
-        if film == "asymptote" or not issubclass(item.category, OutOfRangeWarning)
+        if not kind.shares_load or not issubclass(item.category, OutOfRangeWarning)
     ]
     if (company := p.mode.company) is not None:
         messages.append(company)
-    if film == "held":
-        inertia = p.validity.check("inertia")
-        messages += [] if inertia.holds else [inertia.sentence]
     if p.voltage is not None and p.mode.modal_mass is None:
         messages.append(
             "the amplitude is the measured one; what a finger takes from it is not known and left "
             "out"
         )
     most = p.law.finger.largest_force(p.surface.roughness)
-    if film == "shared" and p.normal_force > most:
+    if kind.shares_load and p.normal_force > most:
         asked, held = (si.format_quantity(f, si.Unit("N")) for f in (p.normal_force, most))
         messages.append(
             f"under {asked} most asperities are pressed flat even at rest: this contact's law "
             f"holds to {held}. Press less, or take asperities of type 'rough_contact'"
         )
-    if p.law.kind.friction == "lift":
+    if kind.fitted:
         messages.append(
             f"the model '{p.model}' is fitted to people on glass, in two laboratories, each at its "
             "own speed: a new person differs, and so may another surface"
         )
-    elif film == "shared":
+    elif kind.friction == "lift":
+        messages.append(
+            f"the model '{p.model}' has constants that were published for skin, and no number of "
+            "this finger but its pressure"
+        )
+    elif kind.shares_load:
         spread = (
             "A skin so stiff that all ridges hang on one mean gap is out of this contact's range"
             if limits is None

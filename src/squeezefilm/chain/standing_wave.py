@@ -53,7 +53,7 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
         )
     along = AlongY() if plate.lines_across == "width" else AlongX()
     half, law = p.mode.half_wavelength, p.law
-    if MODEL_KINDS[p.model].film != "shared":
+    if not MODEL_KINDS[p.model].shares_load:
         return WaveCompensation.over_contact(half, law.finger.contact_length, along=along)
     found = law.ripple(p.vibration_amplitude)
     # Off the antinode friction may be less than the display makes centred on it.

@@ -55,7 +55,7 @@ class Touch:
         """How film and asperities share the load at this amplitude, each ridge where it is; None
         where the surface stands still. Raises what the load balance raises."""
         law = self.law
-        return None if law is None else law.sharing(self.amplitude, law.kind.limit)
+        return None if law is None else law.sharing(self.amplitude)
 
     @property
     def kept(self) -> si.Dimensionless:

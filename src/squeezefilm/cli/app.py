@@ -114,8 +114,7 @@ Model = Annotated[
     str | None,
     typer.Option(
         help="Friction model: levitation (the default), partial-levitation-shear, "
-        "partial-levitation, partial-levitation-one-gap, paper2008, film-sealed, film-open, "
-        "film-plateau, film-smooth."
+        "partial-levitation, levitation-2016, paper2008."
     ),
 ]
 

@@ -13,16 +13,9 @@ import pytest
 from squeezefilm.analysis.area_odds import AreaOdds, JudgedArea
 from squeezefilm.analysis.curves import FrictionCurve
 from squeezefilm.analysis.draws import Refusals
-from squeezefilm.analysis.film.models import (
-    FilmComparison,
-    FilmResult,
-    PlateauBalance,
-    ToothResult,
-)
 from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.analysis.verdict import (
     Finding,
-    film_findings,
     friction_verdict,
     model_form,
     rival_frictions,
@@ -253,56 +246,6 @@ def test_the_last_word_is_that_nothing_is_validated(point: Prediction) -> None:
     assert len(said(point, relative_friction=0.5)) == 3
 
 
-def films(sealed: float, opened: float, plateau: float, **others: Any) -> FilmComparison:
-    results = tuple(
-        FilmResult(model, "", over, 0.0, over / 0.05, 0.5, "")  # type: ignore[arg-type]
-        for model, over in (
-            ("paper2008", 0.03), ("film-sealed", sealed), ("film-open", opened),
-            ("film-plateau", plateau),
-        )
-    )  # fmt: skip
-    return FilmComparison(results, (), **{"teeth": None, "balance": None, **others})
-
-
-def test_films_are_compared_by_their_over_pressure(point: Prediction) -> None:
-    p = dataclasses.replace(point, squeeze_number=20.42)
-    found = tuple(film_findings(p, films(0.012, 0.0005, 0.04)))
-    assert Finding(
-        "doubt",
-        "The paper's asymptote promises 2.5 times the over-pressure of the solved film with sealed "
-        "grooves (squeeze number 20.4), and 60 times that with grooves open at the edge of the "
-        "contact.",
-    ) in found  # fmt: skip
-    assert Finding(
-        "doubt",
-        "How ridges are drawn decides: sinusoidal ridges with open grooves carry 1.0 % of the "
-        "finger, ridges pressed flat 80 % of it. Partial levitation, where film and asperities "
-        "share the load of a flattened ridge, lies between.",
-    ) in found  # fmt: skip
-
-
-@pytest.mark.parametrize(("sealed", "opened"), [(0.0, 1.0), (1.0, 0.0), (-1.0, 1.0), (1.0, -1.0)])
-def test_a_film_without_over_pressure_is_in_no_ratio(
-    point: Prediction, sealed: float, opened: float
-) -> None:
-    found = tuple(film_findings(point, films(sealed, opened, 0.05)))
-    assert not any("promises" in one.text for one in found)
-    assert any("ridges pressed flat all of it. Partial" in one.text for one in found)
-
-
-def test_plateaus_and_teeth_add_their_own_sentences(point: Prediction) -> None:
-    before = len(tuple(film_findings(point, films(0.01, 0.01, 0.1))))
-    both = films(
-        0.01, 0.01, 0.1,
-        balance=PlateauBalance(1e-6, 1e-9, 1e-6, 7e3, "It floats."),
-        teeth=ToothResult(2e-3, 1e-3, 0.1, 0.1, 1.0, "Teeth do not matter."),
-    )  # fmt: skip
-    found = tuple(film_findings(point, both))
-    assert len(found) == before + 2
-    assert Finding("limit", "It floats.") in found
-    assert Finding("limit", "Teeth do not matter.") in found
-
-
 def test_gratings_that_nobody_feels_are_not_good(point: Prediction) -> None:
     table = SimpleNamespace(
         fastest_speed=np.array([0.2]), spatial_periods=np.array([4e-3]), speeds=np.array([0.2]),
@@ -338,7 +281,7 @@ def test_an_interval_says_what_it_has_varied_and_how_far_rival_models_lie_apart(
 def test_rival_models_are_all_but_the_predictions_own(point: Prediction) -> None:
     rivals = rival_frictions(point)
     assert point.model not in rivals
-    assert {"paper2008", "film-sealed"} <= set(rivals)
+    assert {"paper2008", "levitation-2016"} <= set(rivals)
     for model, friction in rivals.items():
         assert friction == pytest.approx(
             point.law.by(model).at(point.vibration_amplitude)  # type: ignore[arg-type]

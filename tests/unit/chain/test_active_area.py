@@ -230,7 +230,7 @@ def test_of_a_pad_that_overhangs_the_rest_carries() -> None:
 
 
 def test_a_model_without_ridges_of_their_own_has_amplitudes_only_and_says_why() -> None:
-    for model in ("paper2008", "partial-levitation-one-gap"):
+    for model in ("paper2008", "paper2008-printed"):
         p = predict(PLATE, theory="timoshenko", model=model)
         area = area_of(PLATE, p)
         assert area.relative_friction is None

@@ -111,7 +111,6 @@ def test_the_best_place_is_one_for_all_voltages() -> None:
         ("biet2008-plate", {"theory": "timoshenko"}),
         ("biet2008-stator", {"position": 0.0}),
         ("winfield2007-tpad", {"model": "paper2008"}),
-        ("winfield2007-tpad", {"model": "partial-levitation-one-gap"}),
         ("winfield2007-tpad", {"position": 0.0}),
     ],
 )

@@ -9,7 +9,8 @@ from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, Fricti
 
 def test_every_model_has_a_kind() -> None:
     assert set(MODEL_KINDS) == set(get_args(FrictionModel))
-    assert MODEL_KINDS[DEFAULT_MODEL].film == "shared"
-    assert {kind.film for kind in MODEL_KINDS.values()} == {"asymptote", "held", "shared"}
-    tied = [name for name, kind in MODEL_KINDS.items() if kind.limit == "one-gap"]
-    assert tied == ["partial-levitation-one-gap"]
+    assert MODEL_KINDS[DEFAULT_MODEL].shares_load
+    closed = {name for name, kind in MODEL_KINDS.items() if not kind.shares_load}
+    assert closed == {"paper2008", "paper2008-printed"}
+    timed = {name for name, kind in MODEL_KINDS.items() if kind.knows_speed}
+    assert timed == {"levitation", "partial-levitation-shear"}

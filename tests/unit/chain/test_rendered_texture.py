@@ -179,7 +179,7 @@ def test_the_force_is_friction_times_load_once_the_pad_slides() -> None:
 
 
 def test_the_summary_says_what_was_done() -> None:
-    found = made(seed=5, surface="bare", voltage=100.0, model="partial-levitation-one-gap")
+    found = made(seed=5, surface="bare", voltage=100.0, model="partial-levitation")
     data = found.summary()
     assert {key: data[key] for key in (
         "display", "texture", "quantity", "surface", "voltage_V", "normal_force_N", "samples",
@@ -207,7 +207,7 @@ def test_the_summary_says_what_was_done() -> None:
     first, third, fifth = data["contrast_kept"]
     assert 1 > first > third > fifth > 0
     assert data["lag_s"] == pytest.approx(data["lag_m"] / 0.1, rel=1e-3)
-    assert data["model"]["friction"] == "partial-levitation-one-gap"
+    assert data["model"]["friction"] == "partial-levitation"
     assert data["provenance"]["seed"] == 5
     assert data["fidelity"]["wanted_swing"] == pytest.approx(0.3, abs=2e-3)
     assert made(EVEN).summary()["texture"] == "relative_friction"

@@ -24,8 +24,7 @@ LAW: Any = SimpleNamespace(
     place=None,
     mean_square_even=0.5,
     mean_square=0.5,
-    kind=SimpleNamespace(limit="own"),
-    sharing=lambda amplitude, limit: (amplitude, limit),
+    sharing=lambda amplitude: (amplitude, "shared"),
 )
 
 

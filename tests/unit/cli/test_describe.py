@@ -135,7 +135,7 @@ def test_every_option_of_an_analysis_arrives(analysis: SimpleNamespace, tmp_path
     options = (
         "--voltage", "15 V", "--frequency", "34 kHz", "--amplitude", "2 um", "--force", "0.3 N",
         "--surface", "copper", "--samples", "8", "--wanted", "0.5", "--sensitivities", "solved",
-        "--theory", "timoshenko", "--model", "film-open", "--all",
+        "--theory", "timoshenko", "--model", "levitation-2016", "--all",
         "--speed", "50 mm/s", "--strict", "--out", tmp_path, "--budget", "2 min",
     )  # fmt: skip
     done = run("analyze", DISPLAY, *options)
@@ -143,7 +143,7 @@ def test_every_option_of_an_analysis_arrives(analysis: SimpleNamespace, tmp_path
         "voltage": 15.0, "frequency": 34e3, "vibration_amplitude": pytest.approx(2e-6),
         "normal_force": 0.3, "surface": "copper", "samples": 8, "wanted_friction": 0.5,
         "sensitivities": "solved", "theory": "timoshenko",
-        "model": "film-open", "speed": pytest.approx(0.05), "strict": True, "budget": 120.0,
+        "model": "levitation-2016", "speed": pytest.approx(0.05), "strict": True, "budget": 120.0,
         "place": None,
     }  # fmt: skip
     assert analysis.written.given == (ANSWER, tmp_path)

@@ -44,14 +44,15 @@ def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: P
 
     done = run(
         "friction", PLATE, "--voltage", "15 V", "--frequency", "34 kHz", "--force", "0.3 N",
-        "--surface", "copper", "--model", "film-open", "--position", "2 mm", "--speed", "50 mm/s",
+        "--surface", "copper", "--model", "levitation-2016", "--position", "2 mm",
+        "--speed", "50 mm/s",
         "--ambient-pressure", "2 kPa", "--wanted", "0.7", "--samples", "8", "--seed", "5",
         "--out", tmp_path,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert asked.calls[-1][1] == {
         "voltage": 15.0, "frequency": 34e3, "vibration_amplitude": None, "normal_force": 0.3,
-        "surface": "copper", "model": "film-open", "position": pytest.approx(2e-3),
+        "surface": "copper", "model": "levitation-2016", "position": pytest.approx(2e-3),
         "speed": pytest.approx(0.05), "ambient_pressure": 2000.0, "wanted_friction": 0.7,
         "samples": 8, "seed": 5, "place": None,
     }  # fmt: skip

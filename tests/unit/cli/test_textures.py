@@ -55,12 +55,13 @@ def test_every_option_of_a_rendering_arrives(rendered: SimpleNamespace, tmp_path
     done = run(
         "render", TEXTURE, "--display", DISPLAY, "--stroke", "60 mm/s over 4 cm", "--sensor",
         "touch-panel-120-hz", "--compensate", "inverse", "--braking", "--wave", "felt",
-        "--voltage", "15 V", "--force", "0.3 N", "--surface", "copper", "--model", "film-open",
-        "--seed", "5", "--out", tmp_path, "--table", "parquet", "--drive", "--hjif",
+        "--voltage", "15 V", "--force", "0.3 N", "--surface", "copper", "--model",
+        "levitation-2016", "--seed", "5", "--out", tmp_path, "--table", "parquet",
+        "--drive", "--hjif",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert rendered.asked.named == {
-        "voltage": 15.0, "normal_force": 0.3, "surface": "copper", "model": "film-open",
+        "voltage": 15.0, "normal_force": 0.3, "surface": "copper", "model": "levitation-2016",
         "sensor": "touch-panel-120-hz", "compensation": "inverse", "braking": True, "wave": "felt",
         "seed": 5, "place": None,
     }  # fmt: skip

@@ -16,6 +16,9 @@ POINT = SimpleNamespace(
     model="paper2008",
     surface=SimpleNamespace(name="polished"), frequency=40e3,
     mode=SimpleNamespace(half_wavelength=10e-3),
+    law=SimpleNamespace(
+        by=lambda model: SimpleNamespace(at=lambda amplitude: {"paper2008": 0.25}[model])
+    ),
 )  # fmt: skip
 
 
@@ -33,27 +36,11 @@ CURVES = (
     curve("rough", "paper2008", 0.5, criterion=6e-6, zero=20e-6),
     curve("polished", "partial-levitation", 0.1),
 )
-FILMS = SimpleNamespace(
-    results=(
-        SimpleNamespace(model="paper2008", load_share=1.9, relative_friction=0.25),
-        SimpleNamespace(model="film-smooth", load_share=0.004, relative_friction=0.9),
-        SimpleNamespace(model="film-plateau", load_share=np.nan, relative_friction=np.nan),
-    ),
-    curves=tuple(
-        SimpleNamespace(
-            model=model, amplitude=top * (GRID + 1e-7), load_share=share * (GRID + 1e-7) / 1e-5
-        )
-        for model, top, share in (
-            ("paper2008", 0.4, 2.0), ("film-smooth", 0.5, 0.01), ("film-plateau", 0.3, 1.0),
-        )
-    ),
-    result=lambda name: SimpleNamespace(relative_friction={"paper2008": 0.25}[name]),
-)  # fmt: skip
 
 
 def made(**changes: Any) -> Any:
     parts: dict[str, Any] = {
-        "prediction": POINT, "friction_curves": CURVES, "film_models": FILMS,
+        "prediction": POINT, "friction_curves": CURVES,
         "own_curve": CURVES[0], "own_curves": CURVES[:2], "uncertainty": None, "band": None,
     }  # fmt: skip
     return SimpleNamespace(**{**parts, **changes})

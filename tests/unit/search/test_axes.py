@@ -77,7 +77,7 @@ def test_whole_numbers_stay_whole_and_all_of_a_list_change_together() -> None:
         ("voltage=-1 V", "at least 0 V"),
         ("normal_force=0 N", "above 0 N"),
         ("wanted_friction=1.5", "at most 1"),
-        ("model=film-seald", r"Did you mean 'film-sealed'\?"),
+        ("model=levitaton", r"Did you mean 'levitation'\?"),
         ("braking=perhaps", "Allowed: true, false"),
         ("band=20 kHz", "is no band"),
         ("texture=no-such", "neither a file nor"),

@@ -49,9 +49,6 @@ MEANINGS: dict[Verdict, str] = {
 }
 """What each verdict says, in words."""
 
-_SAME_DIRECTIONS = {"partial-levitation-one-gap": "partial-levitation"}
-"""Models whose directions are those of another: a single plateau knows no limit of the pad."""
-
 
 @dataclass(frozen=True)
 class Claim:
@@ -176,10 +173,7 @@ def measured_of_preset(preset: str, quantity: str) -> float:
 def missed_by(model: str) -> tuple[Claim, ...] | None:
     """The measured directions that a friction model misses, by the verdicts on record; None for a
     model that they were not asked of."""
-    asked_as = _SAME_DIRECTIONS.get(model, model)
-    asked = [one for one in read_claims().all_claims if one.model and one.model == asked_as]
+    asked = [one for one in read_claims().all_claims if one.model and one.model == model]
     if not asked:
         return None
-    return tuple(
-        replace(one, model=model) for one in asked if one.says and one.verdict == "does not hold"
-    )
+    return tuple(one for one in asked if one.says and one.verdict == "does not hold")

@@ -9,11 +9,16 @@ with the finger's pressure p_s, ambient p0, and the gap u0 at rest. With z = (u 
 scale g = ℓ √(p_s/(1.25 p0)) it is (1 − exp(−z)) (z + u0/ℓ)² = (a/g)². The film's asymptote is that
 of a large squeeze number and a small excursion; the excursion is always small, since a/u stays
 below √(p_s/(1.25 p0)), 0.15 for 2.8 kPa in air.
+
+The published gap at rest is u0 = ℓ ln(p_c/p_s), p_c = 0.375 q0 u_rms E/(1 − ν²), with skin of
+u_rms = 5 µm, q0 = 1e4 1/m, E = 20 MPa, ν = 0.5. As printed ℓ = u_rms, which makes u0 26 µm where
+the text says 2 u_rms; with Persson's ℓ = 0.4 u_rms, taken here, it is 10.4 µm.
 """
 
 from __future__ import annotations
 
 import functools
+import math
 from typing import Annotated
 
 import numpy as np
@@ -22,6 +27,17 @@ from squeezefilm import quantities as si
 
 # Of z: from where µ′/µ is 1 to rounding to where it has left the range of a float.
 _LIFT = np.geomspace(1e-18, 745.0, 12000)
+
+
+PUBLISHED_DECAY_LENGTH: si.Metre = 0.4 * 5e-6
+_PUBLISHED_PRESSURE: si.Pascal = 0.375 * 1e4 * 5e-6 * 20e6 / (1 - 0.5**2)
+
+
+@si.checked_numbers
+def published_rest_gap(contact_pressure: Annotated[si.Pascal, si.Above(0.0)]) -> si.Dimensionless:
+    """The gap at rest u0/ℓ with the constants of 2016, under a pressure of the finger (Pa); 0 from
+    500 kPa on."""
+    return max(0.0, math.log(_PUBLISHED_PRESSURE / contact_pressure))
 
 
 @si.checked_numbers

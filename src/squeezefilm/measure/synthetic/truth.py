@@ -26,7 +26,7 @@ MECHANISMS: tuple[Mechanism, ...] = get_args(Mechanism)
 """What the bench has that the description has not: nothing, friction by another law than the
 default one, a resonance of what holds the plate, or a bond that is not the same everywhere."""
 
-_OTHER_LAWS: tuple[FrictionModel, ...] = ("partial-levitation-one-gap", "film-plateau")
+_OTHER_LAWS: tuple[FrictionModel, ...] = ("partial-levitation", "levitation-2016")
 _TRIED = 40
 # Of the ceramic's thickness, from patch to patch. The library's glue is one layer under all
 # patches, so that a plate that is stiffer here than there stands for an uneven bond.

@@ -134,14 +134,11 @@ def wavelength(analysis: Analysis) -> Figure:
     criterion_line(axes)
     if 1e6 * p.vibration_amplitude <= right:
         # On the paper's curves stands what the paper's model says of this display.
-        films, by = analysis.film_models, p.model
-        friction = p.relative_friction
-        if films is not None:
-            friction, by = films.result("paper2008").relative_friction, "paper2008"
+        friction = p.law.by("paper2008").at(p.vibration_amplitude)
         here = (
             f"{shown(p.vibration_amplitude, M, 3)} and λ/2 = {shown(p.mode.half_wavelength, M, 3)}"
         )
-        words = f"this display by {by}: {friction:.2f} at {here}"
+        words = f"this display by paper2008: {friction:.2f} at {here}"
         style.mark(axes, 1e6 * p.vibration_amplitude, friction, 9, words)
     style.friction_axes(axes, right, top=1.06)
     style.legend_below(axes)

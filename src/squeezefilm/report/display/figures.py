@@ -67,17 +67,10 @@ MODELS: tuple[FigureOf, ...] = (
         "chain",
         "Friction by every model",
         friction_report.chain,
-        "The same finger by the paper's model, by solved films and by partial levitation, where "
-        "film and asperities share the load.",
+        "The same finger by every model that can be asked for. The default is fitted to measured "
+        "curves; the paper's closed form, the levitation published in 2016 and partial levitation, "
+        "where film and asperities share the load, are not.",
         needs=("model_curves",),
-    ),
-    FigureOf(
-        "films",
-        "The paper's film and solved films",
-        friction_figures.film_models,
-        "The film's mean over-pressure divided by the finger's pressure: above 1 the film would "
-        "carry the finger alone. The same finger, drawn in five ways.",
-        needs=("film_models",),
     ),
 )
 """What other models say."""

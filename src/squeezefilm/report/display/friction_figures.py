@@ -1,16 +1,14 @@
-"""Figures of film and friction: by the verdict's own model, and what other films carry."""
+"""The figure of friction by the verdict's own model, with what other figures share."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from squeezefilm import quantities as si
 from squeezefilm.analysis.curves import PAPER_CRITERION
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.model_looks import look_of
-from squeezefilm.report.kit.numbers import HZ, SPEED, M, N, carried, shown, span
+from squeezefilm.report.kit.numbers import SPEED, M, N, shown, span
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,46 +53,6 @@ def own_friction(analysis: Analysis) -> Figure:
     reach = max(1.5 * p.vibration_amplitude, min(needed or 0.0, float(here.amplitude[-1])))
     style.friction_axes(axes, 1e6 * (reach or float(here.amplitude[-1])), top=1.06)
     style.legend_below(axes, columns=2)
-    return figure
-
-
-@style.drawn
-def film_models(analysis: Analysis) -> Figure:
-    """The share of the finger's load that each reading of the film carries, against amplitude."""
-    films, p = analysis.film_models, analysis.prediction
-    if films is None:
-        said = "Without vibration no film carries anything."
-        return style.message_figure("Nothing vibrates", said)
-    shares = [r.load_share for r in films.results if np.isfinite(r.load_share)]
-    most = max(shares)
-    title = (
-        f"At {shown(p.vibration_amplitude, M, 3)} the film would carry from "
-        f"{carried(min(shares))} to {carried(most)}{'' if most > 1 else ' of'} the finger's load: "
-        "how ridges are drawn decides"
-    )
-    figure = style.new_figure(
-        title, f"all at {shown(p.frequency, HZ, 3)}, with slip but for the asymptote", 5.4
-    )
-    axes = figure.subplots()
-    for number, curve in enumerate(films.curves):
-        color, dashes, name = look_of(curve.model)
-        amplitude = 1e6 * curve.amplitude
-        axes.loglog(amplitude, curve.load_share, color=color, ls=dashes, label=name)
-        here = 1e6 * p.vibration_amplitude, films.results[number].load_share
-        axes.plot(*here, "o", color=color, ms=6, zorder=3)
-    axes.axhline(1, **style.REFERENCE, label="carries the whole finger")
-    left, right = (1e6 * float(films.curves[0].amplitude[end]) for end in (0, -1))
-    axes.set(
-        xlim=(left, right),
-        ylim=(1e-4, max(30.0, 2 * most)),
-        xlabel="vibration amplitude, zero-to-peak (µm)",
-    )
-    axes.set(ylabel="film's pressure over the finger's")
-    axes.set_xticks(
-        [tick for tick in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50) if left <= tick <= right]
-    )
-    style.plain_log(axes.xaxis, axes.yaxis)
-    style.legend_below(axes)
     return figure
 
 

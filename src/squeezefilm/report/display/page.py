@@ -30,7 +30,6 @@ from squeezefilm.report.kit.decisions import interval_rows, sensitivity_rows
 from squeezefilm.report.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.report.kit.model_rows import (
     MISSED_HEADING,
-    film_rows,
     group_words,
     influence_rows,
     missed_directions,
@@ -65,7 +64,6 @@ if TYPE_CHECKING:
 _MOST_SAMPLES = 4000
 # What stands beside an analysis for comparison, each computed by itself.
 _BESIDE = (
-    "film_models",
     "survival",
     "ears",
     "band",
@@ -130,7 +128,6 @@ def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
             "friction": analysis.friction_curves,
             "band": analysis.band,
             "chain": analysis.model_curves,
-            "films": None if analysis.film_models is None else analysis.film_models.curves,
             "texture": None if analysis.texture is None else _trace(analysis.texture),
             "fidelity": analysis.fidelity,
             "active_area": None if analysis.active_area is None else analysis.active_area.area,
@@ -179,7 +176,6 @@ def report_page(
         section("What to measure next", _measure_next(analysis)),
         part("models", "Appendix: other models", _aside(analysis)),
         *shown(MODELS),
-        section("What the readings of the film say", _films(analysis)),
         section("How far the film's model is from where it holds", _validity(analysis)),
         section("Models", _models(analysis)),
         part("textures", "Appendix: textures through the resonator", _TEXTURES),
@@ -287,10 +283,6 @@ def _how_sure(analysis: Analysis) -> str:
     return "\n<br>\n".join(parts)
 
 
-def _films(analysis: Analysis) -> str:
-    return _findings(analysis.film_findings) if analysis.film_findings else "<p>Nothing moves.</p>"
-
-
 def _validity(analysis: Analysis) -> str:
     def limits(low: float | None, high: float | None) -> str:
         parts = [] if low is None else [f"at least {low:g}"]
@@ -326,19 +318,6 @@ def _models(analysis: Analysis) -> str:
     model = analysis.prediction.model
     used += f"\n<h3>{escape(MISSED_HEADING.format(model))}</h3>\n"
     used += bullets(missed_directions(model, why=True))
-    films = analysis.film_models
-    if films is not None:
-        means: dict[str, str] = {item.model: item.description for item in films.results}
-        drawn = film_rows(analysis)
-        used += "\n<br>\n" + html_table(
-            "The film under the finger, drawn in five ways",
-            ("Model", "Over-pressure over ambient", "Carries", "µ′/µ", "What it is"),
-            [
-                (f"<code>{escape(row[0])}</code>", *map(as_html, row[1:]), escape(means[row[0]]))
-                for row in drawn
-            ],
-            kinds=["used" if row[0] == analysis.prediction.model else "" for row in drawn],
-        )
     if not analysis.other_models:
         return used
     rows = [

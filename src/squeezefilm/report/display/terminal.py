@@ -19,7 +19,7 @@ from squeezefilm.report.kit.decisions import (
     sensitivity_rows,
     wanted_rows,
 )
-from squeezefilm.report.kit.model_rows import film_rows, models, theory_rows
+from squeezefilm.report.kit.model_rows import models, theory_rows
 from squeezefilm.report.kit.point_rows import electronics_rows
 from squeezefilm.report.kit.terminal import bullets, heading, plain_console, show_missed, table
 
@@ -35,7 +35,7 @@ _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
 
 SHOWN = ("ears", "felt")
-SHOWN_WITH_ALL = ("film_models", "ears", "sensitivities", "other_models", "texture", "felt")
+SHOWN_WITH_ALL = ("ears", "sensitivities", "other_models", "texture", "felt")
 """What of an analysis is computed for the terminal."""
 
 # Letters of a warning where it is not asked for in full: three lines of a terminal.
@@ -144,8 +144,3 @@ def _show_models(console: Console, analysis: Analysis) -> None:
         heading(console, "The same plate by other theories, without a finger")
         others = [(model, at, amplitude) for model, at, _, amplitude in theory_rows(analysis)]
         table(console, ("model", "resonance", "amplitude"), others)
-    if films := film_rows(analysis):
-        heading(console, "The film under the finger, drawn in five ways")
-        table(console, ("model", "over-pressure", "carries", "µ′/µ"), films)
-        console.print()
-        _findings(console, analysis.film_findings)

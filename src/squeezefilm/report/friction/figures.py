@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from squeezefilm.chain.friction import FrictionLaw
     from squeezefilm.chain.prediction import Prediction
 
-_LINES = ("paper2008", "film-smooth", "film-sealed", "partial-levitation-shear", "levitation")
 _NAMES_OF_PARAMETERS = {
     "finger.asperities.roughness": "roughness of skin and surface",
     "finger.asperities.modulus": "modulus of the outermost skin",
@@ -53,7 +52,7 @@ _NAMES_OF_PARAMETERS = {
 
 @style.drawn
 def models(result: FrictionAnalysis) -> Figure:
-    """The paper's model, the smooth film, the ridge film and partial levitation on one plot."""
+    """Every model on one plot."""
     return _models(result.curves, result.prediction, result.uncertainty)
 
 
@@ -66,7 +65,7 @@ def chain(analysis: Analysis) -> Figure:
 def _models(
     curves: tuple[ModelCurve, ...], p: Prediction, unsure: UncertainFriction | None
 ) -> Figure:
-    """Every model's µ′/µ against amplitude; partial levitation as a band between its limits."""
+    """Every model's µ′/µ against amplitude, the working point with its interval."""
     said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
     figure = style.new_figure(
         f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(p.surface.name, 20)} {said}: the "
@@ -76,26 +75,17 @@ def _models(
     )
     axes = figure.subplots()
     for curve in curves:
-        if curve.model in _LINES:
-            color, dashes, name = look_of(curve.model)
-            name += f", at {shown(p.speed, SPEED)}" if MODEL_KINDS[curve.model].knows_speed else ""
-            x = 1e6 * curve.amplitude
-            axes.plot(x, curve.relative_friction, color=color, ls=dashes, label=name)
-    own = next(c for c in curves if c.model == "partial-levitation")
-    tied = next(c for c in curves if c.model == "partial-levitation-one-gap")
-    stiff = np.interp(own.amplitude, tied.amplitude, tied.relative_friction)
-    x, name = 1e6 * own.amplitude, "between a stiff pad (one mean gap) and a soft one"
-    axes.fill_between(x, stiff, own.relative_friction, color=style.BAND, lw=0, label=name)
-    look = look_of("partial-levitation")
-    name = f"{look.name}, each ridge at its own balance"
-    axes.plot(x, own.relative_friction, color=look.color, lw=2.4, label=name)
+        color, dashes, name = look_of(curve.model)
+        name += f", at {shown(p.speed, SPEED)}" if MODEL_KINDS[curve.model].knows_speed else ""
+        x, width = 1e6 * curve.amplitude, 2.4 if curve.model == p.model else 1.4
+        axes.plot(x, curve.relative_friction, color=color, ls=dashes, lw=width, label=name)
     at, words = 1e6 * p.vibration_amplitude, f"{p.relative_friction:.2f}"
     if unsure is not None:
         low, high = unsure.interval
         style.interval(axes, at, low, high)
         words += f" ({low:.2f}–{high:.2f}, {si.percent(unsure.level)}, median {unsure.median:.2f})"
     style.mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
-    style.friction_axes(axes, float(x[-1]))
+    style.friction_axes(axes, 1e6 * float(curves[0].amplitude[-1]))
     style.legend_below(axes, columns=2)
     return figure
 

@@ -19,17 +19,10 @@ _LOOKS = {
     "levitation": Look(style.INK, "-", "levitation, fitted to people"),
     "partial-levitation-shear": Look(style.BLUE, (0, (6, 1.6)), "partial levitation with shear"),
     "partial-levitation": Look(style.BLUE, "-", "partial levitation"),
-    "partial-levitation-one-gap": Look(
-        style.BLUE, (0, (1.4, 1.2)), "partial levitation, one mean gap"
-    ),
     "paper2008": Look(*style.LINES[1], "paper's asymptote"),
     "paper2008-printed": Look(*style.LINES[1], "paper's asymptote, as printed"),
-    "film-smooth": Look(*style.LINES[2], "solved film, no ridges"),
-    "film-sealed": Look(*style.LINES[3], "solved film, grooves sealed"),
-    "film-open": Look(
-        style.MUTED, (0, (3, 1, 1, 1, 1, 1)), "solved film, grooves open at the ends"
-    ),
-    "film-plateau": Look(style.GREEN, "-", "solved film, ridges pressed flat"),
+    "levitation-2016": Look(*style.LINES[2], "levitation, as published in 2016"),
+    "solved film": Look(*style.LINES[3], "the same film, solved"),
 }
 
 

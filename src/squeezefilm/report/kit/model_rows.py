@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.record import missed_by
-from squeezefilm.report.kit.numbers import HZ, M, carried, shown
+from squeezefilm.report.kit.numbers import HZ, M, shown
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -74,21 +73,6 @@ def theory_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
         )
         for model, frequency, half, amplitude in (used, *others)
     ]
-
-
-def film_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
-    """Model, over-pressure with its error, share of the finger carried, relative friction."""
-    if analysis.film_models is None:
-        return []
-    rows: list[tuple[str, str, str, str]] = []
-    for item in analysis.film_models.results:
-        said = ("not solved", "–", "–")
-        if math.isfinite(item.over_pressure):
-            error = f" ± {item.over_pressure_error:.1g}" if item.over_pressure_error else ""
-            share = carried(item.load_share)
-            said = f"{item.over_pressure:.3g}{error}", share, f"{item.relative_friction:.3f}"
-        rows.append((item.model, *said))
-    return rows
 
 
 def influence_rows(unsure: UncertainFriction, knowledge: Knowledge, most: int) -> list[list[str]]:

@@ -59,11 +59,6 @@ def changed(share: float, decimals: int = 1) -> str:
     return f"{'−' if share < 0 else '+'}{si.percent(abs(share), decimals)}"
 
 
-def carried(share: float) -> str:
-    """How much of the finger's load something carries, e.g. ``"0.23 %"`` or ``"30.2 times"``."""
-    return f"{share:.3g} times" if share > 1 else f"{float(f'{100 * share:.3g}'):g} %"
-
-
 def span(low: float, high: float) -> str:
     """Two relative frictions with what lies between, e.g. ``"0.04–0.79"``."""
     return f"{low:.2f}–{high:.2f}"

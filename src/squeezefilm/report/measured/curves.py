@@ -39,8 +39,8 @@ PEOPLE_HEAD = ("model", "value", "share of measured below")
 FITTED = (
     "'Off by' is the root mean square of measured less computed friction, over one friction at "
     "rest that knows no model (the line through the first three points). The friction at rest is "
-    "fitted to each curve, whatever the model; of gaussian, exponential and levitation-2016 one "
-    "amplitude too. Nothing else is fitted."
+    "fitted to each curve, whatever the model; of shapes without physics, and of the levitation "
+    "whose length is fitted, one amplitude too."
 )
 SCORES = (
     "Each finger counts once, and so does each paper whose fingers are not told apart. The log "

@@ -63,14 +63,6 @@ def test_what_a_model_misses_is_what_was_measured_and_does_not_hold() -> None:
     assert {"speed", "load", "orientation"} <= ids
 
 
-def test_a_limit_of_the_pad_misses_what_a_plateau_misses() -> None:
-    own, tied = missed_by("partial-levitation"), missed_by("partial-levitation-one-gap")
-    assert own is not None
-    assert tied is not None
-    assert [one.id for one in own] == [one.id for one in tied]
-    assert {one.model for one in tied} == {"partial-levitation-one-gap"}
-
-
 def test_of_a_model_that_was_not_asked_nothing_is_known() -> None:
-    assert missed_by("film-smooth") is None
+    assert missed_by("paper2008-printed") is None
     assert missed_by("") is None

@@ -97,10 +97,10 @@ def test_a_map_goes_over_amplitudes_and_forces(stator: Display) -> None:
 @pytest.mark.parametrize(
     ("model", "mapped"),
     [
-        ("partial-levitation-one-gap", "partial-levitation-one-gap"),
+        ("levitation-2016", "levitation-2016"),
         ("partial-levitation", "partial-levitation"),
         ("paper2008", "levitation"),
-        ("film-open", "levitation"),
+        ("paper2008-printed", "levitation"),
     ],
 )
 def test_a_map_is_by_a_model_that_balances_loads(stator: Display, model: str, mapped: str) -> None:
@@ -147,12 +147,12 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     told: list[str] = []
     said = told.append
     found = analyze_friction(
-        stator, voltage=100.0, frequency=41e3, normal_force=0.3, surface="bare", model="film-open",
-        position=1e-3, speed=0.1, ambient_pressure=5e4, wanted_friction=0.6, samples=16, seed=9,
-        points=7, progress=said,
+        stator, voltage=100.0, frequency=41e3, normal_force=0.3, surface="bare",
+        model="levitation-2016", position=1e-3, speed=0.1, ambient_pressure=5e4,
+        wanted_friction=0.6, samples=16, seed=9, points=7, progress=said,
     )  # fmt: skip
     thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(5e4))
-    point = {"frequency": 41e3, "normal_force": 0.3, "surface": "bare", "model": "film-open"}
+    point = {"frequency": 41e3, "normal_force": 0.3, "surface": "bare", "model": "levitation-2016"}
     point["place"] = None
     more = {"voltage": 100.0, "vibration_amplitude": None, "position": 1e-3}
     assert parts == [

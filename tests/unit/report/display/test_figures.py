@@ -24,19 +24,18 @@ from squeezefilm.second_process import later, second_process, values
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = (
-    "layout", "mode", "area", "response", "band", "chain", "films", "texture", "fidelity",
+    "layout", "mode", "area", "response", "band", "chain", "texture", "fidelity",
     "survival",
 )  # fmt: skip
 # The odd displays, each with the figures that its oddness can spoil.
 ODD = {
-    "one-ceramic": ("layout", "mode", "response", "films"),
+    "one-ceramic": ("layout", "mode", "response"),
     "hostile-names": ("layout", "band"),
     "no-voltage": (
         "mode",
         "response",
         "band",
         "chain",
-        "films",
         "texture",
         "fidelity",
     ),
@@ -47,7 +46,7 @@ ODD = {
     "many-nodes": ("layout", "mode"),
     "square": ("layout",),
     "five-surfaces": ("band",),
-    "small-ring": ("layout", "mode", "films"),
+    "small-ring": ("layout", "mode"),
     "printed-model": ("band", "texture"),
 }
 OFTEN = {*PRESETS, "hostile-names", "no-voltage", "one-ceramic"}
@@ -146,7 +145,6 @@ def test_messages_tell_the_numbers_of_the_analysis(plate_analysis: Analysis) -> 
     assert "7 ceramics cover 93 %" in titles["layout"]
     assert "8 nodal lines" in titles["mode"]
     assert "33.57 kHz is 556 Hz wide" in titles["response"]
-    assert "how ridges are drawn decides" in titles["films"]
     assert "0.67 mm" in titles["fidelity"]
 
 

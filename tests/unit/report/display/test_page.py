@@ -95,7 +95,7 @@ def test_what_one_decides_from_comes_first(written: tuple[Path, Analysis]) -> No
     assert places[-1] < models
     # Everything but the verdict's model stands in the appendix.
     words = re.sub(r"<[^>]*>", " ", text[first:models])
-    assert not any(name in words for name in ("film-open", "paper2008", "timoshenko"))
+    assert not any(name in words for name in ("levitation-2016", "paper2008", "timoshenko"))
 
 
 def test_page_refers_to_nothing_outside(written: tuple[Path, Analysis]) -> None:
@@ -139,7 +139,7 @@ def test_page_says_the_numbers_the_doubts_and_the_origin(written: tuple[Path, An
         "at a fixed 33.57 kHz",
     ):
         assert part in words
-    for finding in (*analysis.verdict, *analysis.film_findings):
+    for finding in analysis.verdict:
         assert printable(finding.text) in words
     for kind in ("✓ Good", "△ Limit", "? Doubt"):
         assert kind in words
@@ -164,7 +164,6 @@ def test_json_is_strict_and_carries_curves_and_description(
         "response",
         "friction",
         "chain",
-        "films",
         "texture",
         "fidelity",
         "active_area",

@@ -47,7 +47,7 @@ def analysis(**changes: Any) -> Any:
         "active_area": None, "drive_electronics": None, "measured": (),
         "own_curve": SimpleNamespace(amplitude_for_criterion=0.7e-6),
         "uncertainty": SimpleNamespace(level=0.9, interval=(0.04, 0.786), median=0.37),
-        "rivals": {"paper2008": 0.7, "film-smooth": 0.0},
+        "rivals": {"paper2008": 0.7, "levitation-2016": 0.0},
         "verdict": (SimpleNamespace(text="said already"),),
     }  # fmt: skip
     return SimpleNamespace(**{**parts, **changes})

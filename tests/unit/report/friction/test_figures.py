@@ -35,7 +35,7 @@ from squeezefilm.report.friction.figures import (
     write_friction,
 )
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.style import BLUE, GREEN, ORANGE, PURPLE
+from squeezefilm.report.kit.style import BLUE, GREEN, ORANGE
 
 AMPLITUDE = "vibration amplitude, zero-to-peak (µm)"
 FRICTION = "relative friction µ′/µ"
@@ -60,12 +60,8 @@ def curve(model: Any, amplitude: np.ndarray, slope: float) -> ModelCurve:
 
 CURVES = (
     curve("paper2008", FINE, 0.9),
-    curve("film-smooth", FINE, 0.8),
-    curve("film-sealed", FINE, 0.7),
-    curve("paper2008-printed", FINE, 0.6),
+    curve("levitation-2016", COARSE, 0.8),
     curve("partial-levitation", FINE, 0.4),
-    # Coarser than the other limit: the band must put both on one axis.
-    curve("partial-levitation-one-gap", COARSE, 0.2),
 )
 
 
@@ -105,17 +101,17 @@ def test_every_model_is_drawn_in_its_own_way() -> None:
     lines = labelled(axes)
     expected = {
         "paper's asymptote": (ORANGE, 0.9),
-        "solved film, no ridges": (GREEN, 0.8),
-        "solved film, grooves sealed": (PURPLE, 0.7),
-        "partial levitation, each ridge at its own balance": (BLUE, 0.4),
+        "levitation, as published in 2016": (GREEN, 0.8),
+        "partial levitation": (BLUE, 0.4),
     }
-    assert len({str(lines[name].get_linestyle()) for name in expected}) == 2
     for name, (color, slope) in expected.items():
-        assert to_hex(lines[name].get_color()) == color
-        assert lines[name].get_xdata() == pytest.approx(np.linspace(0, 4, 9))
-        assert lines[name].get_ydata() == pytest.approx(1 - slope * np.linspace(0, 1, 9))
-    # A model without a style of its own, and the stiff limit, have no line.
-    assert len(lines) == 6
+        line = lines[name]
+        assert to_hex(line.get_color()) == color
+        assert line.get_ydata() == pytest.approx(1 - slope * line.get_xdata() / 4)
+    # The model of the prediction stands out.
+    widths = {name: lines[name].get_linewidth() for name in expected}
+    assert max(widths, key=lambda name: widths[name]) == "partial levitation"
+    assert len(lines) == 4
     assert axes.get_xlim() == pytest.approx((0, 4))
     assert axes.get_ylim() == (0, 1.04)
     assert (axes.get_xlabel(), axes.get_ylabel()) == (AMPLITUDE, FRICTION)
@@ -131,16 +127,6 @@ def test_with_shear_the_curve_is_drawn_that_the_working_point_is_on() -> None:
     assert words(ripple(without(prediction=point)).get_supxlabel()).startswith(
         "Model: partial-levitation-shear, ridge by ridge"
     )
-
-
-def test_the_band_lies_between_a_stiff_pad_and_a_soft_one() -> None:
-    axes = models(RESULT).axes[0]
-    band = labelled(axes)["between a stiff pad (one mean gap) and a soft one"]
-    (path,) = band.get_paths()
-    x, y = path.vertices[:, 0], path.vertices[:, 1]
-    for at in np.linspace(0, 4, 9)[1:]:
-        here = y[np.isclose(x, at)]
-        assert (here.min(), here.max()) == pytest.approx((1 - 0.1 * at, 1 - 0.05 * at))
 
 
 def test_the_working_point_stands_on_its_interval() -> None:
@@ -164,7 +150,7 @@ def test_without_an_interval_the_point_stands_alone_and_a_whole_analysis_is_draw
     figure = chain(analysis)
     axes = figure.axes[0]
     assert "this display, partial-levitation: 0.62" in labelled(axes)
-    assert len(axes.get_lines()) == 5
+    assert len(axes.get_lines()) == 4
     assert "on glass µ′/µ = 0.62: the model decides" in words(figure.get_suptitle())
 
 

@@ -100,7 +100,7 @@ def analysis(**changes: Any) -> Any:
         ),
         "prediction": prediction(),
         "curves": (
-            ModelCurve("film-open", axis, np.array([1.0, 0.2])),
+            ModelCurve("levitation-2016", axis, np.array([1.0, 0.2])),
             ModelCurve("paper2008", 0.5 * axis, np.array([1.0, 0.2])),
         ),
         "uncertainty": SURE,
@@ -147,7 +147,7 @@ def test_a_friction_is_said_with_why_and_what_to_measure_next() -> None:
         "The same finger by other models",
         "model µ′/µ",
         # Half way down the first curve lies 1 − 0.8 · 0.75; the other ends before.
-        "film-open 0.400",
+        "levitation-2016 0.400",
         "paper2008 –",
         "intermittent contact at 80 mm/s, no gas 0.912",
         "What measurements say and 'a-model' does not",

@@ -1,14 +1,13 @@
 """Each model is drawn in its own way, everywhere."""
 
 from squeezefilm.chain.friction_models import MODEL_KINDS
-from squeezefilm.contact.sharing.film_load import FILM_MODELS
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.model_looks import look_of
 
 
 def test_no_two_models_look_alike() -> None:
     # As printed the paper's asymptote is the same line; it stands beside no other.
-    models = {*MODEL_KINDS, *FILM_MODELS} - {"paper2008-printed"}
+    models = {*MODEL_KINDS, "solved film"} - {"paper2008-printed"}
     looks = [look_of(model) for model in models]
     assert len({(look.color, look.dashes) for look in looks}) == len(looks)
     assert len({look.name for look in looks}) == len(looks)

@@ -216,7 +216,7 @@ def compared() -> CurveComparison:
         models=(
             ModelScore("partial-levitation", 1, np.array([1, 0.71, 0.49]), 0.008, 0.2),
             ModelScore("levitation", 1, np.array([1, 0.4, 0.2]), 0.24, 4.9),
-            ModelScore("film-open", 1, np.full(3, np.nan), None, None),
+            ModelScore("levitation-2016", 1, np.full(3, np.nan), None, None),
         ),
         at_rest=1.0,
         fitted_at_rest=1.0,
@@ -233,7 +233,7 @@ def folder() -> FolderComparison:
     """Two curves and one number of many people, made up for showing."""
     people = PopulationComparison(
         TOLD, "a", "30 kHz", "decay amplitude τ", "m", np.array([1e-6, 2e-6, 3e-6]),
-        (("levitation", 1.5e-6), ("film-open", None)),
+        (("levitation", 1.5e-6), ("levitation-2016", None)),
     )  # fmt: skip
     total = TotalScore("partial-levitation", 1, 2, 0.008, 1.5, None)
     return FolderComparison((compared(), compared()), (total,), (people,))
@@ -243,7 +243,7 @@ def test_curves_are_shown_beside_all_models(tmp_path: Path) -> None:
     lines = printed(lambda: show_comparisons(folder()))
     assert "partial-levitation 0.008 0.2 3 of 3 1" in lines
     assert "levitation (the default) 0.240 4.9 3 of 3 1" in lines
-    assert "film-open – – 0 of 3 1" in lines
+    assert "levitation-2016 – – 0 of 3 1" in lines
     assert any(line.startswith("2 of 2 points that vibrate lie in the 90 %") for line in lines)
     assert any("20 mm/s (assumed)" in line for line in lines)
     assert "partial-levitation 0.008 1.50 1" in lines

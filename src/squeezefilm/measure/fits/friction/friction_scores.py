@@ -24,10 +24,10 @@ NO_PHYSICS = ("gaussian", "exponential")
 SHAPES: Mapping[str, Callable[[si.FloatArray], si.FloatArray]] = {
     "gaussian": lambda over: np.exp(-(over**2) / 2),
     "exponential": lambda over: np.exp(-over),
-    "levitation-2016": levitation_friction,
+    "levitation, its length fitted": levitation_friction,
 }
 """Shapes over the amplitude in units of one that is fitted: those of `NO_PHYSICS`, and the
-published levitation model without a gap at rest."""
+levitation model without a gap at rest."""
 
 
 @dataclass(frozen=True, eq=False)
