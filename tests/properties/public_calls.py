@@ -45,7 +45,7 @@ NOT_CALLED = {
     plate.electronics.Amplifier
     plate.electronics.ElectricalLoad plate.electronics.RingAdmittance
     film.periodic.solution.Asked film.periodic.solution.Found
-    chain.friction.FilmLoad contact.sharing.pad.PadFriction
+    contact.sharing.pad.PadFriction
     contact.sharing.balance.LoadSharing
     contact.sliding.skin_vibration.SkinVibration
     contact.sliding.march.Sliding
