@@ -127,6 +127,10 @@ def _numbers(row: list[str], names: list[str], path: str | Path, line: int) -> l
         raise ConfigError(
             f"has {len(row)} cells where the header has {len(names)}", file=path, line=line
         )
+    try:
+        return [float(cell) for cell in row]
+    except ValueError:
+        pass  # A cell is empty, or no number: which one is looked up.
     found = []
     for name, cell in zip(names, row, strict=True):
         try:

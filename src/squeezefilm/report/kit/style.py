@@ -363,7 +363,14 @@ def svg(figure: Figure, prefix: str, label: str) -> str:
 
 def png(figure: Figure, dots_per_inch: float = 130) -> bytes:
     """A figure as a PNG on white, for documents and for looking at."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     stream = io.BytesIO()
     with rc():
-        figure.savefig(stream, format="png", dpi=dots_per_inch, facecolor="white")
+        canvas = FigureCanvasAgg(figure)
+        # As `savefig` does, which first draws all of it once for nothing but its layout.
+        before = {"dpi": figure.dpi, "facecolor": figure.get_facecolor()}
+        figure.set(dpi=dots_per_inch, facecolor="white")
+        canvas.print_png(stream)
+        figure.set(**before)
     return stream.getvalue()

@@ -138,17 +138,27 @@ class _Hand:
             name: path_of(design.exploring, plate, tables.observer, finger)
             for name, plate in zip(design.displays, tables.plates, strict=True)
         }
+        # The same hand leaves the same path on a surface each time. Surfaces are kept with it,
+        # since those that a series chooses are made anew for each trial.
+        self._motions: dict[tuple[str, int], tuple[Stimulus, TrialMotion]] = {}
 
     def explored(self, presentation: Presentation) -> tuple[TrialMotion, ...]:
         """Of each virtual surface; none where the design's rules would not let it count, for the
         hand would break them again."""
-        path = self._paths[presentation.trial.display]
+        display = presentation.trial.display
         found = tuple(
-            rehearsed(path, self._design.exploring, one, self._force)
-            for one in presentation.surfaces
-            if isinstance(one, Stimulus)
+            self._motion(display, surface)
+            for surface in presentation.surfaces
+            if isinstance(surface, Stimulus)
         )
         return () if spoiled_by(self._design, Response(explorations=found)) else found
+
+    def _motion(self, display: str, surface: Stimulus) -> TrialMotion:
+        key = display, id(surface)
+        if key not in self._motions:
+            path, exploring = self._paths[display], self._design.exploring
+            self._motions[key] = surface, rehearsed(path, exploring, surface, self._force)
+        return self._motions[key][1]
 
 
 def _answer_everything(

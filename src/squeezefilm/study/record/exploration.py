@@ -177,5 +177,6 @@ def coverage(
         count = int(_PER_CELL * path.length / cell) + 2
         way = np.linspace(0.0, path.length, min(count, 2_000_000))
         places = np.floor(np.stack(path.place_after(way), axis=1) / cell).astype(np.int64)
-        seen.update(map(tuple, np.unique(places, axis=0).tolist()))
+        is_entered = np.any(np.diff(places, axis=0) != 0, axis=1)
+        seen.update(map(tuple, places[np.append(True, is_entered)].tolist()))
     return min(len(seen) * cell**2 / (face[0] * face[1]), 1.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import subprocess
@@ -122,3 +123,18 @@ def test_every_name_in_a_drawing_has_its_prefix_and_every_reference_a_target() -
     assert set(used) <= names
     assert "xlink:href" not in text
     ElementTree.fromstring(text.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1))
+
+
+def test_a_png_is_drawn_once_and_leaves_the_figure_as_it_was() -> None:
+    figure, axes = _labelled(3.0)
+    counted: list[object] = []
+    draw = axes.draw
+    axes.draw = lambda renderer: (counted.append(renderer), draw(renderer))[1]  # type: ignore[method-assign]
+    before = figure.dpi, figure.get_facecolor()
+    made = style.png(figure, 50)
+    assert len(counted) == 1
+    assert (figure.dpi, figure.get_facecolor()) == before
+    again, stream = _labelled(3.0)[0], io.BytesIO()
+    with style.rc():
+        again.savefig(stream, format="png", dpi=50, facecolor="white")
+    assert made == stream.getvalue()
