@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -13,6 +14,7 @@ from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.analysis.analyze import analyze as whole_analysis
 from squeezefilm.display import Display, load_display
 from squeezefilm.plate.layout import AnnularStator, RectangularPlate
+from squeezefilm.report.kit import style
 
 HOSTILE = '<script>alert("x")</script> $\\frac{1}{0}$ [bold]漢字 \x1b[31m\u202e & more'
 
@@ -101,6 +103,14 @@ def plate_analysis() -> Analysis:
 def hostile_analysis() -> Analysis:
     """A display whose names try to be markup, escape codes, mathematics and Chinese."""
     return analysis_named("hostile-names")
+
+
+@pytest.fixture
+def undrawn() -> Iterator[None]:
+    """Pages get no drawings but stand-ins: for tests of what a page says beside them."""
+    drawings = {"png": b"\x89PNG", "svg": '<svg viewBox="0 0 1 1" role="img"></svg>'}
+    with mock.patch.multiple(style, **{k: mock.Mock(return_value=v) for k, v in drawings.items()}):
+        yield
 
 
 @pytest.fixture

@@ -90,6 +90,7 @@ def test_numbers_and_table_say_the_same(found: DesignSearch, written: Path) -> N
         assert row["neighbour"] == ("" if one["neighbour"] is None else str(one["neighbour"]))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_limit_that_nobody_could_judge_has_its_row(tmp_path: Path) -> None:
     """Its number is not there, or is none."""
     found = made_search(limits={"most_deflection": 1e-3, "most_sound_level": 90.0})
@@ -105,6 +106,7 @@ def test_a_limit_that_nobody_could_judge_has_its_row(tmp_path: Path) -> None:
         assert row in plain
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_page_of_an_empty_front_says_so(tmp_path: Path) -> None:
     page = write_design(made_search(limits={"most_temperature_rise": 20.5}), tmp_path / "new")
     text = page.read_text(encoding="utf-8")
@@ -113,6 +115,7 @@ def test_the_page_of_an_empty_front_says_so(tmp_path: Path) -> None:
     assert (tmp_path / "new" / "front.csv").read_text(encoding="utf-8") == "name\n"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_stopped_search_and_one_without_limits_are_written(tmp_path: Path) -> None:
     page = write_design(made_search(screened=0, solved=0, stopped=True), tmp_path)
     assert "The search was stopped" in page.read_text(encoding="utf-8")
@@ -132,6 +135,7 @@ def test_a_stopped_search_and_one_without_limits_are_written(tmp_path: Path) -> 
     assert "No limit was asked for" in write_design(found, tmp_path).read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_it_links_to_what_the_plate_is_made_from_where_that_is_there(
     found: DesignSearch, tmp_path: Path
 ) -> None:

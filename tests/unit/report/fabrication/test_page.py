@@ -113,6 +113,7 @@ def test_the_plan_has_a_place_for_what_is_measured(folder: Path) -> None:
     assert resonance["unit"] == "Hz"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_intervals_are_shown_and_sealed_once(preset: Preset, tmp_path: Path) -> None:
     made = preset("biet2008-plate")
     low_high = Predicted("mass", {}, 0.0962, (0.093, 0.099), 0.001)
@@ -136,6 +137,7 @@ def test_intervals_are_shown_and_sealed_once(preset: Preset, tmp_path: Path) -> 
     assert f'href="{PREDICTION}"' in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_stator_says_what_nobody_should_cut(preset: Preset, tmp_path: Path) -> None:
     page = write_fabrication(preset("biet2008-stator"), tmp_path).read_text(encoding="utf-8")
     assert "NOT TO BE MADE BY THESE THICKNESSES" in page
@@ -150,6 +152,7 @@ def test_what_is_printed(preset: Preset, capsys: pytest.CaptureFixture[str]) -> 
     assert said(None, "m") == "–"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_through_the_front_door(preset: Preset, tmp_path: Path) -> None:
     page = sf.write_report(preset("biet2008-plate"), tmp_path / "a")
     assert page.name == "index.html"

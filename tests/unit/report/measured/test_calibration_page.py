@@ -103,6 +103,7 @@ def test_a_page_says_all_that_came_out(tmp_path: Path) -> None:
     assert {one.suffix for one in tmp_path.iterdir()} == {".html", ".json", ".toml", ".png"}
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_not_known_is_left_out(tmp_path: Path) -> None:
     bare = made(values=(), compared=(), next_measurements=(), before=None, after=None, misfits=(),
                 emulator_errors={}, laws={}, doubts=())  # fmt: skip

@@ -101,6 +101,7 @@ def test_every_kind_has_its_picture(kind: str) -> None:
     assert len(style.png(figure, 40)) > 1000
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_checks_are_written_with_what_could_not_be_read(tmp_path: Path) -> None:
     hostile = replace(checked("ring-down", HOSTILE), file=Path("b <c>.csv"))
     both = FolderCheck((checked("impedance"), hostile), (Refused(Path("bad.csv"), "line 3: no"),))
@@ -117,6 +118,7 @@ def test_checks_are_written_with_what_could_not_be_read(tmp_path: Path) -> None:
     assert summary["stamp"]["config_sha256"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_two_recordings_of_one_name_have_two_pictures(tmp_path: Path) -> None:
     write_checks(FolderCheck((checked("impedance"), checked("line scan")), ()), tmp_path)
     assert {one.name for one in tmp_path.glob("*.png")} == {"a.png", "a-2.png"}
@@ -130,6 +132,7 @@ def test_nothing_half_written_is_left_where_a_folder_refuses(tmp_path: Path) -> 
     assert blocked.read_text(encoding="utf-8") == "a file"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_fit_shows_two_digits_of_its_error_and_its_interval(tmp_path: Path) -> None:
     assert estimate_rows(FIT) == [
         ("resonance", "29.99713 kHz", "29.9966 kHz to 29.99767 kHz", "0.27 Hz"),

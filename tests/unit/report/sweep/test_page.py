@@ -50,6 +50,7 @@ def test_it_has_every_part_and_its_pictures() -> None:
         assert said in page, said
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_without_wishes_nothing_is_marked_and_the_page_says_how() -> None:
     page = str(sweep_page(made(), ["sweep.csv"])["index.html"])
     assert "--less relative_friction" in page

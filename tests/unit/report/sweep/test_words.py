@@ -177,6 +177,7 @@ def test_what_cannot_be_drawn_says_why(
     assert message in " ".join(" ".join(texts).split())
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_files_are_written_whole_in_either_kind(tmp_path: Path) -> None:
     assert write_sweep(LINE, tmp_path / "a") == tmp_path / "a" / "index.html"
     names = {one.name for one in (tmp_path / "a").iterdir()}

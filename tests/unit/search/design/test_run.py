@@ -50,6 +50,15 @@ def whole() -> DesignSearch:
         return _search()
 
 
+@pytest.fixture(scope="module")
+def small() -> DesignSearch:
+    """The search that a folder keeps, by formula and without a folder."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "evaluate_all", evaluated_by_formula)
+        patch.setattr(run, "made_of", _made)
+        return _search(screened=150, solved=24)
+
+
 @pytest.mark.usefixtures("by_formula")
 def test_the_front_is_feasible_and_nobody_beats_it(whole: DesignSearch) -> None:
     found = whole
@@ -86,7 +95,7 @@ def test_a_plate_is_one_task_with_voltages_over_the_whole_range(
     assert all({5.0, 7.5, 10.0, 12.5, 15.0} <= every for every in volts.values())
     # Where no voltage may be chosen each plate is one design.
     fixed = requirements(**{', least_voltage = "5 V"': ""})
-    alone = run.search_designs(fixed, screened=200, solved=30)
+    alone = run.search_designs(fixed, screened=60, solved=10)
     assert len(alone.solved) == alone.plates_solved
 
 
@@ -110,7 +119,8 @@ def test_asked_again_it_computes_nothing_and_says_the_same(tmp_path: Path) -> No
 @pytest.mark.usefixtures("by_formula")
 def test_hosts_that_search_in_one_folder_end_with_what_all_have_solved(tmp_path: Path) -> None:
     def solved(member: int) -> set[Design]:
-        return {one.design for one in _search(tmp_path, member=member).solved}
+        found = _search(tmp_path, member=member, screened=60, solved=10)
+        return {one.design for one in found.solved}
 
     first, second = solved(0), solved(1)
     assert second > first
@@ -120,11 +130,11 @@ def test_hosts_that_search_in_one_folder_end_with_what_all_have_solved(tmp_path:
 
 @pytest.mark.parametrize(
     "after",
-    [3, pytest.param(40, marks=pytest.mark.slow), 55, pytest.param(80, marks=pytest.mark.slow)],
+    [3, 25, pytest.param(40, marks=pytest.mark.slow), pytest.param(78, marks=pytest.mark.slow)],
 )
 @pytest.mark.usefixtures("by_formula")
 def test_a_search_that_was_stopped_goes_on(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int, whole: DesignSearch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int, small: DesignSearch
 ) -> None:
     count = 0
 
@@ -137,13 +147,13 @@ def test_a_search_that_was_stopped_goes_on(
 
     monkeypatch.setattr(run, "evaluate_all", stopping)
     stopped, why = run.search_until_stopped(
-        run.SearchRequest(requirements(), screened=400, solved=60, out=tmp_path)
+        run.SearchRequest(requirements(), screened=150, solved=24, out=tmp_path)
     )
     assert (stopped.stopped, why) == (True, "stopped")
     monkeypatch.setattr(run, "evaluate_all", evaluated_by_formula)
-    found = _search(tmp_path, screened=400, solved=60)
+    found = _search(tmp_path)
     assert not found.stopped
-    assert [one.evaluated for one in found.front] == [one.evaluated for one in whole.front]
+    assert [one.evaluated for one in found.front] == [one.evaluated for one in small.front]
 
 
 class _Deadly:
@@ -236,7 +246,7 @@ def test_what_comes_to_the_front_for_a_plate_of_a_low_yield_is_asked_for_its_own
     monkeypatch.setattr(run, "made_of", _made_of_low_voltages)
     heat = 'most_temperature_rise = "60 K"'
     wanted = requirements(**{heat: f"{heat}\nleast_yield = 0.9"})
-    found = run.search_designs(wanted, screened=400, solved=60)
+    found = run.search_designs(wanted, screened=150, solved=24)
     assert found.front
     assert [one.made.kept if one.made else 0.0 for one in found.front] == [0.95] * len(found.front)
 
@@ -244,7 +254,7 @@ def test_what_comes_to_the_front_for_a_plate_of_a_low_yield_is_asked_for_its_own
 @pytest.mark.usefixtures("by_formula")
 def test_whoever_watches_sees_the_front_grow() -> None:
     seen: list[run.Glimpse] = []
-    found = run.search_designs(requirements(), screened=200, solved=40, watch=seen.append)
+    found = run.search_designs(requirements(), screened=60, solved=10, watch=seen.append)
     assert seen[-1].solved == found.plates_solved
     assert seen[0].screened_front
     assert list(seen[-1].front) == [one.evaluated for one in found.front]
