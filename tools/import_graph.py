@@ -6,6 +6,10 @@ Imports inside functions and under ``if TYPE_CHECKING`` count; relative imports 
 from __future__ import annotations
 
 import ast
+import atexit
+import hashlib
+import os
+import pickle
 import re
 from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -14,6 +18,8 @@ from functools import cache
 from pathlib import Path
 
 PACKAGE = "squeezefilm"
+KEPT = Path(__file__).parents[1] / "out" / "imports.pickle"
+"""The imports of every text read before, by its hash: to parse all files takes ten seconds."""
 Graph = Mapping[str, frozenset[str]]
 _DOTTED = re.compile(rf"{PACKAGE}(?:\.\w+)+")
 _PRIVATE = re.compile(r"\b(\w+)\.(_[a-zA-Z]\w*)")
@@ -35,7 +41,35 @@ class Imports:
 @cache
 def imports_of(path: Path) -> Imports:
     """The imports of a file, read once."""
-    return read_imports(path.read_text(encoding="utf-8"))
+    text = path.read_text(encoding="utf-8")
+    known, key = _known(), hashlib.sha256(text.encode()).digest()
+    if key not in known:
+        found = read_imports(text)
+        known[key] = found.names, found.private
+    return Imports(*known[key])
+
+
+@cache
+def _known() -> dict[bytes, tuple[frozenset[str], frozenset[str]]]:
+    """What is kept, by the hash of this file first; what is added is kept when the process ends."""
+    ours = hashlib.sha256(Path(__file__).read_bytes()).digest()
+    known: dict[bytes, tuple[frozenset[str], frozenset[str]]] = {}
+    try:
+        of, kept = pickle.loads(KEPT.read_bytes())
+        known = kept if of == ours else known
+    except (OSError, EOFError, pickle.UnpicklingError, ValueError):
+        pass
+    before = len(known)
+
+    def keep() -> None:
+        if len(known) > before:
+            KEPT.parent.mkdir(exist_ok=True)
+            written = KEPT.with_suffix(f".{os.getpid()}")
+            written.write_bytes(pickle.dumps((ours, known)))
+            written.replace(KEPT)
+
+    atexit.register(keep)
+    return known
 
 
 def read_imports(source: str) -> Imports:

@@ -325,6 +325,7 @@ def test_a_design_needs_a_power_of_two(stator: Display, point: Prediction, sampl
         uncertain_friction(stator, point, samples=samples)
 
 
+@pytest.mark.slow
 def test_an_additive_model_has_the_indices_of_its_variances(made_up: Callable[..., Any]) -> None:
     """First and total order are the shares of the variance; of a law that is drawn as well."""
     weight = {"following": 0.0, "constant": 0.3, "rigid": 0.6}
@@ -373,6 +374,7 @@ def test_an_additive_model_has_the_indices_of_its_variances(made_up: Callable[..
     assert len(told) <= 2 * 25
 
 
+@pytest.mark.slow
 def test_what_matters_only_in_company_has_a_total_and_nothing_alone(
     made_up: Callable[..., Any],
 ) -> None:
@@ -592,6 +594,7 @@ def test_the_free_amplitude_follows_voltage_quality_and_dimensions(
     assert FreeAmplitude(still, _predicted(voltage=15.0))(plate) == 3e-6
 
 
+@pytest.mark.slow
 def test_a_disc_of_a_draw_is_told_from_few_solved_ones(monkeypatch: pytest.MonkeyPatch) -> None:
     disc = load_display("winfield2007-tpad")
     solved: list[Any] = []

@@ -73,6 +73,7 @@ def test_small_steps_settle_at_the_target(down_after: int, up_ratio: int) -> Non
         assert errors[1] / errors[2] == pytest.approx(2.0, rel=0.2)
 
 
+@pytest.mark.slow
 def test_a_long_staircase_spends_its_time_where_the_chain_says() -> None:
     rule = StaircaseRule(
         0.0, 0.2, 0.2, down_after=2, lowest=-6, highest=6, reversals=4001, most_trials=4000
@@ -183,6 +184,7 @@ def test_the_posterior_is_bayes_rule() -> None:
     assert method.probability == pytest.approx(weights / weights.sum(), abs=1e-14)
 
 
+@pytest.mark.slow
 def test_chosen_stimuli_tell_more_than_random_ones() -> None:
     # From a range as wide as one takes who does not know where the threshold is.
     wide = tuple(np.linspace(0.0, 30.0, 31))

@@ -73,6 +73,7 @@ def test_small_excursions_have_the_closed_linear_force() -> None:
         assert film.damping_relative == pytest.approx(float(relative_damping(sigma)), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_sealed_and_open_grooves_of_the_paper_s_finger() -> None:
     """28 ridges at σ = 20.418: sealed 7.246e-3; open 1.651e-4 (a prototype found 1.61e-4)."""
     reference, length = 52.6e-6, 10e-3

@@ -102,6 +102,7 @@ def test_polytropic_gas_and_slip_on_a_disc_agree_with_the_march():
         assert abs(film.over_pressure - march.over_pressure) <= allowed
 
 
+@pytest.mark.slow
 def test_a_wave_over_a_long_strip_agrees_with_the_march():
     excursion, wave, squeeze_number = 0.5, 2.5, 30.0
     march = settle_to_periodic(

@@ -72,6 +72,7 @@ def test_what_a_finger_takes_per_period_is_the_loss_of_q() -> None:
     )
 
 
+@pytest.mark.slow
 def test_set_free_it_dies_away_with_the_loaded_q_and_at_the_loaded_frequency() -> None:
     """The same two bodies marched in time, all dampers viscous; to the first order of the load."""
     skin, spring, damper = Skin(3.3, 0.0, 7.7e5), 3e10, 1e5

@@ -267,6 +267,7 @@ def _people(
     return who, kind, random.random(p.size) < p
 
 
+@pytest.mark.slow
 def test_mixed_models_recover_stimuli_and_spread() -> None:
     true = np.array([-0.5, 0.5, 1.5])
     found = mixed_model(*_people(true, 1.0, 80, 12), ("a", "b", "c"))

@@ -55,6 +55,7 @@ def with_half_the_bandwidth(display: Display) -> Display:
     )
 
 
+@pytest.mark.slow
 def test_a_trace_without_texture_is_guessed() -> None:
     design = design_on(STATOR, waveform="constant")
     design = dataclasses.replace(
@@ -84,6 +85,7 @@ def test_thirty_milliseconds_more_lag_take_the_finest_grating() -> None:
     assert np.all(np.abs(lost[2:]) < 0.05)
 
 
+@pytest.mark.slow
 def test_half_the_bandwidth_takes_from_the_finest_grating() -> None:
     slow = with_half_the_bandwidth(load_display(STATOR))
     tables = chain_tables(design_on(STATOR), one_finger(), displays=(slow,))
@@ -105,6 +107,7 @@ def test_the_standing_wave_moves_the_rows_of_8_and_10_mm() -> None:
     assert ignored.explain()["10 mm"].ripple_share == 0.0
 
 
+@pytest.mark.slow
 def test_square_gratings_are_more_evident_than_sines() -> None:
     sine = chain_tables(design_on(STATOR, waveform="sine"), one_finger())
     square = base().virtual.d_prime[0, 0, :, 0]

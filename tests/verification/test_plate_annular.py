@@ -137,6 +137,7 @@ def stator() -> AnnularSection:
     return stator_section(MEAN_DIAMETER, 2.5e-3, assumptions, "soft")
 
 
+@pytest.mark.slow
 def test_rigid_body_modes_are_at_zero(stator: AnnularSection) -> None:
     disc = plain(0, 0.02, 1e-3)
     for section in (stator, disc):
@@ -213,6 +214,7 @@ def test_thin_piezoelectric_disc_in_its_radial_mode() -> None:
     assert y[0].imag / omega == pytest.approx(capacitance, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_admittance_by_modes_is_the_direct_solution(stator: AnnularSection) -> None:
     drive, q = alternate_sectors(8, math.pi / 9), 200.0
     mode = bending_mode(stator, 9, degree=4)
@@ -239,6 +241,7 @@ def test_admittance_by_modes_is_the_direct_solution(stator: AnnularSection) -> N
     assert got[2].real == pytest.approx(loss, rel=2e-2)  # the rest: loss in the other modes
 
 
+@pytest.mark.slow
 def test_short_circuit_is_softer_than_open(stator: AnnularSection) -> None:
     drive = alternate_sectors(18, math.pi / 9)
     mode = bending_mode(stator, 9)
@@ -454,6 +457,7 @@ def sector_frequencies(
     return np.sort(np.sqrt(squares)) / (2 * math.pi)
 
 
+@pytest.mark.slow
 def test_plain_ring_against_scikit_fem() -> None:
     _skfem()
     solid = isotropic_solid(PHOSPHOR_BRONZE)

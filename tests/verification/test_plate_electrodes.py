@@ -20,6 +20,7 @@ EACH = [[(k, 1)] for k in range(4)]
 ALTERNATING = [[(0, 1), (1, -1), (2, 1), (3, -1)]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("groups", [EACH, ALTERNATING])
 def test_floating_electrodes_are_those_of_scikit_fem(groups: list[list[tuple[int, int]]]) -> None:
     pytest.importorskip("skfem", reason="scikit-fem is a test extra; install squeezefilm[test]")
@@ -94,6 +95,7 @@ def test_shunts_reach_from_short_to_open_and_damp_in_between() -> None:
     assert [f for f, _ in middle] == sorted(f for f, _ in middle)
 
 
+@pytest.mark.slow
 def test_a_shunted_mode_is_the_peak_of_the_harmonic_response() -> None:
     plate = shunted(3e3)
     modes = solve_modes(plate, near=19e3, count=1, driven_only=True)
@@ -150,6 +152,7 @@ def foams(first: float, second: float) -> tuple[FoamSupport, FoamSupport]:
     )
 
 
+@pytest.mark.slow
 def test_each_strip_of_foam_has_its_own_loss() -> None:
     def loss(first: float, second: float) -> float:
         plate = small(supports=foams(first, second), quality_factor=1e6)
@@ -170,6 +173,7 @@ def test_power_is_conserved_with_two_kinds_of_foam() -> None:
     assert 50 * response.admittance.real == pytest.approx(response.dissipated_power(10), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_response_stands_at_the_extrapolated_frequency() -> None:
     plate = monomorph()
     modes = solve_modes(plate, mode=(8, 0))
@@ -188,6 +192,7 @@ def test_a_plate_too_slender_for_solid_elements_is_refused() -> None:
         solve_modes(small(), near=0.5, count=1)
 
 
+@pytest.mark.slow
 def test_an_interrupted_solve_leaves_the_next_one_as_it_was() -> None:
     plate = small()
     texts: list[str] = []

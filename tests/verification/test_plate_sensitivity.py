@@ -155,6 +155,7 @@ def test_another_glue_on_the_coarse_mesh_is_another_glue_solved(name: str) -> No
             assert found.amplitude == pytest.approx(a, rel=0.03), (path, share)
 
 
+@pytest.mark.slow
 def test_the_same_glue_shifts_nothing_and_one_out_of_reach_is_refused() -> None:
     aside = CeramicPatch(4e-3, 0.0, 16e-3, 20e-3, 0.5e-3)
     plate = with_glue(dataclasses.replace(_small(), patches=(aside,)), 20e-6, 3e9)

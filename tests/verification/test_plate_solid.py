@@ -122,6 +122,7 @@ def test_all_neighbours_are_found_with_their_modal_forces(data_set: str) -> None
     assert np.all(modes.open_frequencies >= modes.frequencies)
 
 
+@pytest.mark.slow
 def test_open_circuit_raises_the_working_mode_by_its_coupling() -> None:
     plate = monomorph()
     short = solve_modes(plate, mode=(8, 0))
@@ -141,6 +142,7 @@ def test_open_circuit_raises_the_working_mode_by_its_coupling() -> None:
     assert abs(short.couplings[0] - 0.2556) < short.coupling_errors[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("data_set", "anywhere", "centre"), [("from_d31", 162.8, 1.72), ("printed_e31", 36.7, None)]
 )
@@ -185,6 +187,7 @@ def direct_admittance(plate: RectangularPlate, frequency: float) -> complex:
     return 1j * omega * charge
 
 
+@pytest.mark.slow
 def test_reduced_response_is_that_of_a_direct_solve() -> None:
     plate = monomorph()
     f = np.linspace(32500, 35000, 40)
@@ -195,6 +198,7 @@ def test_reduced_response_is_that_of_a_direct_solve() -> None:
         assert abs(direct / response.admittance[k] - 1) < 2e-3
 
 
+@pytest.mark.slow
 def test_power_taken_is_power_lost_with_shunt_foam_and_finger() -> None:
     plate = small(
         patches=(
@@ -273,6 +277,7 @@ def test_drive_signs_choose_the_classes() -> None:
     assert drive_classes(one) == [(None, "S")]
 
 
+@pytest.mark.slow
 def test_glue_lowers_the_frequency_as_the_reference_says() -> None:
     plate = monomorph("printed_e31")
     bare = solve_modes(plate, mode=(8, 0)).frequencies[0]
@@ -308,6 +313,7 @@ def test_foam_along_the_rim_damps_and_stiffens_a_glass_plate() -> None:
     assert all(held.frequencies[j] > free.frequencies[i] for i, (j, _) in enumerate(matches))
 
 
+@pytest.mark.slow
 def test_modes_are_tracked_through_a_change_of_thickness() -> None:
     plate = monomorph()
     thicker = dataclasses.replace(plate, thickness=2.05e-3)

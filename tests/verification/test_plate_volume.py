@@ -112,6 +112,7 @@ def test_electrodes_have_the_drives_potential(read_back: meshio.Mesh) -> None:
         assert shape[face] == pytest.approx(0.0, abs=1e-12 * np.abs(shape).max() + 1e-12)
 
 
+@pytest.mark.slow
 def test_a_slow_voltage_falls_evenly_through_the_ceramic() -> None:
     plate = _small()
     modes = solve_modes(plate)
@@ -128,6 +129,7 @@ def test_a_slow_voltage_falls_evenly_through_the_ceramic() -> None:
     assert potential[other].real == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_touching_ceramics_keep_their_own_potential() -> None:
     patches = tuple(
         dataclasses.replace(p, polarity=s, poling=1)

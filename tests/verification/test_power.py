@@ -40,6 +40,7 @@ def test_dirichlet_participants_have_mean_and_overdispersion() -> None:
     assert counts[:, 1, 1].var() == pytest.approx(beta_binomial, rel=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preference", [0.2, 0.7])
 def test_stimuli_felt_alike_are_found_different_at_the_level(preference: float) -> None:
     """5 % of 2000 studies, give or take 3 standard errors, whatever answer is preferred."""
@@ -62,6 +63,7 @@ def test_distinction_by_hand() -> None:
     assert distinction(np.array([one, one]), 0, 1).p_value == 0.0
 
 
+@pytest.mark.slow
 def test_how_many_people_for_8_against_10_mm() -> None:
     people = DirichletParticipants(ordered_observer(1.2), 3, 20.0)
     found = power_curve(people, lambda n: distinction(n, 3, 4).p_value, studies=300)

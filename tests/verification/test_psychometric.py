@@ -107,6 +107,7 @@ def test_the_fit_is_the_maximum_that_scipy_finds(shape: Shape, guess_rate: float
     assert loss(ours) <= least + 1e-6
 
 
+@pytest.mark.slow
 def test_no_start_leads_higher_than_the_fit() -> None:
     # Few answers can have several local maxima; threshold and width of the starts cover the prior.
     truth = PsychometricFunction("weibull", 3.0, 1.0, 0.25, 0.02, "log")
@@ -160,6 +161,7 @@ def test_far_above_threshold_the_lapse_rate_has_its_beta_posterior() -> None:
     assert fit.posterior.log_evidence == pytest.approx(beta[0] - beta[1] - cut, abs=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("guess_rate", [0.5, None])
 def test_the_grid_is_fine_enough(guess_rate: float | None) -> None:
     fit = fit_psychometric(LEVELS, CORRECT, TRIALS, guess_rate=guess_rate, replicates=0)

@@ -162,6 +162,7 @@ def test_against_events(
     assert found == pytest.approx(slider.mean() / other.limit(rest), abs=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stiffness", ["rigid", "constant", "following"])
 @pytest.mark.parametrize(
     "law", [AsperityLaw(), RoughContact(), AsperityLaw(5e3, 2e-6, 0.8e-6, "gaussian")]

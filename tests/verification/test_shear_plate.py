@@ -53,6 +53,7 @@ def _elastic(length: float, width: float, thickness: float, count: int = 6) -> n
     return np.array(frequencies[:count])
 
 
+@pytest.mark.slow
 def test_nafems_fv12_and_no_shear_locking() -> None:
     thin = _elastic(10, 10, 0.01) * 5  # the Kirchhoff frequency goes with the thickness
     assert thin == pytest.approx(FV12, rel=1e-3)
@@ -108,6 +109,7 @@ def test_a_narrow_strip_is_a_timoshenko_beam(plate: RectangularPlate) -> None:
         )
 
 
+@pytest.mark.slow
 def test_symmetry_classes_hold_all_modes(plate: RectangularPlate) -> None:
     split = shear_modes(plate, 33.5e3, 8, degree=5)
     whole = shear_modes(plate, 33.5e3, 8, degree=5, parities=((0, 0),))
@@ -182,6 +184,7 @@ def test_polarity_turns_the_drive(plate: RectangularPlate) -> None:
     assert abs(weak) < 0.3 * abs(here)
 
 
+@pytest.mark.slow
 def test_an_unsymmetric_plate_is_solved_whole(plate: RectangularPlate) -> None:
     shifted = dataclasses.replace(plate, patches=plate.patches[:-1])
     mode = shear_mode(shifted, (8, 0), 34e3)

@@ -39,6 +39,7 @@ def narrow(beam: Bimorph, field: bool = True) -> tuple[float, float]:
     )
 
 
+@pytest.mark.slow
 def test_a_wide_thin_strip_is_the_solid_within_one_per_cent() -> None:
     strip, solid = WIDE.as_strip, solid_bender(WIDE)
     assert strip.deflection_per_volt == pytest.approx(solid.deflection_per_volt, rel=0.01)
@@ -58,6 +59,7 @@ def test_a_very_narrow_beam_is_the_closed_form_within_one_per_cent() -> None:
     assert narrow(beam, field=False)[1] / solid.stiffness < 0.97
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("ceramic", "shim", "lengths", "within"),
     [

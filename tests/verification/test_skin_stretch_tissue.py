@@ -169,6 +169,7 @@ def test_seating_on_a_flat_half_space_is_hertz_s_contact() -> None:
     assert seated.forces.max() / 0.16e-6 == pytest.approx(highest, rel=0.03)
 
 
+@pytest.mark.slow
 def test_the_least_force_for_all_is_where_the_last_contactor_is_reached() -> None:
     pulp, finger = Tissue(shear_modulus=20e3), Fingertip()
     cradle = FingerCradle(10, 6, 1.2e-3, 1.8e-3, *SIZE, 13e-3, 12e-3, 9e-3, 22e-3)

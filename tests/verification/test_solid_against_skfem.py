@@ -28,6 +28,7 @@ def two_ceramics() -> BoxModel:
     return BoxModel(x, y, z, (STEEL, flipped), medium, ceramic, (Electrode(0, 2),) * 2)
 
 
+@pytest.mark.slow
 def test_identical_meshes_give_identical_frequencies() -> None:
     from .skfem_plate import skfem_frequencies
 

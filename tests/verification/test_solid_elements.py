@@ -95,6 +95,7 @@ def test_patch_test_of_constant_strain(trunk: float) -> None:
     assert np.max(np.abs(force[np.concatenate(inside)])) < 1e-9 * np.max(np.abs(force))
 
 
+@pytest.mark.slow
 def test_operators_are_the_same_for_many_vectors_at_once_as_for_each() -> None:
     x = LineMesh((0.0, 0.3, 0.35, 0.65, 1.0), (3, 2, 3, 3))
     slabs = Slabs(solid(x, line(0.6, 2, 3), line(0.3, 1, 2), STEEL))

@@ -83,6 +83,7 @@ def test_twenty_fits_agree_with_psignifit() -> None:
     assert worst["interval"] < 0.08
 
 
+@pytest.mark.slow
 @FEW
 def test_runs_choose_as_questplus_does(seeds: range) -> None:
     questplus = pytest.importorskip("questplus", reason="questplus is not installed (GPL oracle)")
@@ -209,6 +210,7 @@ def test_twenty_runs_of_each_task_choose_as_questplus_does(task: str) -> None:
     assert worst < 1e-12
 
 
+@pytest.mark.slow
 def test_twenty_people_without_lapses_agree_with_a_probit_model(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -245,6 +247,7 @@ def answered_as_one(main):  # type: ignore[no-untyped-def]
     return dataclasses.replace(main, people=("all",), participant=np.zeros_like(main.participant))
 
 
+@pytest.mark.slow
 # It says so where the spread over people of the slope is next to none.
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @FEW

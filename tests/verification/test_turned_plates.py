@@ -47,6 +47,7 @@ def require_same_modes(plate: RectangularPlate) -> None:
         assert np.max(np.abs(np.abs(v) - np.abs(w))) < 1e-3 * np.max(np.abs(w))
 
 
+@pytest.mark.slow
 def test_turned_plates_take_the_same_work() -> None:
     for seed in range(900, 910):
         require_same_work(random_plate(seed))

@@ -202,6 +202,7 @@ def _oracle(plant: Plant, level: float, speed: float, span: float) -> np.ndarray
     return np.asarray(done.y[:, -1])
 
 
+@pytest.mark.slow
 def test_finger_film_and_plate_together_agree_with_scipy_to_second_order() -> None:
     speed, errors = 0.08, []
     for parts in (1, 2, 4):

@@ -39,6 +39,7 @@ def resonance(there: AssembledMotor, law: FreePlate) -> SofteningResonance:
     )
 
 
+@pytest.mark.slow
 def test_in_time_the_amplitude_is_that_of_a_softening_resonance() -> None:
     there = free(SQUARE)
     alone = resonance(there, SQUARE)
@@ -51,6 +52,7 @@ def test_in_time_the_amplitude_is_that_of_a_softening_resonance() -> None:
         assert free_amplitude(there, working) == pytest.approx(expected, rel=5e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", [SQUARE, PROPORTIONAL])
 def test_the_mean_has_the_backbone_that_time_has(law: FreePlate) -> None:
     there = free(law)

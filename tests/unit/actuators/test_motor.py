@@ -220,6 +220,7 @@ def test_a_leg_that_leans_thrusts_from_the_antinode() -> None:
         FootContact(1e8, 1e5, 0.9).stiffnesses(0.1)
 
 
+@pytest.mark.slow
 def test_the_mean_agrees_with_time_where_the_slider_does_not_jump() -> None:
     found = models_compared(
         motor(), np.array([10.0, 20.0]), np.array([0.5e-6, 1e-6]), speed=0.01, periods=300
@@ -235,6 +236,7 @@ def test_the_mean_fails_where_the_slider_jumps() -> None:
     assert abs(found.difference(0.3)[0, 0]) > 0.1
 
 
+@pytest.mark.slow
 def test_a_free_slider_ends_at_the_no_load_speed() -> None:
     working = Working(voltage=15.0)
     in_time = simulate(motor(), working, periods=1500, start_speed=0.02, traced=2)

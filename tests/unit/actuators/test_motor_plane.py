@@ -37,6 +37,7 @@ def planar(slider_mass: float = 0.05, direction: float = 0.0) -> AssembledMotor:
     return replace(ready, modes=(first, replace(second, working=driven)))
 
 
+@pytest.mark.slow
 def test_along_one_line_it_is_the_march_between_events() -> None:
     for speed in (0.0, 0.02):
         events = simulate(motor(), WORKING, speed=speed, periods=200, traced=0)
@@ -105,6 +106,7 @@ def test_a_free_slider_ends_near_the_velocity_without_a_load() -> None:
     assert cosine > np.cos(np.radians(10))
 
 
+@pytest.mark.slow
 def test_two_voltages_find_two_amplitudes() -> None:
     working = Working(voltage=15.0, second=0.5)
     mean = averaged(planar(), working)

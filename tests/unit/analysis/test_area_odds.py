@@ -46,6 +46,7 @@ def test_a_draw_that_is_as_described_has_the_friction_of_the_area(name: str) -> 
     )
 
 
+@pytest.mark.slow
 def test_no_draw_is_asked_for_more_amplitude_than_the_face_has() -> None:
     # A pad as wide as waves are long: its friction is that of no even wave on an antinode.
     display = load_display("winfield2007-tpad")
@@ -59,6 +60,7 @@ def test_no_draw_is_asked_for_more_amplitude_than_the_face_has() -> None:
     assert middle == pytest.approx([area.best, area.median, area.worst], abs=0.1)
 
 
+@pytest.mark.slow
 def test_at_the_place_of_the_prediction_the_odds_are_those_of_its_interval() -> None:
     """One set of draws, one number."""
     display = load_display("winfield2007-tpad")

@@ -33,6 +33,7 @@ def test_one_distance_alone_has_the_level_of_the_field() -> None:
         assert loudest_level(surface, distance) == pytest.approx(level, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_disc_is_heard_in_proportion_to_its_amplitude(disc: Display) -> None:
     p = predict(disc)
     found = ear_exposure(disc, p)

@@ -23,6 +23,7 @@ def moved(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 RESPONSE: Any = SimpleNamespace(plate=PLATE, displacement=moved)
 
 
+@pytest.mark.slow
 def test_the_face_sounds_as_it_moves_at_the_frequency_asked_for() -> None:
     found = plate_sound(RESPONSE, 1, 30e3, 15.0)
     assert found.distances == DISTANCES

@@ -84,6 +84,7 @@ def test_one_ridge_is_the_pad_of_one_ridge() -> None:
 # The map.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["plate", "stator", "disc"])
 def test_the_map_is_the_sum_over_the_pads_ridges_place_by_place(name: str) -> None:
     p, display = predicted(name), {"plate": PLATE, "stator": STATOR, "disc": DISC}[name]

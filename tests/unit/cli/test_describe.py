@@ -52,6 +52,7 @@ def test_every_verb_is_described_in_the_docs() -> None:
     ] == []
 
 
+@pytest.mark.slow
 def test_the_package_can_be_run_by_its_name() -> None:
     command = [sys.executable, "-m", "squeezefilm", "presets", "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)

@@ -122,6 +122,7 @@ def test_one_that_is_stopped_says_so_and_ends_as_interrupted(
     assert "was stopped" in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_one_whose_cluster_is_gone_shows_what_it_has_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

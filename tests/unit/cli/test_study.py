@@ -75,6 +75,7 @@ def test_presets_are_named_with_their_titles() -> None:
     assert said == [f"{one['name']}: {one['title']}" for one in listing]
 
 
+@pytest.mark.slow
 def test_simulated_people_are_shown_and_written_where_asked(
     stands_in: StandsIn, tmp_path: Path
 ) -> None:

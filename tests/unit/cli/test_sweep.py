@@ -43,6 +43,7 @@ def test_a_sweep_without_a_display_or_with_another_table_is_refused() -> None:
             CliRunner().invoke(app, arguments, catch_exceptions=False)
 
 
+@pytest.mark.slow
 def test_samples_are_drawn_and_what_no_other_beats_is_on_the_page(tmp_path: Path) -> None:
     varied = ["--vary", "voltage=20 V..100 V:log", "--vary", "speed=20 mm/s..0.2 m/s"]
     wanted = ["--ask", "relative_friction,vibration_amplitude"]

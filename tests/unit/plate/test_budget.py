@@ -67,6 +67,7 @@ def test_answers_under_different_budgets_are_kept_apart(display: Display) -> Non
     assert solid_mode(plate) is solid_mode(plate, pace=Pace(tell=lambda text, share: None))
 
 
+@pytest.mark.slow
 def test_enough_time_gives_the_same_answer(display: Display) -> None:
     plate = plate_of(display)
     fine, unhurried = solid_mode(plate), solid_mode(plate, pace=frozen(1e6))

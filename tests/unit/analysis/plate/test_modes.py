@@ -147,6 +147,7 @@ def test_the_papers_plate_works_in_the_mode_that_is_suggested(paper: ModeList) -
     assert len(paper._table()) == len(paper.modes)
 
 
+@pytest.mark.slow
 def test_a_mode_that_symmetry_forbids_is_named_and_not_listed() -> None:
     found = list_modes(five_strips(5), (18e3, 40e3))
     assert found.working == "(5,0)"

@@ -374,6 +374,7 @@ def test_a_budget_that_allows_no_mode_is_refused_with_what_is_expected(
     assert "ring_response" not in parts
 
 
+@pytest.mark.slow
 def test_the_sound_of_every_fourth_radius_is_that_of_all() -> None:
     display = disc()
     body = ring_body(display.actuator)

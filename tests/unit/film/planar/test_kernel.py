@@ -62,6 +62,7 @@ def balance(m: np.ndarray, law: tuple[float, float, int]) -> np.ndarray:
     return np.asarray(out)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 def test_the_residual_is_what_flows_in_less_what_is_stored(law: tuple[float, float, int]) -> None:
     assert assembled(GAS, law)[0] == pytest.approx(balance(GAS, law), rel=1e-12, abs=1e-13)

@@ -69,6 +69,7 @@ def test_least_squares_are_those_of_the_linear_problem() -> None:
     np.testing.assert_allclose(best_fit(posed), expected, atol=0.02)
 
 
+@pytest.mark.slow
 def test_a_right_model_is_narrow_and_a_combination_is_named() -> None:
     posed = problem(seen("resonance_frequency", (1.0, -0.5), 3e-4))
     posterior = sampled_posterior(posed, seed=1, steps=600)
@@ -245,6 +246,7 @@ def test_the_slopes_of_what_is_bound_are_its_differences() -> None:
     assert problem().bound(logs) is logs
 
 
+@pytest.mark.slow
 def test_an_error_that_all_readings_share_is_not_averaged_away() -> None:
     """Of many sharp recordings that all misread an answer alike the interval stays so wide."""
     shared, count = 0.01, 30

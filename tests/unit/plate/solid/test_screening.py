@@ -109,6 +109,7 @@ def test_ceramics_that_only_stretch_a_plate_bend_nothing() -> None:
     assert amplitudes[alike] < 1e-3 * amplitudes[against]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("electrode", ["driven", "open", "shorted"])
 def test_screened_modes_are_those_of_the_solved_plate(electrode: Electrode) -> None:
     plate, band = strips(1, -1, 1, electrode=electrode), (20e3, 70e3)

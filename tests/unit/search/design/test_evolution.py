@@ -23,6 +23,7 @@ def _run(proposals: Proposals, batches: range, size: int = 100) -> list[Design]:
     return every
 
 
+@pytest.mark.slow
 def test_generations_learn_what_is_feasible_and_lose_nothing_to_chance() -> None:
     wanted = requirements()
     found = _run(Proposals(wanted, 0, "screened", None, 1), range(6))

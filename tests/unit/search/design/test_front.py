@@ -40,6 +40,7 @@ def test_layers_come_one_after_the_other(rows: np.ndarray) -> None:
     assert set(front) <= set(taken)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objectives", [2, 3])
 def test_the_hypervolume_is_the_share_of_random_points_that_are_dominated(objectives: int) -> None:
     draw = np.random.default_rng(7)

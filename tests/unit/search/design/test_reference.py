@@ -24,6 +24,7 @@ def test_the_papers_plate_is_judged_by_the_questions_of_the_search() -> None:
     assert found.broken == ()
 
 
+@pytest.mark.slow
 def test_a_disc_is_judged_too() -> None:
     wanted = requirements(**{'compare_with = ""': 'compare_with = "winfield2007-tpad"'})
     found = reference_of(wanted)

@@ -33,6 +33,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_answers_are_analysed_with_how_they_explored(place: Path) -> None:
     done = program("study", "analyze", "s.sqlite", "--out", "pages", cwd=place)
     assert done.returncode == 0, done.stderr
@@ -49,6 +50,7 @@ def test_answers_are_analysed_with_how_they_explored(place: Path) -> None:
     assert "surfaces known from before" in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["csv", "psych-ds", "bids"])
 def test_exports_name_surfaces_and_measures(place: Path, form: str) -> None:
     done = program("study", "export", "s.sqlite", "--format", form, "--out", form, cwd=place)
@@ -69,6 +71,7 @@ def test_exports_name_surfaces_and_measures(place: Path, form: str) -> None:
     assert float(disc["coverage"]) > 0.2
 
 
+@pytest.mark.slow
 def test_simulated_people_tell_the_surfaces_apart_better_than_by_guessing(place: Path) -> None:
     done = program(
         "study", "simulate", "shapes-match", "--participants", "12", "--observer", "one.toml",
@@ -84,6 +87,7 @@ def test_simulated_people_tell_the_surfaces_apart_better_than_by_guessing(place:
     assert "plain hand" in (place / "sim/index.html").read_text()
 
 
+@pytest.mark.slow
 def test_a_rehearsed_path_is_felt(place: Path) -> None:
     listed = json.loads(program("study", "status", "s.sqlite", "--json", cwd=place).stdout)
     who = listed["participants"][0]["uuid"]

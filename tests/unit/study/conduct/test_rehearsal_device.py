@@ -57,6 +57,7 @@ def test_a_weak_and_a_detuned_twin_are_off(point: WorkingPoint) -> None:
     assert not blind.measurable
 
 
+@pytest.mark.slow
 def test_the_hand_feels_the_grating_that_is_presented(point: WorkingPoint) -> None:
     twin = _twin(point)
     assert twin.stop().trace == ""

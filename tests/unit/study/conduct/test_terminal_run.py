@@ -48,6 +48,7 @@ def test_what_goes_on_is_shown_only_while_nobody_is_asked(tmp_path: Path) -> Non
     assert told[0] == 1
 
 
+@pytest.mark.slow
 def test_the_cursor_is_there_while_a_line_is_typed(tmp_path: Path) -> None:
     """The program as it is, at a terminal: hidden and shown as often before the first question."""
     pty = pytest.importorskip("pty", reason="there are no pseudo-terminals here")

@@ -100,6 +100,7 @@ def test_a_line_by_itself_is_that_of_the_whole_spectrum() -> None:
     assert whole.shape == line_periods().shape
 
 
+@pytest.mark.slow
 def test_what_was_felt_before_needs_no_plate_no_loop_and_no_statistics(
     small: tuple[StudyDesign, Observer],
 ) -> None:

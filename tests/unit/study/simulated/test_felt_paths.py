@@ -77,6 +77,7 @@ def test_what_cannot_be_felt_says_why(stimulus: str, path: str, says: str) -> No
         felt_on_path(shapes(), stimulus, path)
 
 
+@pytest.mark.slow
 def test_a_rehearsed_answer_is_felt_along_its_own_path(tmp_path: Path) -> None:
     from dataclasses import replace
 

@@ -78,6 +78,7 @@ def test_the_deeper_is_found_by_its_evidence() -> None:
     assert main.correct[deepest].mean() == pytest.approx(expected, abs=0.02)
 
 
+@pytest.mark.slow
 def test_the_same_are_called_different_as_the_criterion_has_it() -> None:
     main = simulate_judgements(ALIKE, EXACT, 100, 1, tables(ALIKE)).main(0)
     same = main.first == main.second

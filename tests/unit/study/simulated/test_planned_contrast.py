@@ -35,6 +35,7 @@ def by_hand(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "chain_tables", made)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("design", "measure", "sign"), [(ALIKE, "ln Weber fraction", -1), (NUMBERS, "exponent", 1)]
 )

@@ -40,6 +40,7 @@ def by_hand(values: list[float], errors: list[float]) -> tuple[float, float, flo
     return float(low), float(middle), float(high)
 
 
+@pytest.mark.slow
 def test_normal_likelihoods_give_the_random_effects_posterior() -> None:
     random = np.random.default_rng(2)
     for _ in range(5):
