@@ -150,6 +150,7 @@ def test_a_plate_is_solved_with_its_error(tmp_path: Path) -> None:
     assert vtu.read_bytes() == (out / "mode.vtu").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_film_map_is_drawn(tmp_path: Path) -> None:
     done = run("film", "--sweep", "--tolerance", "0.01", "--out", tmp_path)
     assert done.returncode == 0, done.stderr
@@ -208,6 +209,7 @@ def test_new_show_and_analyze_a_file_of_ones_own(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full here")
 def test_output_that_does_not_fit_is_one_message_and_exit_code_two() -> None:
     with Path("/dev/full").open("w") as full:

@@ -109,6 +109,7 @@ def test_record_and_truth_are_the_same_bit_for_bit(
     assert (tmp_path / "one/truth.csv").read_bytes() == (tmp_path / "two/truth.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_device_plays_a_tile_by_itself(
     display: Display, point: WorkingPoint, tmp_path: Path
 ) -> None:
@@ -183,6 +184,7 @@ def test_a_session_that_stood_still_is_not_usable_and_its_record_says_so(
     assert session.summary()["usability"]["sentence"] in outcome.said
 
 
+@pytest.mark.slow
 def test_a_session_without_a_pickup_is_judged_by_the_envelopes_model(
     display: Display, point: WorkingPoint, tmp_path: Path
 ) -> None:

@@ -130,6 +130,7 @@ def check(frames: int, seed: int) -> None:
             assert count["accepted"] > 0.01 * frames
 
 
+@pytest.mark.slow
 def test_nothing_corrupt_gets_through_a_bad_line() -> None:
     check(4_000, seed=1)
 

@@ -76,6 +76,7 @@ def kills(folder: Path, count: int) -> None:
     print(f"{count} kills, up to {most} rows acknowledged, none lost")
 
 
+@pytest.mark.slow
 def test_a_killed_writer_loses_nothing_it_acknowledged(tmp_path: Path) -> None:
     kills(tmp_path, 12)
 

@@ -33,6 +33,7 @@ while number < total:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("total", [100_000, pytest.param(1_000_000, marks=pytest.mark.nightly)])
 def test_no_row_is_torn_lost_or_doubled_between_processes(tmp_path: Path, total: int) -> None:
     path = tmp_path / "ring"

@@ -208,6 +208,7 @@ def test_a_write_beyond_the_limit_acknowledges_nothing_and_the_run_goes_on(tmp_p
     _full([], path, _created(path, _design(60)), "limit")
 
 
+@pytest.mark.slow
 def test_a_full_disk_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) -> None:
     unshare = shutil.which("unshare")
     disk = tmp_path / "disk"

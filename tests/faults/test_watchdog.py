@@ -92,7 +92,7 @@ class Deaf:
 @pytest.mark.parametrize("plays", list(PLAYS))
 def test_zero_within_60_ms_of_the_last_accepted_frame(host: str, plays: str) -> None:
     worst = 0
-    for seed in range(8):
+    for seed in range(4):
         device = Deaf(plays, seed)
         while device.machine.level:
             if device.dice.random() < 0.5:
@@ -101,7 +101,7 @@ def test_zero_within_60_ms_of_the_last_accepted_frame(host: str, plays: str) -> 
             assert device.now - device.heard <= 60_000
         worst = max(worst, device.now - device.heard)
         assert device.machine.fault is Fault.WATCHDOG
-        for _ in range(500):
+        for _ in range(200):
             getattr(device, host)()
             device.tick()
             assert device.machine.level == 0

@@ -281,6 +281,7 @@ def streamed(drift: float, jitter: int, block: int, seconds: float, seed: int) -
     return [level for _, level in wire.levels]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", [5, 25])
 @pytest.mark.parametrize("drift", [-100e-6, 100e-6])
 def test_a_stream_at_5_khz_has_no_gap_and_no_repeated_sample(block: int, drift: float) -> None:

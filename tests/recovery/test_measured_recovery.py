@@ -15,7 +15,7 @@ from .measured_designs import DESIGNS, coverage
 
 @pytest.mark.parametrize("design", [name for name in DESIGNS if name.endswith(", noise")])
 def test_intervals_hold_the_truth(design: str) -> None:
-    runs = 24
+    runs = 12
     for name, found in coverage(design, runs).items():
         assert found.share >= 0.95 - 5 * math.sqrt(0.95 * 0.05 / runs), name
 

@@ -90,6 +90,7 @@ def test_one_child_reads_many_files() -> None:
     reader.end()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_a_crash_is_told_with_the_file_and_the_next_is_read() -> None:
     reader = IsolatedReader()

@@ -47,6 +47,7 @@ def test_the_headline_is_the_best_of_the_active_area(name: str) -> None:
     assert "best place of the active area" in p.place_said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SOLVED)
 def test_the_interval_is_of_the_headline(name: str) -> None:
     p = predicted(name)
@@ -75,7 +76,7 @@ def test_of_a_pad_all_points_are_what_few_nodes_say() -> None:
     assert law.mean_square == pytest.approx(float(met**2 @ shares), rel=1e-9)
 
 
-@pytest.mark.parametrize("frequency", [None, 25.9e3])
+@pytest.mark.parametrize("frequency", [None, pytest.param(25.9e3, marks=pytest.mark.slow)])
 def test_an_answer_put_in_as_a_question_returns_itself(frequency: float | None) -> None:
     """By voltage, by amplitude and by friction, from each of them."""
     display = load_display("winfield2007-tpad")

@@ -99,6 +99,8 @@ def check(seed: int, count: int, monkeypatch: pytest.MonkeyPatch) -> dict[str, i
     curve: Any = SimpleNamespace(amplitude_for_criterion=None)
     bases = [*displays(), *(plausible_display(rng) for _ in range(5))]
     monkeypatch.setattr(chosen_mode, "working_mode", never)
+    # Of modes nearby, which are another doubt and solved for, nothing is asked.
+    monkeypatch.setattr("squeezefilm.analysis.verdict.mode_doubts", lambda *_: ())
     counted, missed = {"not built": 0, "refused": 0, "doubted": 0}, []
     for _ in range(count):
         display, said = wrong(rng, bases[int(rng.integers(len(bases)))])

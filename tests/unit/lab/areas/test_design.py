@@ -76,6 +76,7 @@ def test_an_edit_and_its_limits(lab: Talk) -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_what_takes_seconds_is_computed_on_the_slow_line(
     lab: Talk, monkeypatch: pytest.MonkeyPatch
 ) -> None:

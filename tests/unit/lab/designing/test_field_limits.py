@@ -50,6 +50,7 @@ def test_a_path_that_is_not_there() -> None:
 SHORT = "biet2008-stator"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

@@ -120,6 +120,7 @@ def test_what_cannot_be_observed_is_refused() -> None:
         sampled_posterior(problem(), seed=1)
 
 
+@pytest.mark.slow
 def test_what_was_not_observed_is_as_uncertain_as_the_model_is_believed_to_be() -> None:
     """However well the data fit, and how sharp they are."""
     sharp = [seen(name, (0.5, 0.2), 1e-4) for name in ("resonance_frequency", "mass")]

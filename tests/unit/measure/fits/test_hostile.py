@@ -70,7 +70,11 @@ def _tried(x: str, w: str) -> None:
             assert np.isfinite([one.value, one.standard_error]).all(), one
 
 
-@pytest.mark.parametrize("w", sorted(ROWS))
+# What is fitted for a second and more has its turn below.
+LONG = {"a small row", "clipped", "huge", "negative", "noise", "one value"}
+
+
+@pytest.mark.parametrize("w", sorted(ROWS.keys() - LONG))
 def test_a_fit_or_a_message(w: str) -> None:
     _tried("rising" if ROWS[w].size == COUNT else w, w)
 

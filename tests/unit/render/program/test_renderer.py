@@ -323,6 +323,7 @@ def test_code_that_would_run_away_is_refused(code: list[float], said: str) -> No
         checked(whole)
 
 
+@pytest.mark.slow
 def test_a_first_render_of_broadcast_arrays_warns_of_nothing() -> None:
     """NumPy warns only when a type is compiled for the first time, so in a process."""
     code = (

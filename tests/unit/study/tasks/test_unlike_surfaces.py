@@ -89,6 +89,7 @@ def test_one_person_has_the_interval_of_their_trials() -> None:
     assert found.pooled.method == "Jeffreys, over trials"
 
 
+@pytest.mark.slow
 def test_a_study_of_shapes_is_planned_by_its_sensitivity() -> None:
     """Surfaces without a scale have no Weber fraction, and its precision is that of d′."""
     measure, value = person_values(answers(4, 20, 5))
