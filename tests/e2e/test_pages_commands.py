@@ -58,11 +58,11 @@ FEW = {
 
 
 def _small(words: list[str]) -> list[str]:
-    """The same command with few samples or people, in one process."""
+    """The same command with few samples, points or people, in one process."""
     option, count = FEW.get(words[0], ("", ""))
     added = [option, count] if option and option not in words else []
     few = [
-        "3" if before == "--participants" else word
+        "3" if before == "--participants" else re.sub(r":\d+$", ":2", word)
         for before, word in zip(["", *words], words, strict=False)
     ]
     return [*few, *added]
@@ -94,6 +94,8 @@ def test_by_day_a_command_is_typed_with_few_samples_and_people() -> None:
     assert _small(shlex.split("analyze a --samples 0")) == shlex.split("analyze a --samples 0")
     typed = "study simulate a --participants 12 --seed 7"
     assert _small(shlex.split(typed)) == shlex.split(typed.replace("12", "3"))
+    swept = "sweep a --vary 'voltage=1 V..2 V:{}' --jobs 1"
+    assert _small(shlex.split(swept.format(5))) == shlex.split(swept.format(2))
 
 
 def test_remarks_and_lines_that_go_on_are_understood() -> None:

@@ -35,7 +35,7 @@ def searched(folder: Path, pause: float = 0.0) -> DesignSearch:
         mock.patch.object(run, "evaluate_all", counted),
         mock.patch.object(run, "made_of", return_value=Made(64, 1.0, {}, {}, {})),
     ):
-        return run.search_designs(requirements(), screened=300, solved=50, out=folder)
+        return run.search_designs(requirements(), screened=150, solved=24, out=folder)
 
 
 if __name__ == "__main__":

@@ -27,10 +27,8 @@ DISC = "winfield2007-tpad"
 
 
 @pytest.fixture(scope="module")
-def disc(tmp_path_factory: pytest.TempPathFactory) -> Fabrication:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SQUEEZEFILM_CACHE", str(tmp_path_factory.mktemp("cache")))
-        return fabricate(DISC, samples=8)
+def disc() -> Fabrication:
+    return fabricate(DISC, samples=8)
 
 
 def checks_of(made: Fabrication) -> dict[str, Check]:

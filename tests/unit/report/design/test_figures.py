@@ -24,7 +24,13 @@ def found() -> DesignSearch:
     return made_search()
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(kind, marks=pytest.mark.slow if kind in ("three objectives", "few") else ())
+        for kind in KINDS
+    ],
+)
 def test_every_figure_of_every_search_can_be_drawn(kind: str) -> None:
     one = made_search(**KINDS[kind])  # type: ignore[arg-type]
     for item in figures.FIGURES:

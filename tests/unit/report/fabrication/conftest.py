@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from unittest import mock
 
 import pytest
 
@@ -49,3 +50,14 @@ def preset() -> Callable[[str], Fabrication]:
 @pytest.fixture(scope="session")
 def with_body() -> Callable[..., Fabrication]:
     return another
+
+
+@pytest.fixture
+def undrawn(undrawn: None) -> Iterator[None]:
+    """Nor are there drawings for a workshop."""
+    page = "squeezefilm.report.fabrication.page"
+    with (
+        mock.patch(f"{page}.pdf", return_value=b"%PDF"),
+        mock.patch(f"{page}.dxf_text", return_value=""),
+    ):
+        yield

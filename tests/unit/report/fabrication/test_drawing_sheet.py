@@ -137,6 +137,7 @@ def plates(draw: st.DrawFn) -> RectangularPlate:
     )
 
 
+@pytest.mark.slow
 @settings(settings.get_profile("dear"))
 @given(plate=plates())
 def test_dimensions_of_any_plate_are_its_description(
