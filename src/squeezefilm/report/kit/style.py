@@ -367,7 +367,7 @@ def png(figure: Figure, dots_per_inch: float = 130) -> bytes:
 
     stream = io.BytesIO()
     with rc():
-        canvas = FigureCanvasAgg(figure)
+        canvas: Any = FigureCanvasAgg(figure)
         # As `savefig` does, which first draws all of it once for nothing but its layout.
         before = {"dpi": figure.dpi, "facecolor": figure.get_facecolor()}
         figure.set(dpi=dots_per_inch, facecolor="white")
