@@ -22,8 +22,8 @@ def test_a_room_has_the_tests_below_it_and_those_of_its_physics_elsewhere() -> N
     ("part", "test"),
     [
         ("loading", "tests/unit/test_loading.py"),
-        ("planar", "tests/unit/film/planar/test_teeth.py"),
-        ("film/planar", "tests/unit/film/planar/test_teeth.py"),
+        ("planar", "tests/unit/film/planar/test_kernel.py"),
+        ("film/planar", "tests/unit/film/planar/test_kernel.py"),
         ("control", "tests/unit/control/test_force_law.py"),
     ],
 )
