@@ -281,6 +281,7 @@ def test_mixed_models_recover_stimuli_and_spread() -> None:
     assert found.correlation > 0.05
 
 
+@pytest.mark.slow
 def test_a_stimulus_always_right_is_said_to_be() -> None:
     who, kind, right = _people(np.array([0.0, 1.0]), 0.5, 10, 6)
     found = mixed_model(who, kind, right | (kind == 1), ("a", "b"))

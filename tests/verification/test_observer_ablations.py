@@ -66,6 +66,7 @@ def test_a_trace_without_texture_is_guessed() -> None:
     assert study.proportion_correct() == pytest.approx(0.2, abs=FOUR_SIGMA / math.sqrt(5))
 
 
+@pytest.mark.slow
 def test_a_constant_vibration_is_guessed_too_though_the_wave_is_felt() -> None:
     design = design_on(STATOR, waveform="constant", low=0.7, high=0.8)
     design = dataclasses.replace(
@@ -115,6 +116,7 @@ def test_square_gratings_are_more_evident_than_sines() -> None:
     assert answers(base()).proportion_correct() > answers(sine).proportion_correct()
 
 
+@pytest.mark.slow
 def test_a_grating_along_the_stroke_is_not_felt() -> None:
     along = chain_tables(design_on(STATOR, orientation=math.pi / 2), one_finger())
     assert answers(along).proportion_correct() == pytest.approx(0.2, abs=FOUR_SIGMA / math.sqrt(5))

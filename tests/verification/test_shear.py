@@ -179,6 +179,7 @@ def test_more_vibration_never_rubs_more_and_more_speed_never_less(
         assert found[:, 0] == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_rigid_shear_is_the_share_of_the_load(table: FilmTable) -> None:
     swings = np.geomspace(0.02e-6, 6e-6, 40)
     rigid = AsperityShear(0.1, stiffness="rigid")

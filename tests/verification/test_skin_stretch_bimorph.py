@@ -49,6 +49,7 @@ def test_a_wide_thin_strip_is_the_solid_within_one_per_cent() -> None:
     assert strip.resonance_frequency == pytest.approx(solid.resonance_frequency, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_very_narrow_beam_is_the_closed_form_within_one_per_cent() -> None:
     beam = dataclasses.replace(BARE, width=0.05e-3, length=40e-3)
     solid = solid_bender(beam)

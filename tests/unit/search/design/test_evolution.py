@@ -57,7 +57,7 @@ def test_the_first_generation_aims_at_a_frequency_that_is_bounded_on_both_sides(
     assert not Proposals(own, 0, "screened", None, 1)._aimed(30)
 
 
-@pytest.mark.parametrize("level", ["screened", "solved"])
+@pytest.mark.parametrize("level", ["screened", pytest.param("solved", marks=pytest.mark.slow)])
 def test_whoever_asks_again_is_proposed_the_same(tmp_path: Path, level: Level) -> None:
     """And publishes nothing twice, wherever the first was killed."""
     wanted = requirements()
@@ -82,6 +82,7 @@ def _published(folder: Path) -> list[object]:
     return list(optuna.load_study(study_name=study.study_name, storage=storage).trials)
 
 
+@pytest.mark.slow
 def test_hosts_that_share_a_folder_propose_different_designs_and_learn_from_each_other(
     tmp_path: Path,
 ) -> None:

@@ -72,7 +72,7 @@ def test_the_yield_is_the_share_that_keeps_the_limits(
     own = solved.numbers["resonance_frequency"]
     # The frequency spreads by a few percent about its own value: half of the plates keep it.
     half = Limits(least_frequency=own)
-    made = made_of(replace(wanted, limits=half), solved, draws=64)
+    made = made_of(replace(wanted, limits=half), solved, draws=32)
     assert made.kept == pytest.approx(0.5, abs=0.2)
     assert set(made.broken) == {"resonance_frequency"}
     assert made.broken["resonance_frequency"] == round((1 - made.kept) * made.draws)

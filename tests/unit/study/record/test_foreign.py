@@ -55,7 +55,13 @@ def short(design: StudyDesign) -> StudyDesign:
 
 
 @pytest.mark.parametrize(
-    "name", ["period-jnd", "period-same-different", "coarseness-magnitude", "biet2008-gratings"]
+    "name",
+    [
+        pytest.param("period-jnd", marks=pytest.mark.slow),
+        "period-same-different",
+        "coarseness-magnitude",
+        "biet2008-gratings",
+    ],
 )
 def test_what_a_study_exports_is_read_as_what_it_recorded(name: str, tmp_path: Path) -> None:
     design = short(load_design(name))

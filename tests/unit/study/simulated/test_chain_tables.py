@@ -50,6 +50,7 @@ def numbers(found: ChainTables) -> list[Any]:
     return [*arrays, found.virtual_rhythm, found.real_rhythm, np.array(reasons)]
 
 
+@pytest.mark.slow
 def test_two_processes_one_and_the_disk_give_the_same(
     small: tuple[StudyDesign, Observer], folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -63,7 +63,13 @@ def test_what_was_found_before_a_stop_is_not_computed_again(
     assert ask() == never_stopped
 
 
-@pytest.mark.parametrize("design", [ALIKE, NUMBERS], ids=lambda one: one.task)
+@pytest.mark.parametrize(
+    "design",
+    [
+        pytest.param(ALIKE, id="same-different", marks=pytest.mark.slow),
+        pytest.param(NUMBERS, id="magnitude-estimation"),
+    ],
+)
 def test_more_people_are_more_precise(design: Any) -> None:
     found = planned_precision(
         design, EXACT, 0.15, participants=(2, 12, 40), studies=20, people=60, seed=1

@@ -72,11 +72,11 @@ def test_the_d_prime_of_each_pair_is_found_again() -> None:
 
 
 def test_the_analysis_says_that_there_is_no_weber_fraction() -> None:
-    found = analyze_answers(answers(6, 10, 5), "shapes")["biet2008-plate"]
+    found = analyze_answers(answers(3, 10, 5), "shapes")["biet2008-plate"]
     assert found.measure == MEASURE
     assert found.pooled is not None
     assert found.spread is None
-    assert [one.person for one in found.persons] == [f"p{k}" for k in range(6)]
+    assert [one.person for one in found.persons] == [f"p{k}" for k in range(3)]
     assert any("no Weber fraction" in one for one in found.notes)
     assert "no amount in common" in found.methods
     assert "false alarms (same called different)" in found.more
