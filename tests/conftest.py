@@ -78,6 +78,13 @@ def pytest_collection() -> Iterator[None]:
     finally:
         gc.enable()
         gc.freeze()
+        # A session that is played thaws everything when it ends: each collection after it would
+        # look through all that was loaded, which takes a second.
+        gc.unfreeze = _leave_frozen
+
+
+def _leave_frozen() -> None:
+    """Thaw nothing."""
 
 
 @pytest.hookimpl(optionalhook=True)
