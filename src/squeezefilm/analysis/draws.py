@@ -148,6 +148,9 @@ class Tally:
         return Refusals(count, evaluations, self.reasons, self.heights, self.example)
 
 
+# Parts of drawn displays that are kept: those of some rows of the design.
+_MOST_PARTS = 64
+
 _OF_LIFT = ("finger.contact_decay_length", "finger.decay_speed_exponent")
 _OF_BALANCE = ("finger.asperities", "finger.plateau_width", "roughness")
 
@@ -193,7 +196,7 @@ class Mixture:
         self._pressure = display.finger.plateau_pressure()
         self.paths = tuple(one.path for one in self.inputs)
         self._known: dict[bytes, Outcome] = {}
-        self._parts: dict[str, tuple[dict[str, float], Any]] = {}
+        self._parts: dict[tuple[str, frozenset[tuple[str, float]]], Any] = {}
 
     def at(self, prediction: Prediction, display: Display) -> Mixture:
         """The same inputs around another working point, of a display with another actuator."""
@@ -285,11 +288,14 @@ class Mixture:
         )
 
     def _part(self, name: str, values: dict[str, float]) -> Any:
-        """A part of the display with other values. In a design of one change at a time most parts
-        are those of the draw before."""
-        if name not in self._parts or self._parts[name][0] != values:
-            self._parts[name] = values, with_values(getattr(self.display, name), values)
-        return self._parts[name][1]
+        """A part of the display with other values, kept: in a design of one change at a time most
+        parts are those of the row's first draw."""
+        key = name, frozenset(values.items())
+        if key not in self._parts:
+            if len(self._parts) >= _MOST_PARTS:
+                self._parts.clear()
+            self._parts[key] = with_values(getattr(self.display, name), values)
+        return self._parts[key]
 
     def mode(self, draw: Draw) -> WorkingMode:
         """The working mode of a draw: as described, but for its quality factor."""

@@ -168,6 +168,7 @@ def sound_pressure(
     flat = points.reshape(-1, 3)
     omega = 2 * math.pi * surface.frequency
     strength = surface.velocity * surface.area
+    parts = np.stack([strength.real, strength.imag], axis=1)
     pressure = np.empty(len(flat), dtype=complex)
     x, y = surface.position.T
     rows = max(1, 200_000 // strength.size)  # 3 MB of complex numbers at a time
@@ -175,8 +176,11 @@ def sound_pressure(
         px, py, pz = flat[start : start + rows].T[:, :, None]
         distance = np.sqrt((px - x) ** 2 + (py - y) ** 2 + pz**2)
         si.require("distance", distance, si.Unit("m"), above=0)
-        kernel = np.exp(-1j * (omega / sound_speed) * distance) / distance
-        pressure[start : start + rows] = kernel @ strength
+        # In real numbers: the complex exponential takes several times as long.
+        phase = (omega / sound_speed) * distance
+        cosine, sine = ((wave / distance) @ parts for wave in (np.cos(phase), np.sin(phase)))
+        pressure[start : start + rows].real = cosine[:, 0] + sine[:, 1]
+        pressure[start : start + rows].imag = cosine[:, 1] - sine[:, 0]
     return (1j * omega * density / (2 * math.pi) * pressure).reshape(points.shape[:-1])
 
 

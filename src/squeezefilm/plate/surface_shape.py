@@ -259,8 +259,15 @@ def surface_shape(
 
     Without a frequency at its resonance. Only a plate solved in three dimensions changes its shape
     with the frequency (it is then solved once more), as its neighbouring modes do more or less.
-    Raises `OutOfRangeError` for a mode that has no shape over a face.
+    Raises `OutOfRangeError` for a mode that has no shape over a face. The last few are kept.
     """
+    return _surface_shape(actuator, mode, frequency)
+
+
+@functools.lru_cache(maxsize=4)
+def _surface_shape(
+    actuator: Actuator, mode: WorkingMode, frequency: si.Hertz | None
+) -> SurfaceShape:
     across = actuator.lines_across == "width"
     along: Axis = "y" if across else "x"
     half, lobe = mode.half_wavelength, mode.lobe

@@ -95,14 +95,15 @@ def shear_modes(
     *,
     degree: Annotated[int, si.AtLeast(3), si.AtMost(14)] = DEFAULT_DEGREE,
     parities: tuple[tuple[int, int], ...] | None = None,
+    with_error: bool = True,
 ) -> tuple[ShearMode, ...]:
     """The `count` modes of a free plate nearest to a frequency, in rising order.
 
     Mirror symmetry of the laminate is used where it is there; `parities` restricts the search to
     classes, e.g. ((1, 1),) for deflections even in x and y. The error estimate compares with one
-    degree less. Range: layers thin against the wavelength; ceramics on one face, shorted, perfectly
-    bonded. Raises `InputError` for bad numbers or a parity the plate does not have,
-    `ConvergenceError` if the eigenvalues do not converge.
+    degree less, and is NaN unless asked for. Range: layers thin against the wavelength; ceramics
+    on one face, shorted, perfectly bonded. Raises `InputError` for bad numbers or a parity the
+    plate does not have, `ConvergenceError` if the eigenvalues do not converge.
     """
     si.require("near", near, si.Unit("Hz"), at_least=0, at_most=FREQUENCY.most)
     layout = plate if isinstance(plate, ShearLayout) else shear_layout(plate)
@@ -123,9 +124,11 @@ def shear_modes(
                     quantity="parities",
                 )
         fine = shear_system(layout, degree, longest, parity)
-        coarse = shear_system(layout, degree - 1, longest, parity)
         squares, vectors = _eigenpairs(fine, layout, near, count)
-        rough, _ = _eigenpairs(coarse, layout, near, count + 2)
+        rough = np.array([math.nan])
+        if with_error:
+            coarse = shear_system(layout, degree - 1, longest, parity)
+            rough, _ = _eigenpairs(coarse, layout, near, count + 2)
         found += [
             _mode(fine, layout, float(s), v, rough) for s, v in zip(squares, vectors.T, strict=True)
         ]
@@ -140,17 +143,20 @@ def shear_mode(
     near: si.Hertz,
     *,
     degree: int = DEFAULT_DEGREE,
+    with_error: bool = True,
 ) -> ShearMode:
     """The mode of a label near a frequency, searched in its own symmetry class only.
 
     Of several with these nodal lines, counted by `line_counts`, the most strongly driven one is
-    taken, as of a solved plate. Raises `InputError` if none of the 36 modes nearest to `near` in
-    that class, up to a quarter of it away, has the label.
+    taken, as of a solved plate; `with_error` as `shear_modes` has it. Raises `InputError` if none
+    of the 36 modes nearest to `near` in that class, up to a quarter of it away, has the label.
     """
     layout = plate if isinstance(plate, ShearLayout) else shear_layout(plate)
     parity = layout.parity_of(nodal_lines)
     for count in _WIDTHS:
-        modes = shear_modes(layout, near, count, degree=degree, parities=(parity,))
+        modes = shear_modes(
+            layout, near, count, degree=degree, parities=(parity,), with_error=with_error
+        )
         same = [
             mode
             for mode in modes

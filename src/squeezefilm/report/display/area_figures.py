@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.quantities import FloatArray
 
-_LEVELS = 16
 _PLACE: dict[str, Any] = {
     "ms": 8,
     "color": style.PAPER,
@@ -71,6 +70,7 @@ def _title(area: ActiveArea) -> str:
 
 def _map(axes: Axes, area: ActiveArea, values: FloatArray, label: str) -> None:
     """Values by place (mm), the criteria as lines where they lie within."""
+    from matplotlib.image import NonUniformImage
     from matplotlib.ticker import MaxNLocator
 
     x, y = 1e3 * area.x, 1e3 * area.y
@@ -78,12 +78,22 @@ def _map(axes: Axes, area: ActiveArea, values: FloatArray, label: str) -> None:
     low, high = float(shown.min()), float(shown.max())
     if high - low < 1e-6 * max(abs(high), 1e-9):
         low, high = low - 0.5e-3, high + 0.5e-3
-    filled = axes.contourf(x, y, shown, levels=np.linspace(low, high, _LEVELS), cmap="cividis")
+    # An image: as areas between levels the map of a large plate takes two megabytes.
+    ends = (x[0], x[-1], y[0], y[-1])
+    filled = NonUniformImage(axes, interpolation="bilinear", extent=ends, cmap="cividis")
+    filled.set_data(x, y, shown)
+    filled.set_clim(low, high)
+    axes.add_image(filled)
+    axes.set(xlim=ends[:2], ylim=ends[2:])
     # A scale takes its room where the map leaves some: beside one that is not wide.
     side: Literal["vertical", "horizontal"] = (
         "vertical" if np.ptp(x) < 1.3 * np.ptp(y) else "horizontal"
     )
-    axes.figure.colorbar(filled, ax=axes, label=label, ticks=MaxNLocator(nbins=5), orientation=side)
+    scale = axes.figure.colorbar(
+        filled, ax=axes, label=label, ticks=MaxNLocator(nbins=5), orientation=side
+    )
+    if scale.solids is not None:
+        scale.solids.set_edgecolor("face")
     axes.grid(visible=False)
     axes.set(aspect="equal", xlabel="x of the finger's centre (mm)", ylabel="y (mm)")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 from collections.abc import Callable
@@ -15,7 +16,7 @@ from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.errors import InputError
 from squeezefilm.quantities import Unit
 from squeezefilm.report.display import page
-from squeezefilm.report.display.figures import DECISION, FIGURES, MODELS, TEXTURES
+from squeezefilm.report.display.figures import FIGURES
 from squeezefilm.report.display.page import report_page, write_analysis
 from squeezefilm.report.kit.numbers import printable, shown
 
@@ -81,14 +82,11 @@ def test_page_is_well_formed_with_all_figures(written: tuple[Path, Analysis]) ->
 
 def test_what_one_decides_from_comes_first(written: tuple[Path, Analysis]) -> None:
     text = written[0].read_text(encoding="utf-8")
-    parts = [text.index(f'id="part-{key}"') for key in ("decide", "models", "textures", "origin")]
+    parts = [text.index(f'id="part-{key}"') for key in ("decide", "models", "origin")]
     assert parts == sorted(parts)
-    first, models, textures, origin = parts
-    for figures, begins, ends in (
-        (DECISION, first, models), (MODELS, models, textures), (TEXTURES, textures, origin),
-    ):  # fmt: skip
-        for item in figures:
-            assert begins < text.index(f'id="figure-{item.key}"') < ends
+    first, models, _ = parts
+    for item in FIGURES:
+        assert first < text.index(f'id="figure-{item.key}"') < models
     order = ("Verdict", "Warnings", "Key numbers", "1. Side view", "What to measure next")
     places = [text.index(f"<h2>{heading}") for heading in order]
     assert places == sorted(places)
@@ -105,10 +103,12 @@ def test_page_refers_to_nothing_outside(written: tuple[Path, Analysis]) -> None:
     assert "@import" not in text
     reader = read(text)
     tags = {tag for tag, _ in reader.elements}
-    assert not tags & {"script", "link", "img", "iframe", "object", "embed", "image", "base"}
+    assert not tags & {"script", "link", "img", "iframe", "object", "embed", "base"}
     for tag, attrs in reader.elements:
         assert "src" not in attrs, tag
         assert (attrs.get("href") or "#").startswith("#"), tag
+        inside = "data:image/png;base64," if tag == "image" else "#"
+        assert (attrs.get("xlink:href") or inside).startswith(inside), tag
     assert all(target.startswith("#") for target in re.findall(r"url\(([^)]*)\)", text))
     policy = [a for t, a in reader.elements if t == "meta" and "http-equiv" in a]
     assert policy[0]["content"] == "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
@@ -133,8 +133,7 @@ def test_page_says_the_numbers_the_doubts_and_the_origin(written: tuple[Path, An
         shown(p.touch.free_amplitude, Unit("m"), 3),
         f"{p.squeeze_number:.4g}",
         f"{p.relative_friction:.2f}",
-        "piezoelectric_solid_3d (used)",
-        "timoshenko_beam_plane_strain",
+        "piezoelectric_solid_3d",
         "Temperature rise",
         "at a fixed 33.57 kHz",
     ):
@@ -163,18 +162,41 @@ def test_json_is_strict_and_carries_curves_and_description(
     assert set(curves) == {
         "response",
         "friction",
-        "chain",
-        "texture",
         "fidelity",
         "active_area",
         "band",
     }
     assert len(curves["response"]["frequency_Hz"]) == 200
-    trace = curves["texture"]
-    assert 1000 < len(trace["position_m"]) <= 4000
-    step = trace["time_s"][1] - trace["time_s"][0]
-    assert step * trace["sample_rate_Hz"] == pytest.approx(1)
     assert data["display_description"]["actuator"]["length_m"] == 0.083
+
+
+@pytest.mark.slow
+def test_what_each_value_does_and_other_theories_are_there_where_asked_for(
+    plate_analysis: Analysis,
+) -> None:
+    drawn = dict.fromkeys(FIGURE_KEYS, "<svg></svg>")
+
+    def told(**asked: Any) -> tuple[dict[str, Any], bool, bool]:
+        analysis = dataclasses.replace(plate_analysis, **asked)
+        summary = analysis.summary()
+        text = report_page(analysis, summary, drawn)
+        theories = "piezoelectric_solid_3d (used)" in text
+        return summary, "<h2>What each value does" in text, theories
+
+    summary, *shown = told()
+    assert shown == [False, False]
+    assert summary["sensitivities"] is None
+    assert summary["other_models"] is None
+    assert len(summary["felt"]["by_speed"]) == 1
+    summary, *shown = told(effort="quick")
+    assert shown == [True, False]
+    assert summary["other_models"] is None
+    rows = summary["sensitivities"]["rows"]
+    summary, *shown = told(whole=True)
+    assert shown == [True, True]
+    assert summary["sensitivities"]["rows"] == rows
+    assert summary["other_models"]
+    assert len(summary["felt"]["by_speed"]) > 1
 
 
 @pytest.mark.slow
@@ -191,9 +213,8 @@ def test_names_are_text_and_nothing_else(hostile_analysis: Analysis, folder: Pat
 @pytest.mark.slow
 def test_a_display_that_renders_nothing_still_has_a_report(analysis_of: Any, folder: Path) -> None:
     path = write_analysis(analysis_of("no-voltage"), folder)
-    assert "No texture can be rendered here" in path.read_text(encoding="utf-8")
+    assert "Finest grating" not in path.read_text(encoding="utf-8")
     data = json.loads((folder / "result.json").read_text("utf-8"))
-    assert data["curves"]["texture"] is None
     assert data["curves"]["fidelity"] is None
 
 
