@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 # One worker: the page is made once.
 pytestmark = [pytest.mark.slow, pytest.mark.chromium]
 
-FIGURES = ("layout", "mode", "area", "response", "band", "chain", "films", "texture", "fidelity")
+FIGURES = ("layout", "mode", "area", "response", "band")
 
 
 @pytest.fixture(

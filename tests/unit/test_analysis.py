@@ -98,9 +98,8 @@ def test_the_verdict_speaks_of_validation_and_of_assumptions(plate: Analysis) ->
 
 
 @pytest.mark.slow
-def test_a_display_that_does_not_vibrate_has_no_texture() -> None:
+def test_a_display_that_does_not_vibrate_keeps_no_grating() -> None:
     still = analyze(load_display("biet2008-stator"), voltage=0.0)
-    assert still.texture is None
     assert still.fidelity is None
     json.dumps(still.summary(), allow_nan=False)
 

@@ -15,10 +15,8 @@ from squeezefilm.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.analysis.curves import (
     FrequencyResponse,
     FrictionCurve,
-    ModelCurve,
     frequency_response,
     friction_curve,
-    model_curves,
 )
 from squeezefilm.analysis.drawn import description_of
 from squeezefilm.analysis.ears import EarExposure, ear_exposure
@@ -38,8 +36,6 @@ from squeezefilm.analysis.sensitivities import (
     display_sensitivities,
 )
 from squeezefilm.analysis.textures import (
-    TextureSurvival,
-    along_a_stroke,
     survival_by_drive,
     what_survives,
 )
@@ -69,8 +65,7 @@ from squeezefilm.kept.store import Kept
 from squeezefilm.plate.electronics import ElectricalLoad, load_of_mode
 from squeezefilm.plate.working_mode import PlateTheory
 from squeezefilm.progress import Deadline, Pace, SayProgress, said_with_time_left
-from squeezefilm.render.fidelity.survival import FidelityTable
-from squeezefilm.render.fidelity.trace import FrictionTrace
+from squeezefilm.render.fidelity.survival import EXPLORING_SPEEDS, FidelityTable
 from squeezefilm.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.second_process import later, values
@@ -81,7 +76,7 @@ BAND_POINTS, BAND_SAMPLES = 9, 64
 BAND_REACH = 1.5
 """How far the band goes, in vibration amplitudes: beyond, draws are pressed through."""
 
-KEPT = ("sensitivities", "ears", "friction_curves", "model_curves", "other_models")
+KEPT = ("sensitivities", "ears", "friction_curves", "other_models")
 """Properties that take tenths of a second to seconds, kept on disk (`Analysis.compute`)."""
 
 _GRATINGS: Kept[FidelityTable] = Kept("gratings", FidelityTable)
@@ -95,7 +90,9 @@ class Analysis(Result):
     """Everything `squeezefilm analyze` knows of a display at one working point.
 
     Its fields are what one decides from. What stands beside it for comparison (other models, curves
-    of the paper, textures along a stroke) is a property, computed when it is first asked for.
+    of the paper) is a property, computed when it is first asked for.
+    Summary and report hold what each value does where an `effort` was asked for, and that and other
+    theories of the plate where it is `whole`.
     """
 
     display: Display
@@ -108,7 +105,8 @@ class Analysis(Result):
     fidelity: FidelityTable | None
     verdict: tuple[Finding, ...]
     wanted: Wanted | None = None
-    effort: Effort = "quick"
+    effort: Effort | None = None
+    whole: bool = False
     _shown: ClassVar[str] = (
         "display.name prediction.model prediction.voltage prediction.frequency "
         "prediction.vibration_amplitude prediction.relative_friction uncertainty.interval "
@@ -175,10 +173,11 @@ class Analysis(Result):
 
     @functools.cached_property
     def felt(self) -> FeltGratings | None:
-        """The finest grating that is felt, by finger speed; about a second, when first asked for.
-        Without an interval of the friction this has none either."""
+        """The finest grating that is felt at the prediction's finger speed, at others too where the
+        analysis is `whole`. Without an interval of the friction this has none either."""
         draws = 0 if self.uncertainty is None else FELT_DRAWS
-        return felt_gratings(self.display, self.prediction, draws=draws)
+        speeds = EXPLORING_SPEEDS if self.whole else ()
+        return felt_gratings(self.display, self.prediction, draws=draws, speeds=speeds)
 
     @functools.cached_property
     def sensitivities(self) -> DisplaySensitivities | None:
@@ -186,18 +185,18 @@ class Analysis(Result):
         second, or twice a solve for each value; None where nothing vibrates."""
         if self.prediction.touch.law is None:
             return None
-        return display_sensitivities(self.display, self.prediction, self.effort)
+        return display_sensitivities(self.display, self.prediction, self.effort or "quick")
+
+    @property
+    def has_sensitivities(self) -> bool:
+        """Whether summary and report hold what each value does."""
+        return self.whole or self.effort is not None
 
     @functools.cached_property
     def drive_electronics(self) -> ElectricalLoad | None:
         """What the plate asks of its amplifier; None where no admittance was solved."""
         p = self.prediction
         return load_of_mode(self.display.actuator, p.mode, p.voltage, p.frequency)
-
-    @functools.cached_property
-    def model_curves(self) -> tuple[ModelCurve, ...]:
-        """Friction against amplitude by every model."""
-        return model_curves(self.prediction)
 
     @functools.cached_property
     def other_models(self) -> tuple[OtherModel, ...]:
@@ -208,16 +207,6 @@ class Analysis(Result):
     def measured(self) -> tuple[MeasuredBeside, ...]:
         """What was measured of the real display beside what is computed; empty for nothing."""
         return measured_beside(self.display, self.prediction)
-
-    @functools.cached_property
-    def texture(self) -> FrictionTrace | None:
-        """A stroke over a square grating; None where the amplitude changes no friction."""
-        return along_a_stroke(self.prediction, self.envelope_time_constant)
-
-    @functools.cached_property
-    def survival(self) -> TextureSurvival | None:
-        """Which grating survives at which speed; None where no voltage makes an amplitude."""
-        return survival_by_drive(self.display, self.prediction)
 
     def compute(self, names: Sequence[str], tell: SayProgress) -> None:
         """Compute the properties of some names, the longest first, with a second process where
@@ -249,6 +238,8 @@ class Analysis(Result):
     def summary(self) -> dict[str, Any]:
         """The numbers, with units in the keys: what ``--json`` prints."""
         p, unsure = self.prediction, self.uncertainty
+        survival = survival_by_drive(self.display, p)
+        shifts = self.sensitivities if self.has_sensitivities else None
         return {
             **p.summary(),
             "active_area": None if self.active_area is None else self.active_area.summary(),
@@ -260,7 +251,7 @@ class Analysis(Result):
             "wanted": None if self.wanted is None else self.wanted.summary(),
             "felt": None if self.felt is None else self.felt.summary(),
             "sound_at_ear": to_json(self.ears),
-            "sensitivities": None if self.sensitivities is None else self.sensitivities.summary(),
+            "sensitivities": None if shifts is None else shifts.summary(),
             "envelope_bandwidth_Hz": self.envelope_bandwidth,
             "finest_period_m": self.finest_period(),
             "finest_period_keeps": None
@@ -270,10 +261,10 @@ class Analysis(Result):
                 "fundamental": self.fidelity.fundamental_at_limit,
             },
             "compensation_speed_gain": None
-            if self.survival is None
+            if survival is None
             else {
                 law.name: gain
-                for law, gain in zip(self.survival.laws, self.survival.gain.tolist(), strict=True)
+                for law, gain in zip(survival.laws, survival.gain.tolist(), strict=True)
             },
             "friction_criterion": [
                 {
@@ -284,7 +275,7 @@ class Analysis(Result):
                 }
                 for curve in self.friction_curves
             ],
-            "other_models": to_json(self.other_models),
+            "other_models": to_json(self.other_models) if self.whole else None,
             "measured": [to_json(one) | {"difference": one.difference} for one in self.measured],
             "drive_electronics": to_json(self.drive_electronics),
             "verdict": to_json(self.findings),
@@ -309,7 +300,8 @@ def analyze(
     strict: bool = False,
     samples: int = SAMPLES,
     wanted_friction: WantedFriction | None = None,
-    sensitivities: Effort = "quick",
+    sensitivities: Effort | None = None,
+    whole: bool = False,
     progress: SayProgress | None = None,
     budget: si.Second | None = None,
 ) -> Analysis:
@@ -317,14 +309,16 @@ def analyze(
 
     Arguments and errors are those of `prediction.predict`; `samples` (0: none) is the base of the
     uncertainty's design, see `uncertain_friction`; `wanted_friction` asks for the voltage that
-    reaches it, `sensitivities` how a plate with one thing different is computed, see
-    `display_sensitivities`; `progress` is told each step. With a `budget` (s) half of it bounds the
-    plate's solve, and the interval and the other films are left out where nothing is left for them:
-    what is missing is said.
+    reaches it, `sensitivities` what each value does, and how a plate with one thing different is
+    computed for that, see `display_sensitivities`; `whole` puts that and other theories of the
+    plate into summary and report; `progress` is told each step. With a `budget` (s) half of it
+    bounds the plate's solve, and the interval and the other films are left out where nothing is
+    left for them: what is missing is said.
     """
     if budget is not None:
         si.require("budget", budget, si.Unit("s"), above=0)
-    si.require_one_of("sensitivities", sensitivities, get_args(Effort))
+    if sensitivities is not None:
+        si.require_one_of("sensitivities", sensitivities, get_args(Effort))
     tell = progress or (lambda _: None)
     deadline = Pace(budget).deadline()
     tell("resonance, amplitude and friction")
@@ -344,12 +338,12 @@ def analyze(
     )
     found = _what_follows(display, prediction, samples, tell, deadline)
     if wanted_friction is None:
-        return dataclasses.replace(found, effort=sensitivities)
+        return dataclasses.replace(found, effort=sensitivities, whole=whole)
     tell("the voltage for the friction wanted")
     wanted = friction_wanted(
         display, prediction, wanted_friction, samples=samples, strict=False, progress=tell
     )
-    return dataclasses.replace(found, wanted=wanted, effort=sensitivities)
+    return dataclasses.replace(found, wanted=wanted, effort=sensitivities, whole=whole)
 
 
 def _intervals(unsure: UncertainFriction | None) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -104,9 +104,10 @@ def felt_gratings(
     prediction: Prediction,
     *,
     draws: int = DRAWS,
+    speeds: tuple[Annotated[si.MetrePerSecond, si.Above(0.0)], ...] = EXPLORING_SPEEDS,
 ) -> FeltGratings | None:
     """The finest gratings that are felt where a prediction was made, at the prediction's finger
-    speed and at `EXPLORING_SPEEDS`.
+    speed and at others.
 
     `draws` is a power of two (0: no interval); the observer is the preset "fingertip". None where
     nothing vibrates. Raises what the friction's law raises at the amplitude.
@@ -123,7 +124,7 @@ def felt_gratings(
         return np.asarray(p.friction(amplitude, np.full(amplitude.shape, speed)))
 
     base, pad = p.friction_coefficient * p.normal_force, display.finger.fingerpad
-    nominal, speeds = [], tuple(sorted({p.speed, *EXPLORING_SPEEDS}))
+    nominal, speeds = [], tuple(sorted({p.speed, *speeds}))
     for speed in speeds:
         law = functools.partial(described, speed=speed)
         nominal.append(_finest(senses, tau, p.vibration_amplitude, law, Rubbed(base, pad, speed)))

@@ -13,8 +13,6 @@ from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import InputError
 from squeezefilm.render.fidelity.survival import FidelityTable, fidelity_table
-from squeezefilm.render.fidelity.trace import FrictionTrace, friction_trace
-from squeezefilm.render.motion.stroke import Stroke
 from squeezefilm.render.resonator.compensation import (
     DrivenEnvelope,
 )
@@ -24,8 +22,6 @@ from squeezefilm.render.resonator.square_swing import (
     least_cycle,
     square_fundamental_compensated,
 )
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.shapes import SquareWave
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,21 +140,8 @@ def survival_by_drive(display: Display, prediction: Prediction) -> TextureSurviv
     return texture_survival(display.name, driven_envelope(prediction))
 
 
-def along_a_stroke(prediction: Prediction, tau: si.Second) -> FrictionTrace | None:
-    """A stroke over a square grating; None where the amplitude changes no friction."""
-    high = prediction.vibration_amplitude
-    if not _changes_friction(prediction):
-        return None
-    grating = Amplitude(SquareWave(2e-3), low=0.0, high=high)
-    return friction_trace(grating, Stroke(speed=0.1), tau, prediction.friction)
-
-
 def what_survives(prediction: Prediction, tau: si.Second) -> FidelityTable | None:
     """Which grating survives at which speed; None where the amplitude changes no friction."""
-    if not _changes_friction(prediction):
+    if prediction.relative_friction == 1 or prediction.vibration_amplitude == 0:
         return None
     return fidelity_table(tau, prediction.friction, low=0.0, high=prediction.vibration_amplitude)
-
-
-def _changes_friction(prediction: Prediction) -> bool:
-    return prediction.relative_friction != 1 and prediction.vibration_amplitude != 0

@@ -36,7 +36,7 @@ from squeezefilm.kept.store import Kept
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
 
-SAMPLES, POINTS = 32, 4
+SAMPLES, POINTS = 16, 8
 """Base samples where none are asked for, and how many points make the interval for each: chosen by
 `tests/verification/test_uncertainty_coverage.py`."""
 
@@ -152,7 +152,7 @@ def uncertain_friction(
 ) -> UncertainFriction:
     """A prediction's friction with all that is uncertain drawn at once.
 
-    What is drawn, and with which weights, says `draws.Mixture`. The interval is that of 4 × samples
+    What is drawn, and with which weights, says `draws.Mixture`. The interval is that of 8 × samples
     Sobol' points (`samples` a power of two, 8 to 65 536). The influences are by Saltelli's design,
     in which a law is drawn by a uniform coordinate as a value is: at most samples × (inputs + 4)
     more, less for inputs that explain next to nothing in the first rows. Source: Saltelli et al.

@@ -103,7 +103,7 @@ class PointOptions:
     place: OnPlace = None
     samples: Annotated[
         int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
-    ] = 32
+    ] = 16
     wanted_friction: Annotated[
         str | None,
         In("1"),
@@ -124,9 +124,8 @@ class AnalyzeOptions(PointOptions):
     sensitivities: Annotated[
         str | None,
         typer.Option(
-            help="Print how much each value changes the result. quick: by a beam model, a second "
-            "for all values (as --all and the report have it); solved: in three dimensions, two "
-            "solves a value."
+            help="Say how much each value changes the result. quick: by a beam model, seconds for "
+            "all values (as --all has it); solved: in three dimensions, two solves a value."
         ),
     ] = None
     theory: Annotated[
@@ -140,7 +139,11 @@ class AnalyzeOptions(PointOptions):
     budget: Budget = None
     whole: Annotated[
         bool,
-        typer.Option("--all", help="Print warnings in full, and what other models say."),
+        typer.Option(
+            "--all",
+            help="Print warnings in full; there and in the report: what each value does and what "
+            "other models say.",
+        ),
     ] = False
 
 
@@ -171,9 +174,8 @@ def analyze(asked: AnalyzeOptions) -> None:
         with loading():
             from squeezefilm.analysis.analyze import analyze as run
             from squeezefilm.report.display.terminal import SHOWN, SHOWN_WITH_ALL, show_analysis
-        options = given(asked, leave="target out as_json whole")
+        options = given(asked, leave="target out as_json")
         with_shifts = asked.sensitivities is not None
-        options["sensitivities"] = asked.sensitivities or "quick"
         result = run(display, **options, progress=step)
         written = None
         if asked.out is None and not asked.as_json:

@@ -87,11 +87,11 @@ def _of_session(draw: _Draw) -> _Draw:
     return lambda result: draw(result.session)
 
 
-_PLAYED = _by_key(played.FIGURES)
+_ANALYSIS, _PLAYED = _by_key(FIGURES), _by_key(played.FIGURES)
 
 SUBJECTS: Mapping[type, _Subject] = {
     Prediction: _Subject({"friction": lambda one: friction.predictions([one])}),
-    Analysis: _Subject({"chain": friction.chain, **_by_key(FIGURES)}, write_analysis),
+    Analysis: _Subject({"band": _ANALYSIS["band"], **_ANALYSIS}, write_analysis),
     FrictionAnalysis: _Subject(_by_key(friction.FIGURES), friction.write_friction),
     FilmAnswer: _Subject({"pressure": film_map.film_pressure}),
     FilmMap: _Subject({"map": film_map.film_map}, film_map.write_film_map),

@@ -119,9 +119,9 @@ def test_an_analysis_is_the_displays_own_unless_asked(analysis: SimpleNamespace)
     assert analysis.asked.given == (load_display(DISPLAY),)
     assert analysis.asked.named == {
         "voltage": None, "frequency": None, "vibration_amplitude": None, "normal_force": None,
-        "surface": None, "samples": 32, "wanted_friction": None, "sensitivities": "quick",
+        "surface": None, "samples": 16, "wanted_friction": None, "sensitivities": None,
         "theory": None, "model": None, "strict": False,
-        "speed": None, "budget": None, "place": None,
+        "speed": None, "budget": None, "place": None, "whole": False,
     }  # fmt: skip
     assert analysis.shown.given == (ANSWER,)
     assert analysis.shown.named == {"whole": False, "sensitivities": False}
@@ -145,7 +145,7 @@ def test_every_option_of_an_analysis_arrives(analysis: SimpleNamespace, tmp_path
         "normal_force": 0.3, "surface": "copper", "samples": 8, "wanted_friction": 0.5,
         "sensitivities": "solved", "theory": "timoshenko",
         "model": "levitation-2016", "speed": pytest.approx(0.05), "strict": True, "budget": 120.0,
-        "place": None,
+        "place": None, "whole": True,
     }  # fmt: skip
     assert analysis.written.given == (ANSWER, tmp_path)
     assert analysis.shown.named == {"whole": True, "sensitivities": True}

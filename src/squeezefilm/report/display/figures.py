@@ -11,16 +11,14 @@ from squeezefilm.report.display import (
     friction_figures,
     layout_figures,
     plate_figures,
-    texture_figures,
 )
-from squeezefilm.report.friction import figures as friction_report
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.page_style import FigureOf
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
 
-DECISION: tuple[FigureOf, ...] = (
+FIGURES: tuple[FigureOf, ...] = (
     FigureOf(
         "layout",
         "Side view and layout",
@@ -60,50 +58,7 @@ DECISION: tuple[FigureOf, ...] = (
         needs=("band", "own_curves"),
     ),
 )
-"""What one decides from."""
-
-MODELS: tuple[FigureOf, ...] = (
-    FigureOf(
-        "chain",
-        "Friction by every model",
-        friction_report.chain,
-        "The same finger by every model that can be asked for. The default is fitted to measured "
-        "curves; the paper's closed form, the levitation published in 2016 and partial levitation, "
-        "where film and asperities share the load, are not.",
-        needs=("model_curves",),
-    ),
-)
-"""What other models say."""
-
-TEXTURES: tuple[FigureOf, ...] = (
-    FigureOf(
-        "texture",
-        "A texture under the moving finger",
-        texture_figures.texture,
-        "Amplitude and friction along a stroke over a square grating: as wanted, and as the "
-        "resonator lets them through.",
-        needs=("texture",),
-    ),
-    FigureOf(
-        "fidelity",
-        "Which texture survives at which finger speed",
-        texture_figures.fidelity,
-        "The share of its swing that a grating keeps, peak to peak: of the amplitude in large "
-        "print. In small print the share of its fundamental, the wave of its own period, which "
-        "rounded edges lose first; then both of the friction.",
-    ),
-    FigureOf(
-        "survival",
-        "Which period survives at which speed, compensated or not",
-        texture_figures.survival,
-        "The finest square grating that keeps 90 % of a swing to 0.8 of the full amplitude, peak "
-        "to peak; the legend says how much of its fundamental that leaves.",
-        needs=("survival",),
-    ),
-)
-"""What a texture becomes along a stroke."""
-
-FIGURES = (*DECISION, *MODELS, *TEXTURES)
+"""What one decides from, in the order of the page."""
 
 
 def prepare() -> None:

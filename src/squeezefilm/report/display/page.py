@@ -2,24 +2,15 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from squeezefilm import quantities as si
 from squeezefilm.kept.store import Kept
-from squeezefilm.report.display.figures import (
-    DECISION,
-    FIGURES,
-    MODELS,
-    TEXTURES,
-    drawing_of,
-)
+from squeezefilm.report.display.figures import FIGURES, drawing_of
 from squeezefilm.report.display.rows import (
     decision_rows,
     more_rows,
@@ -39,7 +30,6 @@ from squeezefilm.report.kit.model_rows import (
 )
 from squeezefilm.report.kit.numbers import display_values
 from squeezefilm.report.kit.page_style import (
-    FigureOf,
     as_html,
     bullets,
     figure_section,
@@ -58,20 +48,12 @@ from squeezefilm.second_process import later, start_second_process, values
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.verdict import Finding
-    from squeezefilm.render.fidelity.trace import FrictionTrace
 
-# More samples of a trace than a reader can use would make megabytes of text.
-_MOST_SAMPLES = 4000
 # What stands beside an analysis for comparison, each computed by itself.
 _BESIDE = (
-    "survival",
     "ears",
     "band",
-    "sensitivities",
     "friction_curves",
-    "model_curves",
-    "other_models",
-    "texture",
     "response",
     "felt",
 )
@@ -91,7 +73,9 @@ def write_analysis(
     disk. Raises `InputError` where the folder cannot be written to.
     """
     folder, tell = require_folder(folder), progress or (lambda _: None)
-    analysis.compute(_BESIDE, tell)
+    asked = ("sensitivities",) if analysis.has_sensitivities else ()
+    more = ("other_models",) if analysis.whole else ()
+    analysis.compute((*_BESIDE, *asked, *more), tell)
     summary = analysis.summary()
     data = result_data(analysis, summary)
     tell("figures")
@@ -127,26 +111,11 @@ def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
             "response": analysis.response,
             "friction": analysis.friction_curves,
             "band": analysis.band,
-            "chain": analysis.model_curves,
-            "texture": None if analysis.texture is None else _trace(analysis.texture),
             "fidelity": analysis.fidelity,
             "active_area": None if analysis.active_area is None else analysis.active_area.area,
         },
         "display_description": analysis.display,
     }
-
-
-def _trace(trace: FrictionTrace) -> dict[str, Any]:
-    """A trace with every so many samples only, and its sample rate changed to match."""
-    every = -(-trace.time.size // _MOST_SAMPLES)
-    arrays: dict[str, Any] = {}
-    for field in dataclasses.fields(trace):
-        value = getattr(trace, field.name)
-        if isinstance(value, np.ndarray):
-            arrays[field.name] = value[::every]
-    thin = dataclasses.replace(trace, sample_rate=trace.sample_rate / every, **arrays)
-    data: dict[str, Any] = to_json(thin)
-    return {**data, "kept_one_sample_in": every, "lag_m": trace.lag}
 
 
 def report_page(
@@ -160,30 +129,26 @@ def report_page(
     ready = drawn or _figures(analysis, result_data(analysis, summary))
     display = analysis.display
     title, name = as_html(display.title), as_html(display.name)
-
-    def shown(figures: tuple[FigureOf, ...]) -> Iterator[str]:
-        for item in figures:
-            heading = f"{FIGURES.index(item) + 1}. {item.heading}"
-            yield figure_section(item, heading, ready[item.key])
-
+    has_shifts = analysis.has_sensitivities
+    figures = (
+        figure_section(item, f"{number}. {item.heading}", ready[item.key])
+        for number, item in enumerate(FIGURES, 1)
+    )
     parts = [
         part("decide", "To decide from", _INTRODUCTION),
         section("Verdict", _findings(analysis.findings)),
         section("Warnings", _warnings(analysis)),
         section("Key numbers", _key_numbers(analysis)),
-        *shown(DECISION),
+        *figures,
         section("Drive electronics", _electronics(analysis)),
         section("What to measure next", _measure_next(analysis)),
-        part("models", "Appendix: other models", _aside(analysis)),
-        *shown(MODELS),
+        part("models", "Appendix: models", _aside(analysis)),
         section("How far the film's model is from where it holds", _validity(analysis)),
         section("Models", _models(analysis)),
-        part("textures", "Appendix: textures through the resonator", _TEXTURES),
-        *shown(TEXTURES),
         part("origin", "Appendix: where the numbers come from", ""),
         section("More numbers", text_table("Beside the key numbers", _HEAD, more_rows(analysis))),
         section("How sure the friction is", _how_sure(analysis)),
-        section("What each value does", _sensitivities(analysis)),
+        *([section("What each value does", _sensitivities(analysis))] if has_shifts else []),
         section("Where the values come from", _provenance(analysis)),
     ]
     stamp = summary["provenance"]
@@ -202,20 +167,18 @@ def report_page(
 _HEAD = ("Quantity", "Value", "Remark")
 _INTRODUCTION = (
     "This part is by one model each for plate, film and friction. "
-    '<a href="#part-models">Other models</a>, <a href="#part-textures">textures</a> and '
-    '<a href="#part-origin">where the values come from</a> follow in the appendix.'
+    '<a href="#part-models">Models</a> and <a href="#part-origin">where the values come from</a> '
+    "follow in the appendix."
 )
-_TEXTURES = "The resonator's envelope in an open loop; friction follows the amplitude at once."
 
 
 def _aside(analysis: Analysis) -> str:
-    """What to remember while reading what other models say."""
+    """What to remember while reading about models."""
     p = analysis.prediction
     return (
         f"The verdict's friction of {p.relative_friction:.2f} is by "
-        f"<code>{escape(p.model)}</code>. What follows is by the models that each figure names, "
-        "for comparison: none of it is in the verdict. "
-        "<code>squeezefilm reproduce</code> draws the paper's own figures."
+        f"<code>{escape(p.model)}</code>. <code>squeezefilm friction --out</code> draws it beside "
+        "every other model, <code>squeezefilm reproduce</code> the paper's own figures."
     )
 
 
@@ -318,6 +281,8 @@ def _models(analysis: Analysis) -> str:
     model = analysis.prediction.model
     used += f"\n<h3>{escape(MISSED_HEADING.format(model))}</h3>\n"
     used += bullets(missed_directions(model, why=True))
+    if not analysis.whole:
+        return f"{used}\n<p><code>--all</code> adds the same plate by other theories.</p>"
     if not analysis.other_models:
         return used
     rows = [

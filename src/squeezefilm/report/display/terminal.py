@@ -35,7 +35,7 @@ _KINDS = {"good": "good ", "limit": "limit", "doubt": "doubt"}
 _STYLES = {"good": "green", "limit": "cyan", "doubt": "yellow"}
 
 SHOWN = ("ears", "felt")
-SHOWN_WITH_ALL = ("ears", "sensitivities", "other_models", "texture", "felt")
+SHOWN_WITH_ALL = ("ears", "sensitivities", "other_models", "felt")
 """What of an analysis is computed for the terminal."""
 
 # Letters of a warning where it is not asked for in full: three lines of a terminal.

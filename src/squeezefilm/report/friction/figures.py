@@ -20,10 +20,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.analysis.curves import ModelCurve
     from squeezefilm.analysis.friction.command import FrictionAnalysis
-    from squeezefilm.analysis.uncertainty import UncertainFriction
     from squeezefilm.chain.friction import FrictionLaw
     from squeezefilm.chain.prediction import Prediction
 
@@ -52,20 +49,8 @@ _NAMES_OF_PARAMETERS = {
 
 @style.drawn
 def models(result: FrictionAnalysis) -> Figure:
-    """Every model on one plot."""
-    return _models(result.curves, result.prediction, result.uncertainty)
-
-
-@style.drawn
-def chain(analysis: Analysis) -> Figure:
-    """The same plot for a whole analysis."""
-    return _models(analysis.model_curves, analysis.prediction, analysis.uncertainty)
-
-
-def _models(
-    curves: tuple[ModelCurve, ...], p: Prediction, unsure: UncertainFriction | None
-) -> Figure:
     """Every model's µ′/µ against amplitude, the working point with its interval."""
+    curves, p, unsure = result.curves, result.prediction, result.uncertainty
     said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
     figure = style.new_figure(
         f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(p.surface.name, 20)} {said}: the "

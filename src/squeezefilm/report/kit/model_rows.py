@@ -25,8 +25,8 @@ def models(analysis: Analysis) -> list[tuple[str, str]]:
         ("Vibration amplitude", p.amplitude_model),
         ("Pressure and friction", p.model),
     ]
-    if analysis.texture is not None:
-        rows.append(("Envelope and textures", analysis.texture.model))
+    if analysis.fidelity is not None:
+        rows.append(("Envelope and textures", analysis.fidelity.model))
     return rows
 
 

@@ -17,7 +17,7 @@ from squeezefilm.analysis.friction.wanted import (
     uncertain_voltage,
     wanted_friction,
 )
-from squeezefilm.analysis.uncertainty import sobol_points
+from squeezefilm.analysis.uncertainty import POINTS, sobol_points
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import OutOfRangeError, UnreachableError
@@ -38,7 +38,7 @@ def test_at_its_voltage_each_draw_has_the_friction(
 ) -> None:
     mixture = Mixture(stator, point, driven=True)
     scale = FreeAmplitude(stator, point)
-    points = sobol_points(mixture, 32, 1)
+    points = sobol_points(mixture, 8 * POINTS, 1)
     checked = 0
     for draw, volts in zip(mixture.draws(points), half.voltages, strict=True):
         if not np.isfinite(volts):
@@ -47,7 +47,7 @@ def test_at_its_voltage_each_draw_has_the_friction(
         free = scale(draw.display) * volts / point.voltage
         assert outcome_of(mixture, draw, free).friction == pytest.approx(0.5, abs=2e-3)
         checked += 1
-    assert checked >= 28
+    assert checked >= 7 * POINTS
 
 
 def test_as_many_reach_it_at_the_drives_voltage_as_lie_below_it_there(
@@ -55,7 +55,7 @@ def test_as_many_reach_it_at_the_drives_voltage_as_lie_below_it_there(
 ) -> None:
     """The interval of the voltage and that of the friction are of the same draws."""
     mixture = Mixture(stator, point, driven=True)
-    drawn, _ = evaluate(mixture, sobol_points(mixture, 32, 1), lambda _: None)
+    drawn, _ = evaluate(mixture, sobol_points(mixture, 8 * POINTS, 1), lambda _: None)
     assert 1 - half.beyond == pytest.approx(np.mean(drawn.friction <= 0.5))
     assert half.limit == stator.drive.voltage
     low, high = half.interval

@@ -26,7 +26,6 @@ from squeezefilm.display import load_display
 from squeezefilm.distributions import Uniform
 from squeezefilm.quantities import Unit
 from squeezefilm.report.friction.figures import (
-    chain,
     friction_map,
     models,
     predictions,
@@ -145,9 +144,8 @@ def test_the_working_point_stands_on_its_interval() -> None:
     assert words(figure.get_supxlabel()) == "Model: as in the legend; 0.4 N"
 
 
-def test_without_an_interval_the_point_stands_alone_and_a_whole_analysis_is_drawn_alike() -> None:
-    analysis: Any = SimpleNamespace(model_curves=CURVES, prediction=POINT, uncertainty=None)
-    figure = chain(analysis)
+def test_without_an_interval_the_point_stands_alone() -> None:
+    figure = models(without(uncertainty=None))
     axes = figure.axes[0]
     assert "this display, partial-levitation: 0.62" in labelled(axes)
     assert len(axes.get_lines()) == 4
