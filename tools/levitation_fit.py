@@ -3,8 +3,10 @@
     python tools/levitation_fit.py
 
 prints the two numbers of each person (decay length and friction at rest), those of the seventy
-strokes, the defaults of `contact.finger.fingertip` that follow, and how a person who was left out
-is predicted from the others, beside the mean and spread of the others without physics.
+strokes, the defaults of `contact.finger.fingertip` and `contact.finger.people` that follow; how a
+person who was left out is predicted from the others, beside the mean and spread of the others
+without physics; and how the log-normal population predicts a stroke beside a resample of the
+strokes.
 """
 
 from __future__ import annotations
@@ -14,18 +16,20 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.stats import gaussian_kde, multivariate_normal
 
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionLaw, friction_law
-from squeezefilm.contact.finger.fingertip import DECAY_SPEED
+from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.display import load_display
 from squeezefilm.measure.fits.friction.friction_scores import rest_friction
+from squeezefilm.measure.fits.friction.person import PersonFit, fitted_person, with_decay_length
 from squeezefilm.measure.recordings.kinds import FrictionCurve, FrictionDecays
 from squeezefilm.measure.recordings.read import check_folder
 
 FREE_STROKES_SPEED = 0.1
+REFERENCE_SPEED = Finger.decay_speed
 FREE_STROKES_FORCE = 0.5
 _LENGTHS = np.geomspace(0.3e-6, 100e-6, 120)
 
@@ -39,36 +43,9 @@ def law_of(display: str, frequency: float, force: float, speed: float) -> Fricti
     return friction_law(described, half, frequency, normal_force=force, speed=speed)
 
 
-def with_length(law: FrictionLaw, length: float) -> FrictionLaw:
-    """The law of another decay length (m)."""
-    finger = dataclasses.replace(law.finger, contact_decay_length=length)
-    return dataclasses.replace(law, finger=finger)
-
-
-def fitted(curve: FrictionCurve, law: FrictionLaw) -> tuple[float, float, float]:
-    """Decay length (m) and friction at rest that are nearest to a curve, and the root mean square
-    of what is left over the friction at rest."""
-
-    def scaled(length: float) -> tuple[float, si.FloatArray]:
-        shape = with_length(law, length).curve(curve.vibration_amplitude)
-        rest = float(shape @ curve.friction / (shape @ shape))
-        return rest, rest * shape
-
-    def error(log_length: float) -> float:
-        return float(np.sum((scaled(math.exp(log_length))[1] - curve.friction) ** 2))
-
-    logs = np.log(_LENGTHS)
-    near = int(np.argmin([error(log) for log in logs]))
-    ends = logs[max(near - 1, 0)], logs[min(near + 1, logs.size - 1)]
-    length = math.exp(minimize_scalar(error, bounds=ends, method="bounded").x)
-    rest, model = scaled(length)
-    left = math.sqrt(np.mean((model - curve.friction) ** 2)) / rest
-    return length, rest, left
-
-
 def half_friction_length(law: FrictionLaw, amplitude: float) -> float:
     """The decay length (m) with which friction has fallen to a half at an amplitude (m)."""
-    lengths = [with_length(law, length).at(amplitude) for length in _LENGTHS]
+    lengths = [with_decay_length(law, length).at(amplitude) for length in _LENGTHS]
     return float(np.exp(np.interp(0.5, lengths, np.log(_LENGTHS))))
 
 
@@ -86,7 +63,7 @@ def left_out(
         wide = spread * math.sqrt(1 + 1 / len(others))
         nodes, weights = np.polynomial.hermite.hermgauss(31)
         draws = np.exp(middle + wide * np.sqrt(2) * nodes)
-        model = np.array([with_length(law, float(one)).curve(amplitude) for one in draws])
+        model = np.array([with_decay_length(law, float(one)).curve(amplitude) for one in draws])
         # What a fitted person leaves, and the reading.
         error = 0.03
         density = weights / math.sqrt(math.pi) @ np.exp(-0.5 * ((relative - model) / error) ** 2)
@@ -110,18 +87,19 @@ def left_out(
 
 
 class Fits(NamedTuple):
-    """What is fitted: of each person decay length (m), friction at rest (N) and what is left; the
-    mean (geometric, m) and the logarithms' spread of strokes, their correlation with the friction
-    at rest; the exponent of the speed, and the length (m) at the reference speed."""
+    """What is fitted: each person's numbers; the mean (geometric, m) and the logarithms' spread of
+    strokes, their correlation with the friction at rest, and the logarithms themselves (strokes,
+    2); the exponent of the speed, and the length (m) at the reference speed."""
 
     curves: list[FrictionCurve]
     laws: list[FrictionLaw]
-    people: list[tuple[float, float, float]]
+    people: list[PersonFit]
     slow: float
     strokes: float
     spread: float
     ends: tuple[float, float]
     correlation: float
+    logarithms: si.FloatArray
     exponent: float
     at_reference: float
 
@@ -131,8 +109,8 @@ def fits() -> Fits:
     recordings = [check.recording for check in check_folder(presets.friction_folder()).checks]
     curves = [one for one in recordings if isinstance(one, FrictionCurve) and one.speed is not None]
     laws = [law_of(one.display, one.frequency, float(one.normal_force), 0.01) for one in curves]
-    people = [fitted(curve, law) for curve, law in zip(curves, laws, strict=True)]
-    slow = math.exp(float(np.mean([math.log(length) for length, _, _ in people])))
+    people = [fitted_person(curve, law) for curve, law in zip(curves, laws, strict=True)]
+    slow = math.exp(float(np.mean([math.log(person.decay_length) for person in people])))
     strokes = next(one for one in recordings if isinstance(one, FrictionDecays))
     free = law_of(strokes.display, strokes.frequency, FREE_STROKES_FORCE, FREE_STROKES_SPEED)
     halves = strokes.decay_amplitude * math.sqrt(2 * math.log(2))
@@ -149,17 +127,34 @@ def fits() -> Fits:
         float(np.std(logs, ddof=1)),
         (float(low), float(high)),
         float(np.corrcoef(logs, np.log(strokes.friction_coefficient))[0, 1]),
+        np.column_stack([logs, np.log(strokes.friction_coefficient)]),
         exponent,
-        slow * (DECAY_SPEED / 0.01) ** exponent,
+        slow * (REFERENCE_SPEED / 0.01) ** exponent,
     )
+
+
+def population_scores(logarithms: si.FloatArray) -> si.FloatArray:
+    """Log densities of each stroke (strokes, 2) by the log-normal population of all others, and by
+    a resample of the others, smoothed as Scott has it."""
+    scores = []
+    for k, stroke in enumerate(logarithms):
+        others = np.delete(logarithms, k, axis=0)
+        population = multivariate_normal(others.mean(axis=0), np.cov(others.T))
+        resample = gaussian_kde(others.T)
+        scores.append((float(population.logpdf(stroke)), float(resample.logpdf(stroke)[0])))
+    return np.array(scores)
 
 
 def main() -> None:
     """Fit and print."""
     found = fits()
     print("person                      decay length  friction at rest  left")
-    for curve, (length, rest, left) in zip(found.curves, found.people, strict=True):
-        print(f"{curve.told.name:26}  {1e6 * length:9.2f} um  {rest:13.3f} N    {left:.3f}")
+    for curve, person in zip(found.curves, found.people, strict=True):
+        print(
+            f"{curve.told.name:26}  {1e6 * person.decay_length:6.2f} um "
+            f"+-{100 * person.relative_error:.0f} %  {person.friction_at_rest:.3f} N    "
+            f"{person.left:.3f}"
+        )
     print(
         f"strokes: {1e6 * found.strokes:.2f} um, standard deviation of the logarithm "
         f"{found.spread:.3f}, 5 to 95 % {found.ends[0]:.2f} to {found.ends[1]:.2f} of it; "
@@ -167,9 +162,10 @@ def main() -> None:
     )
     print(
         f"people at 10 mm/s: {1e6 * found.slow:.2f} um; exponent of the speed "
-        f"{found.exponent:.3f}; at {1e3 * DECAY_SPEED:.0f} mm/s {1e6 * found.at_reference:.2f} um"
+        f"{found.exponent:.3f}; at {1e3 * REFERENCE_SPEED:.0f} mm/s "
+        f"{1e6 * found.at_reference:.2f} um"
     )
-    lengths = [length for length, _, _ in found.people]
+    lengths = [person.decay_length for person in found.people]
     scores = np.array(left_out(found.curves, found.laws, lengths, found.spread))
     difference = scores[:, 0] - scores[:, 1]
     print("left out: log density of a point, by the model and by the others' mean and spread")
@@ -177,6 +173,15 @@ def main() -> None:
         print(f"{curve.told.name:26}  {by_model:6.2f}  {by_others:6.2f}")
     error = np.std(difference, ddof=1) / math.sqrt(difference.size)
     print(f"paired difference {difference.mean():.2f} +- {error:.2f}")
+    apart = population_scores(found.logarithms)
+    error = np.std(apart[:, 0] - apart[:, 1], ddof=1) / math.sqrt(len(apart))
+    rest = np.std(found.logarithms[:, 1], ddof=1)
+    print(
+        f"strokes: standard deviation of ln of the friction at rest {rest:.3f}; log "
+        f"density of one left out {apart[:, 0].mean():.3f} by the log-normal population of the "
+        f"others, {apart[:, 1].mean():.3f} by a resample of them, difference "
+        f"{(apart[:, 0] - apart[:, 1]).mean():.3f} +- {error:.3f}"
+    )
 
 
 if __name__ == "__main__":

@@ -20,16 +20,17 @@ from typing import Any
 import numpy as np
 import tomlkit
 
-from levitation_fit import law_of, with_length
+from levitation_fit import law_of
 from predict_disc import sealed
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.contact.finger.fingertip import (
     CONTACT_DECAY_LENGTH,
-    DECAY_SPEED,
     DECAY_SPEED_EXPONENT,
+    Finger,
 )
+from squeezefilm.measure.fits.friction.person import with_decay_length
 
 FILE = Path(__file__).parents[1] / "predictions" / "friction-of-fingers.toml"
 SEED, DRAWS = 44, 2000
@@ -69,7 +70,9 @@ def curve_quantiles(
     over_line: bool = False,
 ) -> list[list[float]]:
     """5, 50 and 95 % of µ′/µ over draws of the length, a row for each amplitude."""
-    drawn = np.array([with_length(law, float(length)).curve(amplitudes) for length in lengths])
+    drawn = np.array(
+        [with_decay_length(law, float(length)).curve(amplitudes) for length in lengths]
+    )
     if over_line:
         first = np.polynomial.polynomial.polyfit(amplitudes[:3], drawn[:, :3].T, 1)[0]
         drawn = drawn / first[:, None]
@@ -94,7 +97,7 @@ def lengths_at(
     exponent: si.FloatLike = DECAY_SPEED_EXPONENT
     if np.any(np.asarray(speed) > 0.011):
         exponent = random.uniform(0.0, 2 * DECAY_SPEED_EXPONENT, DRAWS)
-    middle = CONTACT_DECAY_LENGTH * scale * (np.asarray(speed) / DECAY_SPEED) ** exponent
+    middle = CONTACT_DECAY_LENGTH * scale * (np.asarray(speed) / Finger.decay_speed) ** exponent
     drawn = middle * np.exp(spread * random.standard_normal(DRAWS))
     return np.asarray(np.clip(drawn, 1e-7, 1e-3))
 

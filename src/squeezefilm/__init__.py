@@ -21,6 +21,7 @@ _NAMES = {
     "load_texture": "texture_file",
     "save_texture": "texture_file",
     "replaced": "analysis.parameters",
+    "with_finger": "measure.fits.friction.person",
     # What a display does
     "predict": "chain.prediction",
     "voltage_for_friction": "chain.wanted_voltage",

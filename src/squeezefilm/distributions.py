@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,4 +69,34 @@ class Uniform:
         return self.low, self.high
 
 
-Distribution = Normal | Uniform
+@si.checked_numbers
+@dataclass(frozen=True)
+class LogNormal:
+    """A quantity whose logarithm is `Normal`: as people differ around a median. Raises `InputError`
+    for a median or a standard deviation of the logarithm that is not above 0."""
+
+    median: float
+    log_deviation: float
+
+    def __post_init__(self) -> None:
+        si.require("median", self.median, above=0)
+        si.require("log_deviation", self.log_deviation, above=0)
+
+    @property
+    def of_logarithm(self) -> Normal:
+        """How the natural logarithm is distributed."""
+        return Normal(math.log(self.median), self.log_deviation)
+
+    @si.checked_numbers
+    def quantile(self, p: si.DimensionlessArray) -> si.FloatArray:
+        """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
+        return np.exp(self.of_logarithm.quantile(p))
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        low, high = self.of_logarithm.support
+        return math.exp(low), math.exp(high)
+
+
+Distribution = Normal | Uniform | LogNormal

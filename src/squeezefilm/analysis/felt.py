@@ -18,8 +18,10 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.drawn import KeptDraws
 from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
+from squeezefilm.analysis.parameters import DECAY_LENGTH
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import Prediction
+from squeezefilm.contact.finger.people import rest_friction_factor
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.perception.felt import (
@@ -190,10 +192,31 @@ def _felt_of_draws(
     for number, draw in enumerate(mixture.draws(points)):
         try:
             high = mixture.outcome(points[number], draw).amplitude
-            found[number] = _felt_of(mixture, draw, high, senses, speeds)
+            rest = _rest_friction_factor(mixture, draw, points[number])
+            found[number] = _felt_of(mixture, draw, high, senses, speeds, rest)
         except SqueezefilmError:
             continue
     return found
+
+
+def _rest_friction_factor(
+    mixture: Mixture, draw: Draw, point: si.DimensionlessArray
+) -> si.Dimensionless:
+    """The friction at rest of a drawn person over the described one; 1 where the person is known.
+
+    A sum of coordinates, modulo 1, is uniform and independent of each of them: so the points of the
+    friction serve for this number too.
+    """
+    people = any(
+        input_.path == DECAY_LENGTH and getattr(input_, "origin", "") == "assumed"
+        for input_ in mixture.inputs
+    )
+    if not people:
+        return 1.0
+    described = mixture.display.finger.contact_decay_length
+    ratio = np.array([draw.display.finger.contact_decay_length / described])
+    share = np.clip(np.array([float(point.sum()) % 1.0]), 1e-6, 1 - 1e-6)
+    return float(rest_friction_factor(share, ratio)[0])
 
 
 def _felt_of(
@@ -202,6 +225,7 @@ def _felt_of(
     high: si.Metre,
     senses: Observer,
     speeds: tuple[si.MetrePerSecond, ...],
+    rest_factor: si.Dimensionless,
 ) -> list[si.Metre]:
     law, every = mixture.law(draw), np.array(speeds)
     knots = high * np.linspace(0.0, 1.0, _KNOTS) ** 2
@@ -212,7 +236,7 @@ def _felt_of(
     friction = np.clip(own + (1 - draw.skin_compliance) * stiff, 0.0, 1.0)
     mode = mixture.mode(draw)
     tau = float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
-    base = law.friction_coefficient * draw.normal_force
+    base = rest_factor * law.friction_coefficient * draw.normal_force
     pad = draw.display.finger.fingerpad
     found = []
     for speed, row in zip(speeds, friction, strict=True):

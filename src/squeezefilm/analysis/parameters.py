@@ -12,8 +12,9 @@ from typing import Any, Literal, NamedTuple, TypeVar
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.contact.finger.people import DECAY_LENGTH_SPREAD
 from squeezefilm.display import Display, NamedDisplay
-from squeezefilm.distributions import Distribution, Uniform
+from squeezefilm.distributions import Distribution, LogNormal, Uniform
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.materials import Piezoceramic
@@ -27,6 +28,7 @@ Knowledge = Literal["measurable", "unknown"]
 SKIN_COMPLIANCE = "skin_compliance"
 """Where the pad lies between all ridges at one mean gap (0) and each at its own balance (1)."""
 FORCE = "finger.normal_force"
+DECAY_LENGTH = "finger.contact_decay_length"
 TANGENTIAL_RATIO = "finger.tangential_ratio"
 
 
@@ -108,9 +110,6 @@ _ASSUMED: dict[str, _Assumed] = {
     ),
     _CHARGE: _Assumed(0.8, 1.2, _GRANT),
     _STRESS: _Assumed(0.8, 1.2, f"of d31: {_GRANT}"),
-    "finger.contact_decay_length": _Assumed(
-        0.5, 1.75, "as the decay amplitudes of seventy strokes of 14 people spread, 5 to 95 %"
-    ),
     "finger.decay_speed_exponent": _Assumed(
         0.0,
         0.46,
@@ -118,6 +117,7 @@ _ASSUMED: dict[str, _Assumed] = {
         absolute=True,
     ),
 }
+_PEOPLE = "a new person: log-normal, as seventy strokes of 14 people on glass spread"
 # Each other width takes a table of solved films, each other shape of a spectrum its law.
 _STEPS = {
     "finger.plateau_width": 8,
@@ -153,6 +153,10 @@ def uncertain_parameters(
         found[path] = Parameter(
             path, nominal, unit, origin.distribution, "given", origin.source, steps=_STEPS.get(path)
         )
+    if DECAY_LENGTH not in found:
+        nominal, unit = value_at(display, DECAY_LENGTH)
+        spread: Distribution = LogNormal(nominal, DECAY_LENGTH_SPREAD)
+        found[DECAY_LENGTH] = Parameter(DECAY_LENGTH, nominal, unit, spread, "assumed", _PEOPLE)
     for name, known in _ASSUMED.items():
         path = name.replace("surface.", f"surfaces.{at}.")
         if path in found or not _matters(path, at, driven) or not _has(display, path):

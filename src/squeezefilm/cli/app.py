@@ -101,6 +101,15 @@ Speed = Annotated[
     In("m/s"),
     typer.Option("--speed", help='Speed of the finger, like "80 mm/s"; default: the display\'s.'),
 ]
+Finger = Annotated[
+    str,
+    typer.Option(
+        "--finger",
+        metavar="new|mean|FILE",
+        help="Whose finger: a new person's (as described, with how people differ), the mean of "
+        "people, or this person's, by a recording of friction over the amplitude.",
+    ),
+]
 OnSurface = Annotated[str | None, typer.Option("--surface", help="Which of its surfaces.")]
 OnPlace = Annotated[
     str | None,

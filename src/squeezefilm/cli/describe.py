@@ -13,6 +13,7 @@ from squeezefilm.cli.app import (
     Amplitude,
     AsJson,
     Budget,
+    Finger,
     Force,
     Frequency,
     In,
@@ -100,6 +101,7 @@ class PointOptions:
     surface: OnSurface = None
     model: Model = None
     speed: Speed = None
+    finger: Finger = "new"
     place: OnPlace = None
     samples: Annotated[
         int, typer.Option(help="Base samples of the friction's interval, a power of two; 0: none.")
@@ -173,8 +175,10 @@ def analyze(asked: AnalyzeOptions) -> None:
     with second_process(*prepare, at_once=False), working(asked.as_json) as step:
         with loading():
             from squeezefilm.analysis.analyze import analyze as run
+            from squeezefilm.measure.fits.friction.person import with_finger
             from squeezefilm.report.display.terminal import SHOWN, SHOWN_WITH_ALL, show_analysis
-        options = given(asked, leave="target out as_json")
+        display = with_finger(display, asked.finger)
+        options = given(asked, leave="target finger out as_json")
         with_shifts = asked.sensitivities is not None
         result = run(display, **options, progress=step)
         written = None
@@ -233,14 +237,16 @@ class FrictionOptions(PointOptions):
 def friction(asked: FrictionOptions) -> None:
     """The friction a finger meets, how the load is shared, and how sure all of it is."""
     from squeezefilm.analysis.friction.command import analyze_friction
+    from squeezefilm.measure.fits.friction.person import with_finger
     from squeezefilm.report.friction.terminal import show_friction
 
     display = to_be_solved(
         asked.target, asked.voltage, amplitude=asked.vibration_amplitude, quiet=asked.as_json
     )
     with working(asked.as_json) as step:
+        display = with_finger(display, asked.finger)
         result = analyze_friction(
-            display, **given(asked, leave="target out as_json"), progress=step
+            display, **given(asked, leave="target finger out as_json"), progress=step
         )
         written = None
         if asked.out is not None:

@@ -45,7 +45,7 @@ def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: P
     done = run(
         "friction", PLATE, "--voltage", "15 V", "--frequency", "34 kHz", "--force", "0.3 N",
         "--surface", "copper", "--model", "levitation-2016", "--position", "2 mm",
-        "--speed", "50 mm/s",
+        "--speed", "50 mm/s", "--finger", "mean",
         "--ambient-pressure", "2 kPa", "--wanted", "0.7", "--samples", "8", "--seed", "5",
         "--out", tmp_path,
     )  # fmt: skip
@@ -56,6 +56,8 @@ def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: P
         "speed": pytest.approx(0.05), "ambient_pressure": 2000.0, "wanted_friction": 0.7,
         "samples": 8, "seed": 5, "place": None,
     }  # fmt: skip
+    (display,) = asked.calls[-1][0]
+    assert "mean of people" in display.provenance["finger.contact_decay_length"].source
     assert written.given == (ANSWER, tmp_path)
     assert done.stdout == "figures: a/folder\n"
     done = run("friction", PLATE, "--amplitude", "2 um", "--speed", "0 mm/s", "--json")

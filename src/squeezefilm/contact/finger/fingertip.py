@@ -48,8 +48,8 @@ DECAY_SPEED_EXPONENT: si.Dimensionless = 0.23
 """Takes the one into the other where free strokes slide at 100 mm/s, assumed. Speed was never
 varied alone, so that this may be the difference of two laboratories."""
 
-DECAY_SPEED: si.MetrePerSecond = 0.032
-_SPEEDS = 0.01, 0.2
+# The speeds (m/s) between which friction on vibrating glass was published.
+_SLOWEST, _FASTEST = 0.01, 0.2
 
 # Frozen, so that every finger may share them.
 _ASPERITIES, _SKIN, _FINGERPAD = RoughContact(), Skin(), FingerpadDynamics()
@@ -78,7 +78,7 @@ class Finger:
     coefficient of the surface stands, at every load.
 
     Over `contact_decay_length` ℓ the pressure of the contact falls by e as a film lifts it off, at
-    32 mm/s; it grows with `decay_speed_exponent` of the speed. Both are fitted to published
+    `decay_speed`; it grows with `decay_speed_exponent` of the speed. Both are fitted to published
     friction of people (`contact.sharing.levitation`).
 
     `skin` is the tissue at ultrasonic frequency, `fingerpad` the pad as a hand moves it. All of
@@ -108,6 +108,7 @@ class Finger:
     decay_speed_exponent: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(2)] = (
         DECAY_SPEED_EXPONENT
     )
+    decay_speed: Annotated[si.MetrePerSecond, si.AtLeast(_SLOWEST), si.AtMost(_FASTEST)] = 0.032
 
     def __post_init__(self) -> None:
         if self.shear_strength is not None and not isinstance(self.asperities, RoughContact):
@@ -147,10 +148,10 @@ class Finger:
 
     @si.checked_numbers
     def decay_length_at(self, speed: si.MetrePerSecondLike) -> si.MetreLike:
-        """ℓ (m) at speeds of sliding (m/s): `contact_decay_length` at 32 mm/s, held beyond the 10
-        to 200 mm/s at which friction was measured."""
-        paces = np.clip(np.abs(speed), *_SPEEDS)
-        return self.contact_decay_length * (paces / DECAY_SPEED) ** self.decay_speed_exponent
+        """ℓ (m) at speeds of sliding (m/s): `contact_decay_length` at `decay_speed`, held beyond
+        the 10 to 200 mm/s at which friction was measured."""
+        paces = np.clip(np.abs(speed), _SLOWEST, _FASTEST)
+        return self.contact_decay_length * (paces / self.decay_speed) ** self.decay_speed_exponent
 
     @si.checked_numbers
     def plateau_pressure(self, normal_force: si.Newton | None = None) -> si.Pascal:

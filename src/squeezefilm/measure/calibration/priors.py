@@ -17,7 +17,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.analysis.parameters import Origin, Parameter, value_at, with_values
 from squeezefilm.display import Display
-from squeezefilm.distributions import Distribution, Normal, Uniform
+from squeezefilm.distributions import Distribution, LogNormal, Normal, Uniform
 from squeezefilm.errors import InputError
 from squeezefilm.materials import Piezoceramic
 from squeezefilm.plate.layout import AnnularStator, DiscPlate, RectangularPlate
@@ -244,6 +244,8 @@ def share_of(prior: Distribution, values: si.FloatArray) -> si.DimensionlessArra
     exceeded: the inverse of `Distribution.quantile`, 0 or 1 beyond its support."""
     from scipy.special import ndtr
 
+    if isinstance(prior, LogNormal):
+        return share_of(prior.of_logarithm, np.log(np.maximum(values, prior.support[0])))
     if isinstance(prior, Normal):
         least, most = (
             float(ndtr((end - prior.mean) / prior.standard_deviation)) for end in prior.support

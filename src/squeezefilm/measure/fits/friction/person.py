@@ -1,0 +1,159 @@
+"""Whose finger a display is described for: a new person's, the mean of people, or this person's."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from squeezefilm import quantities as si
+from squeezefilm.analysis.parameters import DECAY_LENGTH
+from squeezefilm.chain.friction import FrictionLaw
+from squeezefilm.chain.prediction import predict
+from squeezefilm.config.provenance import Provenance
+from squeezefilm.contact.finger.people import MEAN_SPREAD
+from squeezefilm.display import Display, NamedDisplay, load_display
+from squeezefilm.distributions import Normal
+from squeezefilm.errors import InputError
+from squeezefilm.from_text import reads_text
+from squeezefilm.measure.recordings.kinds import FrictionCurve
+from squeezefilm.measure.recordings.read import read_recording
+
+_LENGTHS = np.geomspace(0.3e-6, 100e-6, 120)
+# Of a curve's points, left out in turn: neighbours err alike.
+_BLOCKS = 5
+
+
+@dataclass(frozen=True)
+class PersonFit:
+    """The decay length of a person (m) with its relative standard error, the friction at rest in
+    the curve's unit, and the root mean square of what is left over the friction at rest."""
+
+    decay_length: si.Metre
+    relative_error: si.Dimensionless
+    friction_at_rest: float
+    left: si.Dimensionless
+
+
+@si.checked_numbers
+def with_decay_length(law: FrictionLaw, length: Annotated[si.Metre, si.Above(0)]) -> FrictionLaw:
+    """The law of a finger whose decay length is another (m), whatever the speed."""
+    finger = dataclasses.replace(law.finger, contact_decay_length=length, decay_speed_exponent=0.0)
+    return dataclasses.replace(law, finger=finger)
+
+
+@si.checked_numbers
+def fitted_person(curve: FrictionCurve, law: FrictionLaw) -> PersonFit:
+    """The decay length and friction at rest that are nearest to a curve by least squares, at the
+    law's force and speed.
+
+    The error is a jackknife over five stretches of the curve. Range: lengths from 0.3 to 100 µm, an
+    even wave or the law's own place. Raises `InputError` for fewer than six points.
+    """
+    amplitude, friction = curve.vibration_amplitude, curve.friction
+    if friction.size <= _BLOCKS:
+        raise InputError(
+            f"a person's curve has {friction.size} points, too few for its two numbers; "
+            f"measure at {_BLOCKS + 1} amplitudes or more",
+            quantity="finger",
+        )
+    known = np.array(
+        [with_decay_length(law, float(length)).curve(amplitude) for length in _LENGTHS]
+    )
+    length, rest, left = _nearest(law, amplitude, friction, known)
+    parts = np.array_split(np.argsort(amplitude, kind="stable"), _BLOCKS)
+    without = []
+    for part in parts:
+        kept = np.setdiff1d(np.arange(friction.size), part)
+        without.append(_nearest(law, amplitude[kept], friction[kept], known[:, kept])[0])
+    spread = np.log(without)
+    error = math.sqrt((_BLOCKS - 1) * float(np.mean((spread - spread.mean()) ** 2)))
+    return PersonFit(length, error, rest, left)
+
+
+def _nearest(
+    law: FrictionLaw,
+    amplitude: si.MetreArray,
+    friction: si.FloatArray,
+    known: si.FloatArray,
+) -> tuple[si.Metre, float, si.Dimensionless]:
+    """Decay length, friction at rest and what is left; `known` are the laws of `_LENGTHS`."""
+
+    def scaled(shape: si.FloatArray) -> tuple[float, si.FloatArray]:
+        rest = float(shape @ friction / (shape @ shape))
+        return rest, rest * shape
+
+    def error(log_length: float) -> float:
+        model = scaled(with_decay_length(law, math.exp(log_length)).curve(amplitude))[1]
+        return float(np.sum((model - friction) ** 2))
+
+    squares = [float(np.sum((scaled(shape)[1] - friction) ** 2)) for shape in known]
+    logs, near = np.log(_LENGTHS), int(np.argmin(squares))
+    ends = logs[max(near - 1, 0)], logs[min(near + 1, logs.size - 1)]
+    length = math.exp(minimize_scalar(error, bounds=ends, method="bounded").x)
+    rest, model = scaled(with_decay_length(law, length).curve(amplitude))
+    return length, rest, math.sqrt(np.mean((model - friction) ** 2)) / rest
+
+
+@reads_text
+def with_finger(
+    display: NamedDisplay,
+    finger: Annotated[str | Path, "new, mean, or a recording"] = "new",
+) -> Display:
+    """The display under another finger, which whatever draws a finger takes up.
+
+    "new": a person of whom nothing is known, as described, or as people spread. "mean": the mean of
+    people, whose length is known to the standard error of 14 people. A recording of this
+    person's friction over the amplitude, as `measure` reads it: its decay length at the recording's
+    own speed, with the fit's error; the recording's display, or this one, says how it was
+    measured. What else differs between fingers (contact length, force, skin) stays as described.
+    Raises `InputError` for another word, and for a recording that is no friction curve.
+    """
+    if finger == "new":
+        return display
+    own = display.finger
+    if finger == "mean":
+        spread = Normal(own.contact_decay_length, MEAN_SPREAD * own.contact_decay_length)
+        why = "the mean of people: standard error over 14 of them"
+        return _known(display, own.contact_decay_length, spread, why, own.decay_speed)
+    if isinstance(finger, str) and not Path(finger).suffix:
+        raise InputError(
+            f"'{finger}' is no finger; allowed are new, mean, and a file with a friction curve",
+            quantity="finger",
+        )
+    curve = read_recording(finger)
+    if not isinstance(curve, FrictionCurve):
+        raise InputError(
+            f"{finger} holds no friction curve; record friction over the amplitude",
+            quantity="finger",
+        )
+    measured = load_display(curve.display) if curve.display else display
+    told = {name: getattr(curve, name) for name in ("normal_force", "speed", "frequency")}
+    if any(np.size(value) > 1 for value in told.values() if value is not None):
+        raise InputError(
+            f"{finger} mixes forces, speeds or frequencies; give a recording of one condition",
+            quantity="finger",
+        )
+    told = {name: None if value is None else float(value) for name, value in told.items()}
+    law = predict(
+        measured, vibration_amplitude=float(np.max(curve.vibration_amplitude)), **told
+    ).law
+    fit = fitted_person(curve, law)
+    at = float(np.clip(law.speed, 0.01, 0.2))
+    spread = Normal(fit.decay_length, fit.relative_error * fit.decay_length)
+    why = f"fitted to {Path(finger).name}, {100 * fit.left:.1f} % of the friction at rest left"
+    return _known(display, fit.decay_length, spread, why, at)
+
+
+def _known(
+    display: Display, length: si.Metre, spread: Normal, why: str, speed: si.MetrePerSecond
+) -> Display:
+    finger = dataclasses.replace(display.finger, contact_decay_length=length, decay_speed=speed)
+    origin = Provenance(why, "derived", spread)
+    provenance = {**display.provenance, DECAY_LENGTH: origin}
+    return dataclasses.replace(display, finger=finger, provenance=provenance)
