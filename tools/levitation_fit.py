@@ -89,7 +89,8 @@ def left_out(
 class Fits(NamedTuple):
     """What is fitted: each person's numbers; the mean (geometric, m) and the logarithms' spread of
     strokes, their correlation with the friction at rest, and the logarithms themselves (strokes,
-    2); the exponent of the speed, and the length (m) at the reference speed."""
+    2), their law and the amplitudes at half of the friction; the exponent of the speed, and the
+    length (m) at the reference speed."""
 
     curves: list[FrictionCurve]
     laws: list[FrictionLaw]
@@ -100,6 +101,8 @@ class Fits(NamedTuple):
     ends: tuple[float, float]
     correlation: float
     logarithms: si.FloatArray
+    free: FrictionLaw
+    halves: si.MetreArray
     exponent: float
     at_reference: float
 
@@ -128,9 +131,40 @@ def fits() -> Fits:
         (float(low), float(high)),
         float(np.corrcoef(logs, np.log(strokes.friction_coefficient))[0, 1]),
         np.column_stack([logs, np.log(strokes.friction_coefficient)]),
+        free,
+        halves,
         exponent,
         slow * (REFERENCE_SPEED / 0.01) ** exponent,
     )
+
+
+class RidgeFits(NamedTuple):
+    """With films solved over single ridges: the lengths (m) of each person and what is left, the
+    length of the mean of people and of strokes, and the logarithms' spread of strokes."""
+
+    people: list[tuple[float, float]]
+    slow: float
+    strokes: float
+    spread: float
+
+
+def ridge_fits(found: Fits) -> RidgeFits:
+    """Fit the same data by `levitation-ridges`."""
+    people = []
+    for curve, law in zip(found.curves, found.laws, strict=True):
+        person = fitted_person(curve, law.by("levitation-ridges"))
+        finger = with_decay_length(law, person.decay_length).finger
+        people.append((finger.ridge_length_at(0.01), person.left))
+    free = found.free.by("levitation-ridges")
+    lengths = [with_decay_length(free, float(one)) for one in _LENGTHS]
+    logs = []
+    for half in np.quantile(found.halves, (np.arange(15) + 0.5) / 15):
+        friction = [law.at(float(half)) for law in lengths]
+        length = np.exp(np.interp(0.5, friction, np.log(_LENGTHS)))
+        finger = with_decay_length(free, float(length)).finger
+        logs.append(math.log(finger.ridge_length_at(FREE_STROKES_SPEED)))
+    slow = math.exp(float(np.mean([math.log(length) for length, _ in people])))
+    return RidgeFits(people, slow, math.exp(float(np.mean(logs))), float(np.std(logs)))
 
 
 def population_scores(logarithms: si.FloatArray) -> si.FloatArray:
@@ -181,6 +215,20 @@ def main() -> None:
         f"density of one left out {apart[:, 0].mean():.3f} by the log-normal population of the "
         f"others, {apart[:, 1].mean():.3f} by a resample of them, difference "
         f"{(apart[:, 0] - apart[:, 1]).mean():.3f} +- {error:.3f}"
+    )
+    ridges = ridge_fits(found)
+    print("films solved over single ridges:")
+    for curve, (length, left) in zip(found.curves, ridges.people, strict=True):
+        print(f"{curve.told.name:26}  {1e6 * length:6.2f} um  left {left:.3f}")
+    middle = ridges.slow * (ridges.strokes / ridges.slow) ** (
+        math.log(REFERENCE_SPEED / 0.01) / math.log(FREE_STROKES_SPEED / 0.01)
+    )
+    exponent = math.log(ridges.strokes / ridges.slow) / math.log(FREE_STROKES_SPEED / 0.01)
+    print(
+        f"people at 10 mm/s {1e6 * ridges.slow:.2f} um, strokes {1e6 * ridges.strokes:.2f} um, at "
+        f"{1e3 * REFERENCE_SPEED:.0f} mm/s {1e6 * middle:.2f} um; over those of the closed form "
+        f"the exponent of the speed {exponent / found.exponent:.2f}, the logarithms' spread of "
+        f"strokes {ridges.spread / found.spread:.2f}"
     )
 
 

@@ -66,6 +66,7 @@ NAMES = (
     "sweep",
     "texture_names",
     "voltage_for_friction",
+    "with_finger",
     "write_mode",
     "write_report",
 )

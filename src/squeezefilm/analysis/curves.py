@@ -180,6 +180,7 @@ def wavelength_curves(prediction: Prediction) -> tuple[WavelengthCurve, ...]:
 COMPARED: tuple[tuple[FrictionModel, int], ...] = (
     ("paper2008", 101),
     ("levitation-2016", 81),
+    ("levitation-ridges", 41),
     ("levitation", 81),
     ("partial-levitation-shear", 41),
     ("partial-levitation", 41),

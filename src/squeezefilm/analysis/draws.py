@@ -161,13 +161,14 @@ class Mixture:
 
     `driven` is whether a voltage moves it, so that its actuator is uncertain too. The model is the
     prediction's where its inputs are uncertain, else the default one: those of the paper and of
-    2016 are closed forms with constants of their own.
+    2016 have constants of their own, and ridges a length that follows the default's.
     """
 
     def __init__(self, display: Display, prediction: Prediction, *, driven: bool) -> None:
         self.display, self.prediction = display, prediction
         law = prediction.law
-        own = law.kind.shares_load and law.model != "levitation-2016"
+        kind = law.kind
+        own = kind.shares_load and (kind.friction != "lift" or law.model == DEFAULT_MODEL)
         self.model: FrictionModel = law.model if own else DEFAULT_MODEL
         parameters = uncertain_parameters(
             display,

@@ -11,6 +11,7 @@ FrictionModel = Literal[
     "paper2008",
     "paper2008-printed",
     "levitation-2016",
+    "levitation-ridges",
     "partial-levitation",
     "partial-levitation-shear",
     "levitation",
@@ -27,11 +28,13 @@ class ModelKind(NamedTuple):
     at the gap where both balance the load. Of that it takes the part that asperities carry, all of
     it slipping ("load"); that part, elastic until it slips ("shear"); or the closed form of 2016
     ("lift"), while the balance only says what the plate feels of the finger. `fitted` is whether
-    the closed form has the finger's length, fitted to people, or the constants published in 2016.
+    that has the finger's length, fitted to people, or the constants published in 2016; `ridges`,
+    whether it takes the solved film over each ridge in place of the closed form.
     """
 
     friction: Literal["asymptote", "load", "shear", "lift"]
     fitted: bool = False
+    ridges: bool = False
 
     @property
     def shares_load(self) -> bool:
@@ -48,6 +51,7 @@ MODEL_KINDS: dict[FrictionModel, ModelKind] = {
     "paper2008": ModelKind("asymptote"),
     "paper2008-printed": ModelKind("asymptote"),
     "levitation-2016": ModelKind("lift"),
+    "levitation-ridges": ModelKind("lift", fitted=True, ridges=True),
     "partial-levitation": ModelKind("load"),
     "partial-levitation-shear": ModelKind("shear"),
     "levitation": ModelKind("lift", fitted=True),

@@ -32,6 +32,7 @@ from squeezefilm.contact.sharing.levitation import (
     levitation_friction,
     levitation_scale,
     published_rest_gap,
+    ridge_friction,
 )
 from squeezefilm.contact.sharing.pad import (
     FrictionRipple,
@@ -140,9 +141,12 @@ class PadLaw:
     def _lifted_ridge(
         self, amplitude: si.MetreArray, speed: si.MetrePerSecond
     ) -> si.DimensionlessArray:
-        """µ′/µ of a ridge by `levitation_friction` at the amplitudes that it meets (m), any shape,
-        with the length fitted to people or the gap and length of 2016."""
+        """µ′/µ of a ridge at the amplitudes that it meets (m), any shape, by `levitation_friction`
+        with the length fitted to people or the gap and length of 2016, or by `ridge_friction`."""
         pressure, ambient = self.contact_pressure, self.gas.ambient_pressure
+        if self.kind.ridges:
+            load = self.finger.plateau_pressure(self.normal_force)
+            return ridge_friction(self._films, amplitude, load, self.finger.ridge_length_at(speed))
         if self.kind.fitted:
             length = float(self.finger.decay_length_at(speed))
             return levitation_friction(amplitude / levitation_scale(length, pressure, ambient))

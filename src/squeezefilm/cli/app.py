@@ -123,7 +123,7 @@ Model = Annotated[
     str | None,
     typer.Option(
         help="Friction model: levitation (the default), partial-levitation-shear, "
-        "partial-levitation, levitation-2016, paper2008."
+        "levitation-ridges, partial-levitation, levitation-2016, paper2008."
     ),
 ]
 

@@ -13,4 +13,4 @@ def test_every_model_has_a_kind() -> None:
     closed = {name for name, kind in MODEL_KINDS.items() if not kind.shares_load}
     assert closed == {"paper2008", "paper2008-printed"}
     timed = {name for name, kind in MODEL_KINDS.items() if kind.knows_speed}
-    assert timed == {"levitation", "partial-levitation-shear"}
+    assert timed == {"levitation", "levitation-ridges", "partial-levitation-shear"}

@@ -48,6 +48,14 @@ DECAY_SPEED_EXPONENT: si.Dimensionless = 0.23
 """Takes the one into the other where free strokes slide at 100 mm/s, assumed. Speed was never
 varied alone, so that this may be the difference of two laboratories."""
 
+RIDGE_LENGTH: si.Metre = 2.54e-6
+"""ℓ over solved films of single ridges, at 32 mm/s, of a person whose `contact_decay_length` is the
+mean of people. The same curves and strokes say that people differ in it by the power 0.53 of what
+they differ by in that one, and that it grows with 1.79 times the exponent of the speed:
+`tools/levitation_fit.py`."""
+RIDGE_POWER_OF_PEOPLE: si.Dimensionless = 0.53
+RIDGE_POWER_OF_SPEED: si.Dimensionless = 1.79
+
 # The speeds (m/s) between which friction on vibrating glass was published.
 _SLOWEST, _FASTEST = 0.01, 0.2
 
@@ -152,6 +160,14 @@ class Finger:
         the 10 to 200 mm/s at which friction was measured."""
         paces = np.clip(np.abs(speed), _SLOWEST, _FASTEST)
         return self.contact_decay_length * (paces / self.decay_speed) ** self.decay_speed_exponent
+
+    @si.checked_numbers
+    def ridge_length_at(self, speed: si.MetrePerSecond) -> si.Metre:
+        """ℓ (m) at a speed (m/s) where films are solved over single ridges: see `RIDGE_LENGTH`."""
+        pace = min(max(abs(speed), _SLOWEST), _FASTEST) / self.decay_speed
+        person = self.contact_decay_length / CONTACT_DECAY_LENGTH
+        exponent = RIDGE_POWER_OF_SPEED * self.decay_speed_exponent
+        return RIDGE_LENGTH * person**RIDGE_POWER_OF_PEOPLE * pace**exponent
 
     @si.checked_numbers
     def plateau_pressure(self, normal_force: si.Newton | None = None) -> si.Pascal:

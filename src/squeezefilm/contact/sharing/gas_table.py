@@ -10,6 +10,7 @@ every node is a solved film, and each panel is checked against films solved betw
 
 from __future__ import annotations
 
+import math
 import threading
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated
@@ -92,6 +93,16 @@ class FilmTable:
         """The bound on the relative error of the over-pressure; 0 where no film was needed."""
         return 0.0 if self.error is None else self.error
 
+    @property
+    def least_gap(self) -> si.Metre:
+        """The least mean gap of the table (m)."""
+        return math.exp(FIRST_COLUMN) * self.length
+
+    @property
+    def largest_gap(self) -> si.Metre:
+        """The mean gap (m) that is the table's end."""
+        return math.exp(FIRST_COLUMN + COLUMNS) * self.length
+
     @si.checked_numbers
     def over_pressure(self, mean_gap: si.MetreLike, amplitude: si.MetreLike) -> si.PascalLike:
         """⟨p_gas⟩ − p0 (Pa), mean over plateau and period; broadcasts.
@@ -105,8 +116,8 @@ class FilmTable:
         si.require("mean_gap", u, si.Unit("m"), above=0)
         si.require("amplitude", a, si.Unit("m"), at_least=0)
         si.require("amplitude / mean_gap", a / u, at_most=DEEPEST_EXCURSION)
-        lowest, highest = np.exp([FIRST_COLUMN, FIRST_COLUMN + COLUMNS]) * self.length
-        si.require("mean_gap", u, si.Unit("m"), at_least=float(lowest), below=float(highest))
+        ends = {"at_least": self.least_gap, "below": self.largest_gap}
+        si.require("mean_gap", u, si.Unit("m"), **ends)
         out = np.empty(u.size)
         for k, (gap, swing) in enumerate(zip(u.ravel().tolist(), a.ravel().tolist(), strict=True)):
             value, lack = film_value(0, gap, swing, self.compiled)

@@ -101,6 +101,7 @@ export const DISPLAY = {
   duty: { name: "duty", text: "Largest share of the duty window with output; the device stops what would go beyond.", source: "a limit you set" },
   duty_window: { name: "duty window", text: "Time over which the duty counts.", source: "a limit you set" },
   contact_decay_length: { name: "decay length of the contact", text: "Over this gap the pressure of the contact falls by e as a film lifts it off, at 32 mm/s: how easily a person's friction falls.", source: "fitted to published friction of people on glass; measure yours" },
+  decay_speed: { name: "speed of the decay length", text: "The speed of sliding at which the decay length holds.", source: "between two laboratories" },
   decay_speed_exponent: { name: "growth of the decay length with speed", text: "The decay length grows with the finger's speed to this power, from 10 to 200 mm/s. Speed was never varied alone.", source: "between two laboratories" },
   contact_area_exponent: { name: "contact area exponent", text: "The contact's area grows with the force like F to this power: 0 is a fixed area, soft pads have some 0.2 to 0.5.", source: "assumed; measure it" },
   ridge_angle: { name: "ridge angle", text: "Between the ridges' normal and the wave: 0 where ridges run along the nodal lines.", source: "geometry" },
