@@ -167,7 +167,7 @@ class Finger:
         pace = min(max(abs(speed), _SLOWEST), _FASTEST) / self.decay_speed
         person = self.contact_decay_length / CONTACT_DECAY_LENGTH
         exponent = RIDGE_POWER_OF_SPEED * self.decay_speed_exponent
-        return RIDGE_LENGTH * person**RIDGE_POWER_OF_PEOPLE * pace**exponent
+        return float(RIDGE_LENGTH * person**RIDGE_POWER_OF_PEOPLE * pace**exponent)
 
     @si.checked_numbers
     def plateau_pressure(self, normal_force: si.Newton | None = None) -> si.Pascal:

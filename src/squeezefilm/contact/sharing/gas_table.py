@@ -116,8 +116,8 @@ class FilmTable:
         si.require("mean_gap", u, si.Unit("m"), above=0)
         si.require("amplitude", a, si.Unit("m"), at_least=0)
         si.require("amplitude / mean_gap", a / u, at_most=DEEPEST_EXCURSION)
-        ends = {"at_least": self.least_gap, "below": self.largest_gap}
-        si.require("mean_gap", u, si.Unit("m"), **ends)
+        least, most = self.least_gap, self.largest_gap
+        si.require("mean_gap", u, si.Unit("m"), at_least=least, below=most)
         out = np.empty(u.size)
         for k, (gap, swing) in enumerate(zip(u.ravel().tolist(), a.ravel().tolist(), strict=True)):
             value, lack = film_value(0, gap, swing, self.compiled)

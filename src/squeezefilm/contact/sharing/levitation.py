@@ -101,7 +101,7 @@ def ridge_friction(
     at = np.maximum(amplitude, known[0])
     found = np.exp(np.interp(np.log(at), np.log(known), np.log(lift)))
     # Thinner films than are tabulated keep their gas: u³ goes with a².
-    return np.exp(-found * (amplitude / at) ** (2 / 3))
+    return np.asarray(np.exp(-found * (amplitude / at) ** (2 / 3)))
 
 
 @functools.lru_cache(maxsize=64)
