@@ -151,7 +151,8 @@ if TYPE_CHECKING:
         strict: bool = ...,
         samples: int = ...,
         wanted_friction: WantedFriction | str | None = ...,
-        sensitivities: Effort = ...,
+        sensitivities: Effort | None = ...,
+        whole: bool = ...,
         progress: SayProgress | None = ...,
         budget: Second | str | None = ...,
     ) -> Analysis:

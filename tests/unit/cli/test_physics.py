@@ -36,7 +36,7 @@ def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: P
     assert asked.named == {
         "voltage": None, "frequency": None, "vibration_amplitude": None, "normal_force": None,
         "surface": None, "model": None, "position": None, "place": None, "speed": None,
-        "ambient_pressure": None, "wanted_friction": None, "samples": 32, "seed": 1,
+        "ambient_pressure": None, "wanted_friction": None, "samples": 16, "seed": 1,
     }  # fmt: skip
     assert shown.given == (ANSWER,)
     assert (done.stdout, done.stderr.splitlines()[1:]) == ("", ["  a step …"])
