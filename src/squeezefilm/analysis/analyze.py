@@ -312,7 +312,7 @@ def analyze(
     reaches it, `sensitivities` what each value does, and how a plate with one thing different is
     computed for that, see `display_sensitivities`; `whole` puts that and other theories of the
     plate into summary and report; `progress` is told each step. With a `budget` (s) half of it
-    bounds the plate's solve, and the interval and the other films are left out where nothing is
+    bounds the plate's solve, and the interval is left out where nothing is
     left for them: what is missing is said.
     """
     if budget is not None:
