@@ -122,6 +122,10 @@ def _responses(study: SimulatedStudy | SimulatedAnswers, person: int) -> dict[in
     return found
 
 
+# Of surfaces that are kept with what a hand left on them.
+_MOST_MOTIONS = 64
+
+
 class _Hand:
     """Explores a person's surfaces as their answers assume."""
 
@@ -156,6 +160,8 @@ class _Hand:
     def _motion(self, display: str, surface: Stimulus) -> TrialMotion:
         key = display, id(surface)
         if key not in self._motions:
+            if len(self._motions) >= _MOST_MOTIONS:
+                self._motions.clear()
             path, exploring = self._paths[display], self._design.exploring
             self._motions[key] = surface, rehearsed(path, exploring, surface, self._force)
         return self._motions[key][1]
