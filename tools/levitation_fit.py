@@ -31,7 +31,7 @@ from squeezefilm.measure.recordings.read import check_folder
 FREE_STROKES_SPEED = 0.1
 REFERENCE_SPEED = Finger.decay_speed
 FREE_STROKES_FORCE = 0.5
-_LENGTHS = np.geomspace(0.3e-6, 100e-6, 120)
+_LENGTHS = np.geomspace(0.3e-6, 300e-6, 140)
 
 
 def law_of(display: str, frequency: float, force: float, speed: float) -> FrictionLaw:
@@ -43,10 +43,10 @@ def law_of(display: str, frequency: float, force: float, speed: float) -> Fricti
     return friction_law(described, half, frequency, normal_force=force, speed=speed)
 
 
-def half_friction_length(law: FrictionLaw, amplitude: float) -> float:
-    """The decay length (m) with which friction has fallen to a half at an amplitude (m)."""
+def length_of(law: FrictionLaw, amplitude: float, friction: float = 0.5) -> float:
+    """The decay length (m) with which friction has fallen to a share at an amplitude (m)."""
     lengths = [with_decay_length(law, length).at(amplitude) for length in _LENGTHS]
-    return float(np.exp(np.interp(0.5, lengths, np.log(_LENGTHS))))
+    return float(np.exp(np.interp(friction, lengths, np.log(_LENGTHS))))
 
 
 def left_out(
@@ -117,7 +117,7 @@ def fits() -> Fits:
     strokes = next(one for one in recordings if isinstance(one, FrictionDecays))
     free = law_of(strokes.display, strokes.frequency, FREE_STROKES_FORCE, FREE_STROKES_SPEED)
     halves = strokes.decay_amplitude * math.sqrt(2 * math.log(2))
-    logs = np.log([half_friction_length(free, float(half)) for half in halves])
+    logs = np.log([length_of(free, float(half)) for half in halves])
     fast = math.exp(float(np.mean(logs)))
     exponent = math.log(fast / slow) / math.log(FREE_STROKES_SPEED / 0.01)
     low, high = np.exp(np.quantile(logs - logs.mean(), [0.05, 0.95]))
@@ -156,12 +156,9 @@ def ridge_fits(found: Fits) -> RidgeFits:
         finger = with_decay_length(law, person.decay_length).finger
         people.append((finger.ridge_length_at(0.01), person.left))
     free = found.free.by("levitation-ridges")
-    lengths = [with_decay_length(free, float(one)) for one in _LENGTHS]
     logs = []
     for half in np.quantile(found.halves, (np.arange(15) + 0.5) / 15):
-        friction = [law.at(float(half)) for law in lengths]
-        length = np.exp(np.interp(0.5, friction, np.log(_LENGTHS)))
-        finger = with_decay_length(free, float(length)).finger
+        finger = with_decay_length(free, length_of(free, float(half))).finger
         logs.append(math.log(finger.ridge_length_at(FREE_STROKES_SPEED)))
     slow = math.exp(float(np.mean([math.log(length) for length, _ in people])))
     return RidgeFits(people, slow, math.exp(float(np.mean(logs))), float(np.std(logs)))
@@ -230,6 +227,14 @@ def main() -> None:
         f"the exponent of the speed {exponent / found.exponent:.2f}, the logarithms' spread of "
         f"strokes {ridges.spread / found.spread:.2f}"
     )
+    skins = law_of(found.curves[0].display, 32.112e3, 0.5, 0.01)
+    for name, friction in (("lossy", 0.084), ("elastic", 0.81)):
+        length = length_of(skins, 2.1e-6, friction)
+        over = with_decay_length(skins, length_of(skins.by("levitation-ridges"), 2.1e-6, friction))
+        print(
+            f"{name} artificial skin, mu'/mu {friction} at 2.1 um, 0.5 N: {1e6 * length:.2f} um, "
+            f"over single ridges {1e6 * over.finger.ridge_length_at(0.01):.2f} um"
+        )
 
 
 if __name__ == "__main__":
