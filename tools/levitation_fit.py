@@ -140,12 +140,15 @@ def fits() -> Fits:
 
 class RidgeFits(NamedTuple):
     """With films solved over single ridges: the lengths (m) of each person and what is left, the
-    length of the mean of people and of strokes, and the logarithms' spread of strokes."""
+    length of the mean of people and of strokes, the logarithms' spread of strokes; the exponent of
+    the speed, and the length (m) at the reference speed."""
 
     people: list[tuple[float, float]]
     slow: float
     strokes: float
     spread: float
+    exponent: float
+    at_reference: float
 
 
 def ridge_fits(found: Fits) -> RidgeFits:
@@ -161,7 +164,10 @@ def ridge_fits(found: Fits) -> RidgeFits:
         finger = with_decay_length(free, length_of(free, float(half))).finger
         logs.append(math.log(finger.ridge_length_at(FREE_STROKES_SPEED)))
     slow = math.exp(float(np.mean([math.log(length) for length, _ in people])))
-    return RidgeFits(people, slow, math.exp(float(np.mean(logs))), float(np.std(logs)))
+    fast = math.exp(float(np.mean(logs)))
+    exponent = math.log(fast / slow) / math.log(FREE_STROKES_SPEED / 0.01)
+    at_reference = slow * (REFERENCE_SPEED / 0.01) ** exponent
+    return RidgeFits(people, slow, fast, float(np.std(logs)), exponent, at_reference)
 
 
 def population_scores(logarithms: si.FloatArray) -> si.FloatArray:
@@ -217,15 +223,11 @@ def main() -> None:
     print("films solved over single ridges:")
     for curve, (length, left) in zip(found.curves, ridges.people, strict=True):
         print(f"{curve.told.name:26}  {1e6 * length:6.2f} um  left {left:.3f}")
-    middle = ridges.slow * (ridges.strokes / ridges.slow) ** (
-        math.log(REFERENCE_SPEED / 0.01) / math.log(FREE_STROKES_SPEED / 0.01)
-    )
-    exponent = math.log(ridges.strokes / ridges.slow) / math.log(FREE_STROKES_SPEED / 0.01)
     print(
         f"people at 10 mm/s {1e6 * ridges.slow:.2f} um, strokes {1e6 * ridges.strokes:.2f} um, at "
-        f"{1e3 * REFERENCE_SPEED:.0f} mm/s {1e6 * middle:.2f} um; over those of the closed form "
-        f"the exponent of the speed {exponent / found.exponent:.2f}, the logarithms' spread of "
-        f"strokes {ridges.spread / found.spread:.2f}"
+        f"{1e3 * REFERENCE_SPEED:.0f} mm/s {1e6 * ridges.at_reference:.2f} um; over the closed "
+        f"form's the exponent of the speed {ridges.exponent / found.exponent:.2f}, the spread of "
+        f"the strokes' logarithms {ridges.spread / found.spread:.2f}"
     )
     skins = law_of(found.curves[0].display, 32.112e3, 0.5, 0.01)
     for name, friction in (("lossy", 0.084), ("elastic", 0.81)):

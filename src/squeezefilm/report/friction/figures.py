@@ -54,7 +54,7 @@ def models(result: FrictionAnalysis) -> Figure:
     said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
     figure = style.new_figure(
         f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(p.surface.name, 20)} {said}: the "
-        "model decides; one is fitted to measured curves",
+        "model decides; two are fitted to measured curves",
         f"as in the legend; {shown(p.normal_force, N)}",
         5.4,
     )

@@ -139,7 +139,7 @@ def test_the_working_point_stands_on_its_interval() -> None:
     figure = models(RESULT)
     assert words(figure.get_suptitle()) == (
         "At 1.5 µm on glass µ′/µ = 0.62 as described (0.41–0.83, median 0.60): the model decides; "
-        "one is fitted to measured curves"
+        "two are fitted to measured curves"
     )
     assert words(figure.get_supxlabel()) == "Model: as in the legend; 0.4 N"
 
