@@ -77,6 +77,7 @@ _CHARGE, _STRESS = (f"actuator.ceramic.{one}_coefficient" for one in ("charge", 
 _MAKERS = "APC International, Piezo Technologies"
 _GRANT = "makers grant ±20 % on d33 (APC International) or ±10 % (Piezo Technologies)"
 
+_PEOPLE = "a new person: log-normal, as seventy strokes of 14 people on glass spread"
 # None was measured on a display: they keep an interval from being narrow for want of anybody's
 # saying how wide it is.
 _ASSUMED: dict[str, _Assumed] = {
@@ -110,6 +111,9 @@ _ASSUMED: dict[str, _Assumed] = {
     ),
     _CHARGE: _Assumed(0.8, 1.2, _GRANT),
     _STRESS: _Assumed(0.8, 1.2, f"of d31: {_GRANT}"),
+    DECAY_LENGTH: _Assumed(
+        math.exp(-3 * DECAY_LENGTH_SPREAD), math.exp(3 * DECAY_LENGTH_SPREAD), _PEOPLE
+    ),
     "finger.decay_speed_exponent": _Assumed(
         0.0,
         0.46,
@@ -117,7 +121,6 @@ _ASSUMED: dict[str, _Assumed] = {
         absolute=True,
     ),
 }
-_PEOPLE = "a new person: log-normal, as seventy strokes of 14 people on glass spread"
 # Each other width takes a table of solved films, each other shape of a spectrum its law.
 _STEPS = {
     "finger.plateau_width": 8,
@@ -153,10 +156,6 @@ def uncertain_parameters(
         found[path] = Parameter(
             path, nominal, unit, origin.distribution, "given", origin.source, steps=_STEPS.get(path)
         )
-    if DECAY_LENGTH not in found:
-        nominal, unit = value_at(display, DECAY_LENGTH)
-        spread: Distribution = LogNormal(nominal, DECAY_LENGTH_SPREAD)
-        found[DECAY_LENGTH] = Parameter(DECAY_LENGTH, nominal, unit, spread, "assumed", _PEOPLE)
     for name, known in _ASSUMED.items():
         path = name.replace("surface.", f"surfaces.{at}.")
         if path in found or not _matters(path, at, driven) or not _has(display, path):
@@ -167,7 +166,9 @@ def uncertain_parameters(
         nominal = force if path == FORCE else nominal
         low, high = sorted(end if known.absolute else end * nominal for end in known[:2])
         most = display.finger.ridge_period if name == "finger.plateau_width" else known.most
-        spread = Uniform(low, min(high, most))
+        spread: Distribution = Uniform(low, min(high, most))
+        if name == DECAY_LENGTH:
+            spread = LogNormal(nominal, DECAY_LENGTH_SPREAD)
         found[path] = Parameter(
             path, nominal, unit, spread, "assumed", known.why, steps=_STEPS.get(path)
         )

@@ -32,6 +32,7 @@ from squeezefilm.contact.sharing.levitation import (
     levitation_friction,
     levitation_scale,
     published_rest_gap,
+    ridge_films,
     ridge_friction,
 )
 from squeezefilm.contact.sharing.pad import (
@@ -146,7 +147,9 @@ class PadLaw:
         pressure, ambient = self.contact_pressure, self.gas.ambient_pressure
         if self.kind.ridges:
             load = self.finger.plateau_pressure(self.normal_force)
-            return ridge_friction(self._films, amplitude, load, self.finger.ridge_length_at(speed))
+            width, length = self.finger.plateau_width, self.finger.ridge_length_at(speed)
+            films = ridge_films(self.frequency, width, self.gas, self.slip)
+            return ridge_friction(films, amplitude, load, length)
         if self.kind.fitted:
             length = float(self.finger.decay_length_at(speed))
             return levitation_friction(amplitude / levitation_scale(length, pressure, ambient))

@@ -31,6 +31,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.contact.sharing.film_panels import DEEPEST_EXCURSION
 from squeezefilm.contact.sharing.gas_table import FilmTable
+from squeezefilm.materials import Gas
 
 # Of z: from where µ′/µ is 1 to rounding to where it has left the range of a float.
 _LIFT = np.geomspace(1e-18, 745.0, 12000)
@@ -83,6 +84,13 @@ def _table(rest_gap: float) -> tuple[si.FloatArray, si.FloatArray]:
     return np.log(amplitude), np.log(_LIFT)
 
 
+@functools.lru_cache(maxsize=16)
+def ridge_films(frequency: si.Hertz, width: si.Metre, gas: Gas, slip: str) -> FilmTable:
+    """The films of a plateau for `ridge_friction`, in a table of their own: they reach gaps that no
+    balance does, which may take more nodes, and no other model's numbers may depend on them."""
+    return FilmTable(frequency, width, gas, slip)
+
+
 @si.checked_numbers
 def ridge_friction(
     films: FilmTable,
@@ -93,9 +101,9 @@ def ridge_friction(
     """µ′/µ of ridges over the amplitudes that they meet (m), any shape: the film of a plateau,
     solved, lifts it until p_s (1 − exp(−u/ℓ)) is what the film carries at the mean gap u.
 
-    Within 1e-3. Where the film would have to be thinner than the vibration is deep, the gap stays
-    at what the vibration leaves (0.7 % of it at the least). Range: that of the films. Raises
-    `ConvergenceError` where a film cannot be solved.
+    Within 1e-3, and held at e⁻¹⁰. Where the film would have to be thinner than the vibration is
+    deep, the gap stays at what the vibration leaves (0.7 % of it at the least). Range: that of the
+    films. Raises `ConvergenceError` where a film cannot be solved.
     """
     known, lift = _lifted(films, plateau_pressure, decay_length)
     at = np.maximum(amplitude, known[0])
@@ -110,7 +118,7 @@ def _lifted(
 ) -> tuple[si.FloatArray, si.FloatArray]:
     """Amplitudes (m), rising, and the lifts u/ℓ that they make."""
     least, most = 1.01 * films.least_gap / decay_length, 0.99 * films.largest_gap / decay_length
-    lift = np.geomspace(max(1e-5, least), min(40.0, most), 160)
+    lift = np.geomspace(max(1e-5, least), min(10.0, most), 160)
     gap, wanted = lift * decay_length, -plateau_pressure * np.expm1(-lift)
     low, high = np.full(lift.size, -20.0), np.full(lift.size, math.log(DEEPEST_EXCURSION))
     # Of the excursion's logarithm, to 1e-6 of it.

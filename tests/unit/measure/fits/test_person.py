@@ -58,6 +58,12 @@ def test_few_points_make_no_person(law: FrictionLaw) -> None:
         fitted_person(short, law)
 
 
+def test_a_curve_that_hardly_falls_makes_no_person(law: FrictionLaw) -> None:
+    flat = dataclasses.replace(curve(law, 9e-6), friction=np.full(AMPLITUDE.size, 0.4))
+    with pytest.raises(InputError, match="falls too little"):
+        fitted_person(flat, law)
+
+
 def test_new_people_differ_more_than_their_mean_is_unsure() -> None:
     assert with_finger(PLATE, "new") is PLATE
     mean = with_finger("biet2008-plate", "mean")

@@ -18,7 +18,7 @@ from squeezefilm.chain.prediction import predict
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger.people import MEAN_SPREAD
 from squeezefilm.display import Display, NamedDisplay, load_display
-from squeezefilm.distributions import Normal
+from squeezefilm.distributions import LogNormal
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
 from squeezefilm.measure.recordings.kinds import FrictionCurve
@@ -53,7 +53,8 @@ def fitted_person(curve: FrictionCurve, law: FrictionLaw) -> PersonFit:
     law's force and speed.
 
     The error is a jackknife over five stretches of the curve. Range: lengths from 0.3 to 100 µm, an
-    even wave or the law's own place. Raises `InputError` for fewer than six points.
+    even wave or the law's own place. Raises `InputError` for fewer than six points, and for a curve
+    that falls as no length in that range has it.
     """
     amplitude, friction = curve.vibration_amplitude, curve.friction
     if friction.size <= _BLOCKS:
@@ -66,6 +67,13 @@ def fitted_person(curve: FrictionCurve, law: FrictionLaw) -> PersonFit:
         [with_decay_length(law, float(length)).curve(amplitude) for length in _LENGTHS]
     )
     length, rest, left = _nearest(law, amplitude, friction, known)
+    if not 1.02 * _LENGTHS[0] < length < 0.98 * _LENGTHS[-1]:
+        raise InputError(
+            "a person's curve falls too "
+            + ("fast" if length < 1e-6 else "little")
+            + " for any decay length from 0.3 to 100 µm; measure at more, or larger, amplitudes",
+            quantity="finger",
+        )
     parts = np.array_split(np.argsort(amplitude, kind="stable"), _BLOCKS)
     without = []
     for part in parts:
@@ -118,9 +126,9 @@ def with_finger(
         return display
     own = display.finger
     if finger == "mean":
-        spread = Normal(own.contact_decay_length, MEAN_SPREAD * own.contact_decay_length)
+        spread = LogNormal(own.contact_decay_length, MEAN_SPREAD)
         why = "the mean of people: standard error over 14 of them"
-        return _known(display, own.contact_decay_length, spread, why, own.decay_speed)
+        return _known(display, spread, why, own.decay_speed)
     if isinstance(finger, str) and not Path(finger).suffix:
         raise InputError(
             f"'{finger}' is no finger; allowed are new, mean, and a file with a friction curve",
@@ -145,15 +153,15 @@ def with_finger(
     ).law
     fit = fitted_person(curve, law)
     at = float(np.clip(law.speed, 0.01, 0.2))
-    spread = Normal(fit.decay_length, fit.relative_error * fit.decay_length)
+    # A curve without any noise leaves its reading.
+    spread = LogNormal(fit.decay_length, max(fit.relative_error, 0.01))
     why = f"fitted to {Path(finger).name}, {100 * fit.left:.1f} % of the friction at rest left"
-    return _known(display, fit.decay_length, spread, why, at)
+    return _known(display, spread, why, at)
 
 
-def _known(
-    display: Display, length: si.Metre, spread: Normal, why: str, speed: si.MetrePerSecond
-) -> Display:
+def _known(display: Display, spread: LogNormal, why: str, speed: si.MetrePerSecond) -> Display:
+    """The display under a finger whose length at a speed (m/s) is known as `spread` has it (m)."""
+    length = spread.median
     finger = dataclasses.replace(display.finger, contact_decay_length=length, decay_speed=speed)
-    origin = Provenance(why, "derived", spread)
-    provenance = {**display.provenance, DECAY_LENGTH: origin}
+    provenance = {**display.provenance, DECAY_LENGTH: Provenance(why, "derived", spread)}
     return dataclasses.replace(display, finger=finger, provenance=provenance)
