@@ -37,9 +37,14 @@ def test_what_is_judged_with_confidence_is_what_the_plates_file_says() -> None:
     judged = evaluate(sure, design, "solved").numbers["surest_friction"]
     read = config.load_text(Display, plate_file(sure, design))
     # The file has its numbers in another order, in which the same points are drawn.
-    assert judged == pytest.approx(uncertain_friction(read, predict(read)).interval[1], rel=1e-4)
+    said = uncertain_friction(read, predict(read))
+    assert judged == pytest.approx(said.interval[1], rel=1e-4)
     bare = replace(read, provenance={})
-    assert uncertain_friction(bare, predict(bare)).interval[1] != pytest.approx(judged, rel=1e-3)
+    unsaid = uncertain_friction(bare, predict(bare))
+    # One end may come out alike.
+    assert [*unsaid.interval, unsaid.median] != pytest.approx(
+        [*said.interval, said.median], rel=1e-3
+    )
 
 
 @pytest.mark.slow
