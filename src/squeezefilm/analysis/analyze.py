@@ -312,8 +312,8 @@ def analyze(
     reaches it, `sensitivities` what each value does, and how a plate with one thing different is
     computed for that, see `display_sensitivities`; `whole` puts that and other theories of the
     plate into summary and report; `progress` is told each step. With a `budget` (s) half of it
-    bounds the plate's solve, and the interval is left out where nothing is
-    left for them: what is missing is said.
+    bounds the plate's solve, and the interval is left out where nothing is left for it: what is
+    missing is said.
     """
     if budget is not None:
         si.require("budget", budget, si.Unit("s"), above=0)

@@ -64,13 +64,15 @@ class Parameter:
 
 
 class _Assumed(NamedTuple):
-    """A range in shares of the nominal value (or absolute), at most `most`, and why."""
+    """A range in shares of the nominal value (or absolute), at most `most`, and why; with a
+    `log_deviation` log-normal around the nominal value instead."""
 
     low: float
     high: float
     why: str
     most: float = math.inf
     absolute: bool = False
+    log_deviation: float | None = None
 
 
 _CHARGE, _STRESS = (f"actuator.ceramic.{one}_coefficient" for one in ("charge", "stress"))
@@ -111,9 +113,7 @@ _ASSUMED: dict[str, _Assumed] = {
     ),
     _CHARGE: _Assumed(0.8, 1.2, _GRANT),
     _STRESS: _Assumed(0.8, 1.2, f"of d31: {_GRANT}"),
-    DECAY_LENGTH: _Assumed(
-        math.exp(-3 * DECAY_LENGTH_SPREAD), math.exp(3 * DECAY_LENGTH_SPREAD), _PEOPLE
-    ),
+    DECAY_LENGTH: _Assumed(0.0, math.inf, _PEOPLE, log_deviation=DECAY_LENGTH_SPREAD),
     "finger.decay_speed_exponent": _Assumed(
         0.0,
         0.46,
@@ -166,9 +166,11 @@ def uncertain_parameters(
         nominal = force if path == FORCE else nominal
         low, high = sorted(end if known.absolute else end * nominal for end in known[:2])
         most = display.finger.ridge_period if name == "finger.plateau_width" else known.most
-        spread: Distribution = Uniform(low, min(high, most))
-        if name == DECAY_LENGTH:
-            spread = LogNormal(nominal, DECAY_LENGTH_SPREAD)
+        spread: Distribution = (
+            Uniform(low, min(high, most))
+            if known.log_deviation is None
+            else LogNormal(nominal, known.log_deviation)
+        )
         found[path] = Parameter(
             path, nominal, unit, spread, "assumed", known.why, steps=_STEPS.get(path)
         )

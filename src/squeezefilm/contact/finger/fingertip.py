@@ -56,8 +56,8 @@ they differ by in that one, and that it grows with 1.79 times the exponent of th
 RIDGE_POWER_OF_PEOPLE: si.Dimensionless = 0.53
 RIDGE_POWER_OF_SPEED: si.Dimensionless = 1.79
 
-# The speeds (m/s) between which friction on vibrating glass was published.
-_SLOWEST, _FASTEST = 0.01, 0.2
+SLOWEST, FASTEST = 0.01, 0.2
+"""The speeds (m/s) between which friction on vibrating glass was published."""
 
 # Frozen, so that every finger may share them.
 _ASPERITIES, _SKIN, _FINGERPAD = RoughContact(), Skin(), FingerpadDynamics()
@@ -116,7 +116,7 @@ class Finger:
     decay_speed_exponent: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(2)] = (
         DECAY_SPEED_EXPONENT
     )
-    decay_speed: Annotated[si.MetrePerSecond, si.AtLeast(_SLOWEST), si.AtMost(_FASTEST)] = 0.032
+    decay_speed: Annotated[si.MetrePerSecond, si.AtLeast(SLOWEST), si.AtMost(FASTEST)] = 0.032
 
     def __post_init__(self) -> None:
         if self.shear_strength is not None and not isinstance(self.asperities, RoughContact):
@@ -158,13 +158,13 @@ class Finger:
     def decay_length_at(self, speed: si.MetrePerSecondLike) -> si.MetreLike:
         """ℓ (m) at speeds of sliding (m/s): `contact_decay_length` at `decay_speed`, held beyond
         the 10 to 200 mm/s at which friction was measured."""
-        paces = np.clip(np.abs(speed), _SLOWEST, _FASTEST)
+        paces = np.clip(np.abs(speed), SLOWEST, FASTEST)
         return self.contact_decay_length * (paces / self.decay_speed) ** self.decay_speed_exponent
 
     @si.checked_numbers
     def ridge_length_at(self, speed: si.MetrePerSecond) -> si.Metre:
         """ℓ (m) at a speed (m/s) where films are solved over single ridges: see `RIDGE_LENGTH`."""
-        pace = min(max(abs(speed), _SLOWEST), _FASTEST) / self.decay_speed
+        pace = min(max(abs(speed), SLOWEST), FASTEST) / self.decay_speed
         person = self.contact_decay_length / CONTACT_DECAY_LENGTH
         exponent = RIDGE_POWER_OF_SPEED * self.decay_speed_exponent
         return float(RIDGE_LENGTH * person**RIDGE_POWER_OF_PEOPLE * pace**exponent)

@@ -16,6 +16,7 @@ from squeezefilm.analysis.parameters import DECAY_LENGTH
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.prediction import predict
 from squeezefilm.config.provenance import Provenance
+from squeezefilm.contact.finger.fingertip import FASTEST, SLOWEST
 from squeezefilm.contact.finger.people import MEAN_SPREAD
 from squeezefilm.display import Display, NamedDisplay, load_display
 from squeezefilm.distributions import LogNormal
@@ -152,7 +153,7 @@ def with_finger(
         measured, vibration_amplitude=float(np.max(curve.vibration_amplitude)), **told
     ).law
     fit = fitted_person(curve, law)
-    at = float(np.clip(law.speed, 0.01, 0.2))
+    at = min(max(law.speed, SLOWEST), FASTEST)
     # A curve without any noise leaves its reading.
     spread = LogNormal(fit.decay_length, max(fit.relative_error, 0.01))
     why = f"fitted to {Path(finger).name}, {100 * fit.left:.1f} % of the friction at rest left"
