@@ -114,17 +114,29 @@ def fitted_shape(
     """The amplitude (m) that a shape of `SHAPES` is over, by least squares with the friction at
     rest free, and the relative friction (points,) that it gives."""
     shape, largest = SHAPES[name], float(np.max(amplitude))
-
-    def error(log_decay: float) -> float:
-        model = _scaled(shape(amplitude / np.exp(log_decay)), friction)
-        return float(np.sum((friction - model) ** 2))
-
-    # Coarse first: the sum of squares is flat far from the best decay.
-    coarse = np.log(largest * np.geomspace(0.02, 50.0, 60))
-    near = int(np.argmin([error(log_decay) for log_decay in coarse]))
-    ends = coarse[max(near - 1, 0)], coarse[min(near + 1, coarse.size - 1)]
-    decay = float(np.exp(minimize_scalar(error, bounds=ends, method="bounded").x))
+    coarse = largest * np.geomspace(0.02, 50.0, 60)
+    known = [shape(amplitude / decay) for decay in coarse]
+    decay = nearest_scale(lambda decay: shape(amplitude / decay), coarse, known, friction)
     return decay, shape(amplitude / decay)
+
+
+def nearest_scale(
+    curve_of: Callable[[float], si.FloatArray],
+    coarse: si.MetreArray,
+    known: Sequence[si.FloatArray] | si.FloatArray,
+    friction: si.FloatArray,
+) -> si.Metre:
+    """The scale (m) of which `curve_of` is nearest to a friction (points,) by least squares, with
+    the friction at rest free; `known` are the curves at the rising scales of `coarse` (m)."""
+
+    def error(curve: si.FloatArray) -> float:
+        return float(np.sum((friction - _scaled(curve, friction)) ** 2))
+
+    # Coarse first: the sum of squares is flat far from the best scale.
+    logs, near = np.log(coarse), int(np.argmin([error(curve) for curve in known]))
+    ends = logs[max(near - 1, 0)], logs[min(near + 1, logs.size - 1)]
+    found = minimize_scalar(lambda log: error(curve_of(np.exp(log))), bounds=ends, method="bounded")
+    return float(np.exp(found.x))
 
 
 def total_scores(

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.parameters import DECAY_LENGTH
@@ -22,6 +21,7 @@ from squeezefilm.display import Display, NamedDisplay, load_display
 from squeezefilm.distributions import LogNormal
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
+from squeezefilm.measure.fits.friction.friction_scores import nearest_scale
 from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.measure.recordings.read import read_recording
 
@@ -93,20 +93,13 @@ def _nearest(
 ) -> tuple[si.Metre, float, si.Dimensionless]:
     """Decay length, friction at rest and what is left; `known` are the laws of `_LENGTHS`."""
 
-    def scaled(shape: si.FloatArray) -> tuple[float, si.FloatArray]:
-        rest = float(shape @ friction / (shape @ shape))
-        return rest, rest * shape
+    def curve_of(length: float) -> si.FloatArray:
+        return with_decay_length(law, length).curve(amplitude)
 
-    def error(log_length: float) -> float:
-        model = scaled(with_decay_length(law, math.exp(log_length)).curve(amplitude))[1]
-        return float(np.sum((model - friction) ** 2))
-
-    squares = [float(np.sum((scaled(shape)[1] - friction) ** 2)) for shape in known]
-    logs, near = np.log(_LENGTHS), int(np.argmin(squares))
-    ends = logs[max(near - 1, 0)], logs[min(near + 1, logs.size - 1)]
-    length = math.exp(minimize_scalar(error, bounds=ends, method="bounded").x)
-    rest, model = scaled(with_decay_length(law, length).curve(amplitude))
-    return length, rest, math.sqrt(np.mean((model - friction) ** 2)) / rest
+    length = nearest_scale(curve_of, _LENGTHS, known, friction)
+    shape = curve_of(length)
+    rest = float(shape @ friction / (shape @ shape))
+    return length, rest, math.sqrt(np.mean((rest * shape - friction) ** 2)) / rest
 
 
 @reads_text
