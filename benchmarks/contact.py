@@ -3,10 +3,9 @@
 Run `python benchmarks/contact.py`.
 
 Prints, on one core: a friction curve of 100 amplitudes over a whole pad (28 ridges on the standing
-wave), with and without solving its film table; a map of 50 amplitudes × 50 forces; the combined
-mechanism, rough contact that shears until it slips, as a ratio to that and as a table over force,
-speed and amplitude; the time of one load balance; the ratio to balancing each plateau with
-SciPy's brentq on `solve_uniform`, in the same run and at the same error; and where the time goes.
+wave), with and without solving its film table; a map of 50 amplitudes × 50 forces; the time of one
+load balance; the ratio to balancing each plateau with SciPy's brentq on `solve_uniform`, in the
+same run and at the same error; and where the time goes.
 """
 
 from __future__ import annotations
@@ -25,11 +24,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.rough_contact import RoughContact
 from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable
 from squeezefilm.contact.sharing.pad import pad_friction, pad_points
-from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
 from squeezefilm.display import load_display
 from squeezefilm.film.periodic.film import solve_uniform
 
@@ -65,62 +62,6 @@ def peer(gas, width, law, amplitude, pressure, tolerance):
 
     u = brentq(excess, amplitude / 0.98, 2e-5, xtol=1e-12, rtol=1e-7)
     return float(law.mean_pressure(u, amplitude)) / pressure, solves
-
-
-def combined(table, fresh, law, swings, pressure):
-    """Balance and shear of the same plateaus, by law and stiffness."""
-    rough = RoughContact()
-
-    def once(table, law, stiffness):
-        shared = share_load(table, law, swings, pressure)
-        return sheared_friction(shared, AsperityShear(0.1, stiffness=stiffness), FREQUENCY)
-
-    once(table, rough, "following")
-    alone = best_time(lambda: share_load(table, law, swings, pressure), 20)
-    print(f"\nCombined mechanism on the curve's {swings.size} distinct plateaus, over the balance")
-    print(f"of exponential asperities alone ({alone / swings.size * 1e6:.2f} µs each)")
-    for name, one in (("exponential", law), ("rough contact", rough)):
-        only = best_time(lambda one=one: share_load(table, one, swings, pressure), 20)
-        print(f"  {name:13}, balance alone                 : {only / alone:8.2f}")
-        for stiffness in ("constant", "following"):
-            both = best_time(lambda one=one, k=stiffness: once(table, one, k), 20)
-            print(f"  {name:13}, balance and {stiffness:9} shear : {both / alone:8.2f}")
-    cold = best_time(lambda: once(fresh(), rough, "following"))
-    warm = best_time(lambda: once(table, rough, "following"))
-    print(
-        f"  a curve of 100 amplitudes cold {cold * 1e3:.1f} ms, of which {(cold - warm) * 1e3:.1f} "
-        "are films for its table"
-    )
-
-
-def tabulated(fresh, finger, swings, weights):
-    """µ′/µ over force, speed and amplitude, by rough contact and the shear that follows it."""
-    rough = RoughContact()
-    shear = AsperityShear(np.geomspace(5e-3, 0.5, 20))
-
-    def whole(table):
-        return np.array(
-            [
-                sheared_friction(
-                    share_load(table, rough, swings, finger.plateau_pressure(float(force))),
-                    shear,
-                    FREQUENCY,
-                )
-                @ weights
-                for force in np.geomspace(0.05, 5.0, 20)
-            ]
-        )
-
-    table = fresh()
-    shape = whole(table).shape
-    cold, warm = best_time(lambda: whole(fresh()), 3), best_time(lambda: whole(table), 3)
-    print(
-        f"\nTable of µ′/µ over force × speed × amplitude {shape}, {swings.shape[1]} kinds of ridges"
-    )
-    print(
-        f"  {cold:.3f} s with its films, {warm:.3f} s without: {warm / 20 / swings.size * 1e6:.1f}"
-    )
-    print(f"  µs a plateau with its {shape[1]} speeds; periods of stick and slip take most of it")
 
 
 def main() -> None:
@@ -172,12 +113,6 @@ def main() -> None:
 
     seconds = best_time(lambda: whole_map(fresh()), 3)
     print(f"\nMap of 50 amplitudes × 50 forces (70 000 plateaus): {seconds:.3f} s with its table")
-
-    kinds, counts = np.unique(
-        np.round(np.abs(np.cos(np.pi * points / HALF_WAVELENGTH)), 9), return_counts=True
-    )
-    combined(table, fresh, law, np.outer(amplitudes, kinds), pressure)
-    tabulated(fresh, finger, np.outer(wide, kinds), counts / points.size)
 
     rng = np.random.default_rng(3)
     a, p = rng.uniform(0.2e-6, 5e-6, 20000), rng.uniform(1e3, 3e4, 20000)

@@ -67,7 +67,6 @@ MINIMUM = {
         "film.validity.crest_squeeze_number",
         "contact.sharing.paper.relative_friction_from_pressure",
         "contact.asperities.exponential_pressure",
-        "contact.sharing.tapping.tapping_number",
         "contact.finger.fingerpad.skin_displacement_per_friction",
         "contact.sliding.skin_vibration.texture_frequency",
         "plate.beam.modes.euler_bernoulli_frequency",

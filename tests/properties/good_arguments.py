@@ -180,7 +180,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "time_step": 1e-3,
         "lines": np.array([100.0]),
     },
-    "contact.sharing.tapping.contact_angle": {"rest_penetration": 1e-6},
     "film.line_grid.gap_table": {"gap": still_gap, "X": _GRID, "T": _GRID},
     "film.transient.settling.settle_to_periodic": {"gap": still_gap},
     "film.transient.march.solve_transient": {

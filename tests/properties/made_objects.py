@@ -26,7 +26,6 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.sharing.balance import LoadSharing, share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import FrictionRipple, PadPosture
-from squeezefilm.contact.sharing.shear import AsperityShear
 from squeezefilm.contact.sliding.dry_friction import (
     DryFriction,
     FrictionProfile,
@@ -191,7 +190,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     SpeedFriction: lambda: SpeedFriction(np.array([0.0, 0.1]), np.array([0.2, 0.5])),
     Finger: lambda: FINGER,
     FingerpadDynamics: FingerpadDynamics,
-    AsperityShear: lambda: AsperityShear(0.1),
     LoadSharing: lambda: share_load(MADE[FilmTable](), AsperityLaw(), 1e-6, 5e3),
     FilmTable: lambda: film_table(30e3, 250e-6, AIR),
     Occlusion: Occlusion,

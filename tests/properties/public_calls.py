@@ -49,7 +49,6 @@ NOT_CALLED = {
     contact.sharing.balance.LoadSharing
     contact.sliding.skin_vibration.SkinVibration
     contact.sliding.march.Sliding
-    contact.sharing.tapping.Tapping
     film.periodic.balance.LoadBalance
     film.periodic.batch.FilmBatch film.periodic.solution.FilmSolution
     film.planar.film.FilmPlanar film.transient.settling.FilmSettled

@@ -43,7 +43,7 @@ QUICK = (
     "contact.asperities.AsperityLaw", "contact.sliding.dry_friction", "contact.finger.",
     "contact.finger.fingerpad",
     "contact.skin.",
-    "contact.sharing.tapping.tapping_number", "distributions", "film.gap",
+    "distributions", "film.gap",
     "film.closed.limits", "film.closed.linear", "film.planar.gap", "film.validity.knudsen_number",
     "formats.wav", "formats.pictures", "materials", "plate.beam.modes.euler", "plate.laminate",
     "plate.layout", "plate.loaded_mode", "plate.ring.pair", "plate.exposure.exposure_guidance",

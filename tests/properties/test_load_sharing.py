@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import film_table
-from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.film.periodic.film import solve_uniform
 from squeezefilm.materials import Gas
 
@@ -119,23 +118,3 @@ def test_tied_ridges_that_are_alike_are_as_one(a, pressure, law):
     tied = share_load_tied(table, law, np.full(5, a), pressure)
     assert np.isclose(tied.relative_friction, alone, rtol=1e-7)
     assert abs(tied.residual) < 1e-8
-
-
-@calm
-@given(
-    st.floats(0.7e-6, 5e-6),
-    st.floats(20e3, 80e3),
-    st.floats(0.01, 1.0),
-    st.floats(0.2, 2.0),
-    pressures,
-)
-def test_tapping_depends_on_one_group_and_not_on_the_load(a, frequency, speed, friction, pressure):
-    one = tapping_friction(a, frequency, speed, pressure, friction_coefficient=friction)
-    other = tapping_friction(
-        a, 2 * frequency, 2 * speed, 3 * pressure, friction_coefficient=friction
-    )
-    assert np.isclose(one.tapping_number, other.tapping_number)
-    assert np.isclose(one.relative_friction, other.relative_friction, rtol=1e-9)
-    assert 0 <= one.relative_friction <= 1
-    faster = tapping_friction(a, frequency, 2 * speed, pressure, friction_coefficient=friction)
-    assert faster.relative_friction >= one.relative_friction - 1e-12

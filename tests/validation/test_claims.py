@@ -81,7 +81,6 @@ def _claim(**changes: object) -> Claim:
             ClaimValue((1.0,)),
             "reachable with parameters of our choice",
         ),
-        (_claim(printed=(), grounds="prediction"), ClaimValue((0.4,)), "prediction only"),
     ],
 )
 def test_verdicts_are_computed(claim: Claim, value: ClaimValue, verdict: str) -> None:

@@ -62,30 +62,3 @@ def test_what_is_one_per_cent_apart_has_friction_within_two(
     display: str, quantity: str, speed: float
 ) -> None:
     assert max(change(law, **{quantity: 0.01}) for law in laws(display, speed, 60)) < 0.02
-
-
-@pytest.mark.parametrize("quantity", ["force", "place", "length"])
-@pytest.mark.parametrize("display", DISPLAYS)
-def test_at_a_slow_finger_it_is_steep_and_has_no_steps(display: str, quantity: str) -> None:
-    """By the rival at 5 mm/s friction is that of what lies near the nodes: a tenth of a change of
-    any quantity makes a tenth of the difference, or hardly any."""
-    for law in (one.by("partial-levitation-shear") for one in laws(display, 0.005, 40)):
-        fine, coarse = (change(law, **{quantity: share}) for share in (1e-5, 1e-4))
-        assert fine < 0.2 * coarse + 1e-4
-        assert coarse < 0.02
-
-
-def test_a_stator_under_a_slow_finger_rises_evenly_from_035_to_040_newtons() -> None:
-    """Where two whole ridges came in, from 0.032 to 0.100."""
-    law = predict(
-        load_display("biet2008-stator"),
-        vibration_amplitude=2e-6,
-        speed=0.005,
-        model="partial-levitation-shear",
-    ).law.on_even_wave
-    forces = np.linspace(0.35, 0.40, 26)
-    friction = [dataclasses.replace(law, normal_force=float(force)).at(2e-6) for force in forces]
-    rises = np.diff(friction)
-    assert np.all(rises > 0)
-    assert rises.max() < 2 * rises.mean()
-    assert friction[-1] / friction[0] < 1.4

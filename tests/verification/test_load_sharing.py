@@ -10,7 +10,6 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from squeezefilm.analysis.friction.command import without_gas
 from squeezefilm.chain.friction import friction_law
 from squeezefilm.contact.asperities import (
     AsperityLaw,
@@ -24,7 +23,6 @@ from squeezefilm.contact.sharing.film_panels import DEEPEST_EXCURSION
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.contact.sharing.pad import PadPosture, friction_ripple, pad_friction, pad_points
 from squeezefilm.contact.sharing.paper import relative_friction
-from squeezefilm.contact.sharing.tapping import contact_angle, tapping_friction
 from squeezefilm.display import load_display
 from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
@@ -403,7 +401,7 @@ def test_tilt_and_orientation(table: FilmTable) -> None:
         pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3, limit="both")  # type: ignore[arg-type]
 
 
-# --- sliding and tapping --------------------------------------------------------------------------
+# --- sliding --------------------------------------------------------------------------------------
 
 
 def test_sliding_adds_nothing_that_matters(table: FilmTable) -> None:
@@ -418,29 +416,6 @@ def test_sliding_adds_nothing_that_matters(table: FilmTable) -> None:
     mean_square = u / (u**2 - 2e-6**2) ** 1.5
     wedge = 6 * GAS.viscosity * 0.1 * 250e-6 * mean_square * abs(np.trapezoid(p, x))
     assert 0 < wedge < 0.002 * 5e3
-
-
-def test_tapping_carries_the_load_and_falls_with_amplitude() -> None:
-    half = contact_angle(2e-6, 0.5e-6)
-    theta = np.linspace(-half, half, 20001)
-    carried = np.trapezoid(2e-6 * (np.cos(theta) - np.cos(half)), theta) / (2 * np.pi)
-    assert carried == pytest.approx(0.5e-6, rel=1e-6)
-    values = [tapping_friction(a * 1e-6, 40.5e3, 0.1, 5e3) for a in (0.3, 1, 2, 3, 5)]
-    assert values[0].relative_friction == 1
-    assert not values[0].intermittent
-    frictions = [item.relative_friction for item in values]
-    assert frictions == sorted(frictions, reverse=True)
-
-
-def test_tapping_at_great_speed_slips_all_the_time_and_at_little_never() -> None:
-    fast = tapping_friction(2e-6, 40.5e3, 100.0, 5e3)
-    slow = tapping_friction(2e-6, 40.5e3, 1e-4, 5e3)
-    assert fast.relative_friction == pytest.approx(1, abs=1e-3)
-    # All stick: q = k_t U t grows until the tap ends, mean k_t U t_c²/2 per period.
-    time = slow.contact_fraction / 40.5e3
-    stiffness = 2 / 3 * 5e3 / 0.6e-6
-    mean = stiffness * 1e-4 * time**2 / 2 * 40.5e3
-    assert slow.relative_friction == pytest.approx(mean / (0.9 * 5e3), rel=0.02)
 
 
 # --- the law of a display -------------------------------------------------------------------
@@ -470,21 +445,6 @@ def test_a_display_has_the_law() -> None:
     assert np.all(spread[1:] > 0)
     assert spread[0] < 1e-9
     np.testing.assert_allclose(limits.own, curve, rtol=1e-9)
-
-
-def test_the_two_mechanisms_are_compared_at_a_working_point() -> None:
-    law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="partial-levitation")
-    a = np.array([0.0, 1e-6, 3e-6])
-    slow, fast = (
-        np.array([without_gas(dataclasses.replace(law, speed=v), float(one)) for one in a])
-        for v in (0.05, 0.2)
-    )
-    assert slow[0] == fast[0] == pytest.approx(1)
-    # Tapping depends on the speed, levitation does not know it.
-    assert np.all(slow[1:] < fast[1:])
-    # Ridges near a node stay in contact: more friction is left than at an antinode alone.
-    alone = tapping_friction(3e-6, 40.5e3, 0.2, 7e3, friction_coefficient=0.9).relative_friction
-    assert fast[2] > alone
 
 
 def test_posture_and_skin_reach_the_law_of_a_display() -> None:

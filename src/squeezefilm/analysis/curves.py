@@ -182,7 +182,6 @@ COMPARED: tuple[tuple[FrictionModel, int], ...] = (
     ("levitation-2016", 81),
     ("levitation-ridges", 41),
     ("levitation", 81),
-    ("partial-levitation-shear", 41),
     ("partial-levitation", 41),
 )
 

@@ -24,7 +24,6 @@ from squeezefilm.analysis.joint_draws import (
 from squeezefilm.analysis.model_choices import (
     HEIGHT_LAW,
     MOISTURE,
-    SHEAR,
     SLIP,
     Choice,
     model_choices,
@@ -33,7 +32,6 @@ from squeezefilm.analysis.model_choices import (
 from squeezefilm.analysis.parameters import (
     FORCE,
     SKIN_COMPLIANCE,
-    TANGENTIAL_RATIO,
     Parameter,
     uncertain_parameters,
     with_values,
@@ -129,7 +127,6 @@ class Tally:
             "pressed through": "pressed through its asperities",
             "nearly everything into contact": "pressed nearly flat",
             "film is not tabulated": "outside of the film's table",
-            "leaves the range of a float": "shear that is no finite number",
         }
         why = [short for part, short in known.items() if part in words]
         self.reasons[why[0] if why else type(error).__name__] += 1
@@ -176,13 +173,10 @@ class Mixture:
             driven=driven,
             normal_force=prediction.normal_force,
         )
-        friction = MODEL_KINDS[self.model].friction
-        sheared, lifted = friction == "shear", friction == "lift"
-        # µ and κ decide when what touches slips, and nothing else.
-        without: list[str] = [] if sheared else [TANGENTIAL_RATIO, "friction_coefficient"]
-        if not lifted:
-            without += _OF_LIFT
-        choices = model_choices(display, sheared=sheared)
+        lifted = MODEL_KINDS[self.model].friction == "lift"
+        # µ′/µ does not depend on µ.
+        without = ["friction_coefficient", *(() if lifted else _OF_LIFT)]
+        choices = model_choices(display)
         if lifted and not driven:
             # Asperities and films decide what the plate feels of the finger, and nothing else.
             without += _OF_BALANCE
@@ -266,9 +260,7 @@ class Mixture:
                 by_part.setdefault(name, {})[rest] = value
         parts = {name: self._part(name, changed) for name, changed in by_part.items()}
         finger = parts.pop("finger", self.display.finger)
-        changes: dict[str, object] = {
-            path.split(".")[-1]: chosen[path] for path in (SHEAR, MOISTURE) if path in chosen
-        }
+        changes: dict[str, object] = {"moisture": chosen[MOISTURE]} if MOISTURE in chosen else {}
         asperities = finger.asperities
         heights = chosen.get(HEIGHT_LAW, getattr(asperities, "heights", "persson"))
         changes["asperities"] = same_interface(asperities, heights, self._pressure)

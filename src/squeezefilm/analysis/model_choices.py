@@ -17,12 +17,7 @@ from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
 from squeezefilm.display import Display
 
-HEIGHT_LAW, SHEAR, MOISTURE, SLIP = (
-    "height_law",
-    "finger.tangential_stiffness",
-    "finger.moisture",
-    "gas.slip",
-)
+HEIGHT_LAW, MOISTURE, SLIP = "height_law", "finger.moisture", "gas.slip"
 
 
 @dataclass(frozen=True)
@@ -83,15 +78,6 @@ _HEIGHTS = Choice(
     ),
     "the contact of skin on a surface was measured under no display",
 )
-_SHEAR = Choice(
-    SHEAR,
-    (
-        Option("following", 0.5, "many small contacts that come and go with the load"),
-        Option("constant", 0.3, "the same contacts at every load, on an elastic tissue"),
-        Option("rigid", 0.2, "all that touches slips: contacts stiffer than Mindlin's"),
-    ),
-    "measured friction grows with speed, which speaks against rigid and settles nothing else",
-)
 _SLIP = Choice(
     SLIP,
     (
@@ -108,28 +94,21 @@ _MOISTURES = {
 }
 
 
-def model_choices(display: Display, *, sheared: bool) -> tuple[Choice, ...]:
+def model_choices(display: Display) -> tuple[Choice, ...]:
     """What is drawn beside the parameters of a display.
 
     The moisture described gets one half, the others a quarter each. What the description gives as
-    measured (``evidence = "measured"``) stands. `sheared` is whether what touches may stick: a
-    model by name in which all slips leaves no choice.
+    measured (``evidence = "measured"``) stands.
     """
     described = display.finger.moisture
     moistures = tuple(
         Option(name, 0.5 if name == described else 0.25, why) for name, why in _MOISTURES.items()
     )
-    found = [
-        _HEIGHTS,
-        Choice(MOISTURE, moistures, "how moist a finger is on the day", "measurable"),
-        _SLIP,
-    ]
-    if sheared:
-        found.insert(1, _SHEAR)
+    moisture = Choice(MOISTURE, moistures, "how moist a finger is on the day", "measurable")
     measured = {path for path, one in display.provenance.items() if one.evidence == "measured"}
     if "finger.asperities.type" in measured:
         measured.add(HEIGHT_LAW)
-    return tuple(one for one in found if one.path not in measured)
+    return tuple(one for one in (_HEIGHTS, moisture, _SLIP) if one.path not in measured)
 
 
 def same_interface(law: ContactLaw, name: str, pressure: si.Pascal) -> ContactLaw:

@@ -29,7 +29,6 @@ SKIN_COMPLIANCE = "skin_compliance"
 """Where the pad lies between all ridges at one mean gap (0) and each at its own balance (1)."""
 FORCE = "finger.normal_force"
 DECAY_LENGTH = "finger.contact_decay_length"
-TANGENTIAL_RATIO = "finger.tangential_ratio"
 
 
 @dataclass(frozen=True)
@@ -98,12 +97,6 @@ _ASSUMED: dict[str, _Assumed] = {
     "finger.asperities.reference_gap": _Assumed(0.75, 1.25, "never measured on a display"),
     "finger.skin.mass_per_area": _Assumed(
         0.4, 1.5, "as the moving mass of 43 fingertips spreads, 5 to 95 %"
-    ),
-    TANGENTIAL_RATIO: _Assumed(
-        0.75,
-        1.25,
-        "up to 0.83, Mindlin's 2(1 − ν)/(2 − ν) at a Poisson's ratio of 0.3 (0.67 at 0.5), which "
-        "holds for rough contacts too: 10.1088/0953-8984/23/8/085001; as far down, assumed",
     ),
     "surface.roughness": _Assumed(0.75, 1.25, "one average for a whole surface; illustrative"),
     "surface.friction_coefficient": _Assumed(0.7, 1.3, "of skin at rest; illustrative"),

@@ -6,7 +6,6 @@ curves, textures. Each law names its model.
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, NamedTuple
@@ -49,10 +48,9 @@ class FrictionLaw(PadLaw):
     contact, at an unchanged friction coefficient (paper eq 14, corrected and as printed).
     "levitation", the default, lifts the contact off over a length fitted to people, which grows
     with `speed`, that of sliding; "levitation-2016" over the published one. "partial-levitation"
-    and "partial-levitation-shear" find the gap at which film and asperities carry each ridge
-    together: friction is in proportion to what asperities carry, or to the real contact area,
-    elastic until it slips, which depends on the speed too. `at` and `curve` answer at the law's own
-    speed. Where the pad is, `PadLaw` says.
+    finds the gap at which film and asperities carry each ridge together: friction is in proportion
+    to what asperities carry. `at` and `curve` answer at the law's own speed. Where the pad is,
+    `PadLaw` says.
     """
 
     def by(self, model: FrictionModel) -> FrictionLaw:
@@ -100,19 +98,11 @@ class FrictionLaw(PadLaw):
     def over_speeds(
         self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray, limit: Limit | None = None
     ) -> si.DimensionlessArray:
-        """µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds, amplitudes).
-
-        Toward rest a constant tangential stiffness keeps what the least pressure of a period
-        holds, one that follows the load nothing."""
+        """µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds, amplitudes)."""
         a, speeds = np.ravel(amplitude), np.ravel(speed)
-        if not self.kind.knows_speed:
+        if not self.kind.fitted:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
-        if self.kind.friction == "lift":
-            return self._lifted(a, speeds, limit or "own")
-        # A pad of thousands of ridges takes them in parts, within some 100 MB.
-        parts = min(math.ceil(a.size * speeds.size * self.ridge_swings[0].size / 1e7), a.size)
-        pads = [self._pad(part, speeds, limit=limit or "own") for part in np.array_split(a, parts)]
-        return np.hstack([pad.relative_friction for pad in pads])
+        return self._lifted(a, speeds, limit or "own")
 
     @si.checked_numbers
     def at(self, amplitude: si.Metre) -> si.Dimensionless:
@@ -163,7 +153,7 @@ class FrictionLaw(PadLaw):
         count = (65 if self.kind.shares_load else 257) if points is None else points
         si.require("points", count, at_least=2)
         # A row of its own for the speed that is asked for most.
-        speeds = np.union1d(TABLE_SPEEDS, [self.speed]) if self.kind.knows_speed else None
+        speeds = np.union1d(TABLE_SPEEDS, [self.speed]) if self.kind.fitted else None
         return tabulated(self, highest_amplitude, count, speeds)
 
 

@@ -13,7 +13,6 @@ FrictionModel = Literal[
     "levitation-2016",
     "levitation-ridges",
     "partial-levitation",
-    "partial-levitation-shear",
     "levitation",
 ]
 DEFAULT_MODEL: FrictionModel = "levitation"
@@ -25,14 +24,14 @@ class ModelKind(NamedTuple):
 
     `friction` is what the model takes: the paper's closed form at an infinite squeeze number and a
     gap that does not yield ("asymptote"); or films that carry the finger together with asperities,
-    at the gap where both balance the load. Of that it takes the part that asperities carry, all of
-    it slipping ("load"); that part, elastic until it slips ("shear"); or the closed form of 2016
-    ("lift"), while the balance only says what the plate feels of the finger. `fitted` is whether
-    that has the finger's length, fitted to people, or the constants published in 2016; `ridges`,
-    whether it takes the solved film over each ridge in place of the closed form.
+    at the gap where both balance the load. Of that it takes the part that asperities carry
+    ("load"), or the closed form of 2016 ("lift"), while the balance only says what the plate feels
+    of the finger. `fitted` is whether that has the finger's length, fitted to people and growing
+    with the speed, or the constants published in 2016; `ridges`, whether it takes the solved film
+    over each ridge in place of the closed form.
     """
 
-    friction: Literal["asymptote", "load", "shear", "lift"]
+    friction: Literal["asymptote", "load", "lift"]
     fitted: bool = False
     ridges: bool = False
 
@@ -41,11 +40,6 @@ class ModelKind(NamedTuple):
         """Whether film and asperities share the load, at a gap that yields."""
         return self.friction != "asymptote"
 
-    @property
-    def knows_speed(self) -> bool:
-        """Whether friction depends on the finger's speed."""
-        return self.fitted or self.friction == "shear"
-
 
 MODEL_KINDS: dict[FrictionModel, ModelKind] = {
     "paper2008": ModelKind("asymptote"),
@@ -53,7 +47,6 @@ MODEL_KINDS: dict[FrictionModel, ModelKind] = {
     "levitation-2016": ModelKind("lift"),
     "levitation-ridges": ModelKind("lift", fitted=True, ridges=True),
     "partial-levitation": ModelKind("load"),
-    "partial-levitation-shear": ModelKind("shear"),
     "levitation": ModelKind("lift", fitted=True),
 }
 

@@ -44,7 +44,6 @@ from squeezefilm.contact.sharing.pad import (
     pad_friction,
     pad_points,
 )
-from squeezefilm.contact.sharing.shear import AsperityShear
 from squeezefilm.display import Surface
 from squeezefilm.errors import InputError, OutOfRangeError
 from squeezefilm.hard_limits import FINGER_SPEED
@@ -112,11 +111,11 @@ class PadLaw:
         of the skin; how the pad lies (None: at `position`, level); and whether the finger's skin
         yields at the ultrasonic frequency."""
         skin = self.finger.skin if yielding else None
-        return self._pad(amplitude, self.speed, limit=limit, posture=posture, skin=skin)
+        return self._pad(amplitude, limit=limit, posture=posture, skin=skin)
 
     @si.checked_numbers
     def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
-        """µ′/µ in both limits of the skin at amplitudes (m); with shear where the model has it."""
+        """µ′/µ in both limits of the skin at amplitudes (m)."""
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
         return FrictionLimits(a, self.friction_in("own", a), self.friction_in("one-gap", a))
 
@@ -173,7 +172,6 @@ class PadLaw:
             self.half_wavelength,
             self.finger,
             normal_force=self.normal_force,
-            shear=self._shear(self.speed),
         )
 
     @property
@@ -280,7 +278,7 @@ class PadLaw:
         if self.kind.friction == "lift":
             return self._lifted_ridge(amplitude, self.speed)
         posture, at = PadPosture(swings=np.ones(1)), np.zeros(1)
-        found = self._pad(amplitude, self.speed, limit="own", points=at, posture=posture)
+        found = self._pad(amplitude, limit="own", points=at, posture=posture)
         return found.relative_friction
 
     @cached_property
@@ -293,7 +291,6 @@ class PadLaw:
     def _pad(
         self,
         amplitude: si.MetreLike,
-        speed: si.MetrePerSecondLike,
         *,
         limit: Limit,
         points: si.MetreArray | None = None,
@@ -321,7 +318,6 @@ class PadLaw:
                 limit=limit,
                 posture=posture,
                 skin=skin,
-                shear=self._shear(speed),
             )
 
     @contextlib.contextmanager
@@ -332,14 +328,6 @@ class PadLaw:
         except OutOfRangeError as error:
             shown = si.format_quantity(self.normal_force, si.Unit("N"))
             raise OutOfRangeError(f"under a normal force of {shown}: {error}") from error
-
-    def _shear(self, speed: si.MetrePerSecondLike) -> AsperityShear | None:
-        if self.kind.friction != "shear":
-            return None
-        finger = self.finger
-        return AsperityShear(
-            speed, self.friction_coefficient, finger.tangential_stiffness, finger.tangential_ratio
-        )
 
 
 def _require_tabulated(amplitude: si.MetreLike, met: si.DimensionlessArray) -> None:

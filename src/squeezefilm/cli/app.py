@@ -122,8 +122,8 @@ OnPlace = Annotated[
 Model = Annotated[
     str | None,
     typer.Option(
-        help="Friction model: levitation (the default), partial-levitation-shear, "
-        "levitation-ridges, partial-levitation, levitation-2016, paper2008."
+        help="Friction model: levitation (the default), levitation-ridges, partial-levitation, "
+        "levitation-2016, paper2008, paper2008-printed."
     ),
 ]
 

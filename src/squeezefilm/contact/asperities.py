@@ -25,14 +25,7 @@ from squeezefilm import quantities as si
 from squeezefilm.hard_limits import DECAY_LENGTH, PRESSURE
 
 AsperityHeights = Literal["exponential", "gaussian"]
-TangentialStiffness = Literal["rigid", "constant", "following"]
-"""Of what touches, against shear: infinite, that at rest under the same load, or in proportion to
-the normal stiffness at every moment."""
-
-MINDLIN_RATIO: si.Dimensionless = 2 / 3
-"""Tangential over normal contact stiffness 2(1 − ν)/(2 − ν) of an incompressible body."""
-
-EXPONENTIAL, TABULATED, LINEAR_OVERLAP = range(3)
+EXPONENTIAL, TABULATED = range(2)
 
 # ln F is tabulated between these, in units of the height deviation: below, the asperities are
 # crushed flat, above they carry e^-200 of anything.
@@ -41,16 +34,15 @@ _LOWEST, _HIGHEST, _STEP = -8.0, 20.0, 0.025
 
 class CompiledAsperities(NamedTuple):
     """A law of asperities for compiled code: the number of its kind, its constants, and where it
-    is tabulated the cubics of ln p (p in Pa) between gaps at equal steps, and of what friction can
-    hold over µ p where that is not 1. For the constants see `asperity_kernel`."""
+    is tabulated the cubics of ln p (p in Pa) between gaps at equal steps. For the constants see
+    `asperity_kernel`."""
 
     kind: int
     constants: si.FloatArray
     table: si.FloatArray
-    area: si.FloatArray
 
 
-NO_CUBICS: si.FloatArray = np.zeros((0, 4))
+_NO_CUBICS: si.FloatArray = np.zeros((0, 4))
 
 
 def cubics(values: si.FloatArray, slopes: si.FloatArray, step: float) -> si.FloatArray:
@@ -187,10 +179,10 @@ class AsperityLaw:
         """The law as the compiled code takes it."""
         constants = [self.reference_pressure, self.reference_gap, self.decay_length, 0.0, 0.0, 0.0]
         if self.heights == "exponential":
-            return CompiledAsperities(EXPONENTIAL, np.array(constants), NO_CUBICS, NO_CUBICS)
+            return CompiledAsperities(EXPONENTIAL, np.array(constants), _NO_CUBICS)
         table = _gaussian_cubics().copy()
         overlap = float(gaussian_overlap(self.reference_gap / self.decay_length))
         table[:, 0] += math.log(self.reference_pressure / overlap)
         scale = self.decay_length
         constants[3:] = [_LOWEST * scale, _STEP * scale, -_STEP * scale / table[-1, 1]]
-        return CompiledAsperities(TABULATED, np.array(constants), table, NO_CUBICS)
+        return CompiledAsperities(TABULATED, np.array(constants), table)

@@ -1,4 +1,4 @@
-"""The compiled laws of asperities: pressure and stiffness at a gap, and means over a period.
+"""The compiled laws of asperities: mean pressures over a period.
 
 The constants of a law are a pressure, a gap and a decay length, p_ref exp(−(h − h_ref)/λ) being
 the law or near it; of a table also its first gap, its step and the decay length at its end, in m.
@@ -13,7 +13,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.compiled import compiled
-from squeezefilm.contact.asperities import EXPONENTIAL, LINEAR_OVERLAP, CompiledAsperities
+from squeezefilm.contact.asperities import EXPONENTIAL, CompiledAsperities
 
 
 @compiled(error_model="numpy")
@@ -45,110 +45,11 @@ _FADED = 30.0
 
 
 @compiled(error_model="numpy")
-def asperities_at(asperities: CompiledAsperities, h: float) -> tuple[float, float]:
-    """p_a at a gap h (Pa) and −dp_a/dh (Pa/m)."""
-    kind, law, c, _ = asperities
-    if kind == EXPONENTIAL:
-        pressure = law[0] * math.exp(min(-(h - law[1]) / law[2], 700.0))
-        return pressure, pressure / law[2]
-    if kind == LINEAR_OVERLAP:
-        return (-h * law[0] / law[2], law[0] / law[2]) if h < 0.0 else (0.0, 0.0)
-    # ln p goes on straight below the first gap.
-    x = (h - law[3]) / law[4]
-    i = np.uint64(max(x, 0.0))
-    if i >= len(c):
-        return 0.0, 0.0
-    x -= i
-    if x < 0.0:
-        pressure, slope = math.exp(c[i, 0] + x * c[i, 1]), c[i, 1]
-    else:
-        pressure = math.exp(c[i, 0] + x * (c[i, 1] + x * (c[i, 2] + x * c[i, 3])))
-        slope = c[i, 1] + x * (2.0 * c[i, 2] + x * 3.0 * c[i, 3])
-    return pressure, -pressure * slope / law[4]
-
-
-@compiled(error_model="numpy")
-def held_along(
-    asperities: CompiledAsperities, u: float, a: float, step: float, rows: si.FloatArray
-) -> None:
-    """Over gaps u − a cos T at T = 0, step, …, into three `rows`: what friction can hold over µ
-    (Pa), minus its slope over T (Pa), and −dp_a/dh (Pa/m).
-
-    Each law has a loop of its own: a call for every point takes several times as long.
-    """
-    kind, law, table, area = asperities
-    cosine, sine, c, s = math.cos(step), math.sin(step), 1.0, 0.0
-    for k in range(rows.shape[1]):
-        rows[0, k], rows[1, k] = u - a * c, a * s
-        c, s = c * cosine - s * sine, s * cosine + c * sine
-    if kind == EXPONENTIAL:
-        for k in range(rows.shape[1]):
-            rows[0, k] = law[0] * math.exp(min((law[1] - rows[0, k]) / law[2], 700.0))
-            rows[2, k] = rows[0, k] / law[2]
-            rows[1, k] *= rows[2, k]
-        return
-    if kind == LINEAR_OVERLAP:
-        for k in range(rows.shape[1]):
-            rows[2, k] = law[0] / law[2]
-            rows[0, k] = max(-rows[0, k], 0.0) * rows[2, k]
-            rows[1, k] *= rows[2, k]
-        return
-    for k in range(rows.shape[1]):
-        x = (rows[0, k] - law[3]) / law[4]
-        i = np.uint64(max(x, 0.0))
-        if i >= len(table):
-            rows[:, k] = 0.0
-            continue
-        x -= i
-        onward = max(x, 0.0)
-        rise = onward * (table[i, 2] + onward * table[i, 3])
-        pressure = math.exp(table[i, 0] + x * table[i, 1] + onward * rise)
-        slope = table[i, 1] + onward * (2.0 * table[i, 2] + onward * 3.0 * table[i, 3])
-        rows[2, k] = -pressure * slope / law[4]
-        if len(area) == 0:
-            rows[0, k] = pressure
-            rows[1, k] *= rows[2, k]
-            continue
-        x = onward
-        share = area[i, 0] + x * (area[i, 1] + x * (area[i, 2] + x * area[i, 3]))
-        change = area[i, 1] + x * (2.0 * area[i, 2] + x * 3.0 * area[i, 3])
-        rows[0, k] = pressure * share
-        rows[1, k] *= rows[2, k] * share - pressure * change / law[4]
-
-
-@compiled(error_model="numpy")
-def held_at(asperities: CompiledAsperities, h: float) -> tuple[float, float]:
-    """What friction can hold over µ at a gap h (Pa), the pressure or in proportion to the real
-    contact area, and −dp_a/dh (Pa/m)."""
-    rows = np.empty((3, 1))
-    held_along(asperities, h, 0.0, 0.0, rows)
-    return rows[0, 0], rows[2, 0]
-
-
-@compiled(error_model="numpy")
 def _covered(reach: float, a: float) -> float:
     """The phase at which a gap is by `reach` above its least; π where it never is."""
     if reach >= 2.0 * a:
         return math.pi
     return math.acos(1.0 - reach / a) if reach > 0.0 else 0.0
-
-
-@compiled(error_model="numpy")
-def touching_phase(asperities: CompiledAsperities, u: float, a: float) -> float:
-    """How far from the least gap u − a of a period anything touches that matters, in rad: 0 where
-    nothing does, π where all of the period does."""
-    law, least = asperities.constants, u - a
-    if asperities.kind == LINEAR_OVERLAP:
-        return _covered(-least, a)
-    if asperities.kind == EXPONENTIAL:
-        return _covered(_FADED * law[2], a)
-    pressure, stiffness = asperities_at(asperities, least)
-    if pressure <= 0.0:
-        return 0.0
-    # A law of rough contact falls off fastest at small gaps, one of Gaussian heights at large.
-    reach = _FADED * max(pressure / stiffness, law[5])
-    # Within the table to rounding.
-    return _covered(min(reach, law[3] + law[4] * (len(asperities.table) - 1e-6) - least), a)
 
 
 @compiled(error_model="numpy")

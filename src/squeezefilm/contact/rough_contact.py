@@ -268,8 +268,6 @@ class RoughContact:
 
 @lru_cache(maxsize=32)
 def _compiled(law: RoughContact) -> CompiledAsperities:
-    from scipy.special import erf
-
     known, step = law.spectrum, _STEP * law.roughness
     constants = [
         law.pressure_scale * known.strength,
@@ -280,12 +278,7 @@ def _compiled(law: RoughContact) -> CompiledAsperities:
         -law.roughness / known.steepness[-1],
     ]
     table = cubics(known.logarithm + math.log(law.pressure_scale), known.steepness, _STEP)
-    # Friction in proportion to the real contact area, and µ p where that is small:
-    # √π/2 erf(s)/s over the pressure, s = √2 p/(E* h′_rms).
-    s = math.sqrt(2) * law.pressure_scale * np.exp(known.logarithm) / (law.modulus * law.rms_slope)
-    share = math.sqrt(math.pi) / 2 * erf(s) / s
-    area = cubics(share, (np.exp(-(s**2)) - share) * known.steepness, _STEP)
-    return CompiledAsperities(TABULATED, np.array(constants), table, area)
+    return CompiledAsperities(TABULATED, np.array(constants), table)
 
 
 ContactLaw = AsperityLaw | RoughContact

@@ -135,7 +135,7 @@ def _tables(
                 friction_law(display, half, frequency, normal_force=float(force), place=place)
                 for force in FORCES
             ]
-            speeds = TABLE_SPEEDS if laws[0].kind.knows_speed else np.zeros(1)
+            speeds = TABLE_SPEEDS if laws[0].kind.fitted else np.zeros(1)
             friction = np.stack([law.over_speeds(grid, speeds) for law in laws])
             # Where the law holds nothing at rest, nothing shall: not what its solver leaves.
             friction = np.clip(np.where(friction < _SOLVERS, 0.0, friction), 0.0, 1.0)

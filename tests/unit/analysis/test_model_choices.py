@@ -10,7 +10,6 @@ import pytest
 from squeezefilm.analysis.model_choices import (
     HEIGHT_LAW,
     MOISTURE,
-    SHEAR,
     SLIP,
     gap_of,
     model_choices,
@@ -25,26 +24,26 @@ STATOR = load_display("biet2008-stator")
 
 
 def test_weights_are_probabilities_each_with_its_reason() -> None:
-    choices = {one.path: one for one in model_choices(STATOR, sheared=True)}
-    assert set(choices) == {HEIGHT_LAW, SHEAR, MOISTURE, SLIP}
+    choices = {one.path: one for one in model_choices(STATOR)}
+    assert set(choices) == {HEIGHT_LAW, MOISTURE, SLIP}
     for one in choices.values():
         assert sum(option.weight for option in one.options) == pytest.approx(1)
         assert all(option.why for option in one.options)
     assert choices[MOISTURE].knowledge == "measurable"
-    assert {choices[path].knowledge for path in (HEIGHT_LAW, SHEAR, SLIP)} == {"unknown"}
-    assert choices[SHEAR].spread == ("following 50 %", "constant 30 %", "rigid 20 %")
+    assert {choices[path].knowledge for path in (HEIGHT_LAW, SLIP)} == {"unknown"}
+    assert choices[SLIP].spread == ("fukui-kaneko 50 %", "veijola 25 %", "first 25 %")
 
 
 def test_a_share_of_the_probability_falls_to_its_option() -> None:
-    shear = next(one for one in model_choices(STATOR, sheared=True) if one.path == SHEAR)
-    drawn = shear.drawn((np.arange(100) + 0.5) / 100)
-    assert [drawn.count(name) for name in ("following", "constant", "rigid")] == [50, 30, 20]
-    assert shear.drawn(np.array([0.0, 1.0])) == ["following", "rigid"]
+    slip = next(choice for choice in model_choices(STATOR) if choice.path == SLIP)
+    drawn = slip.drawn((np.arange(100) + 0.5) / 100)
+    assert [drawn.count(name) for name in ("fukui-kaneko", "veijola", "first")] == [50, 25, 25]
+    assert slip.drawn(np.array([0.0, 1.0])) == ["fukui-kaneko", "first"]
 
 
 def test_the_moisture_described_is_the_most_probable() -> None:
     moist = dataclasses.replace(STATOR.finger, moisture="moist")
-    choices = model_choices(dataclasses.replace(STATOR, finger=moist), sheared=True)
+    choices = model_choices(dataclasses.replace(STATOR, finger=moist))
     found = next(one for one in choices if one.path == MOISTURE)
     assert {one.name: one.weight for one in found.options} == {
         "dry": 0.25, "normal": 0.25, "moist": 0.5,
@@ -53,13 +52,11 @@ def test_the_moisture_described_is_the_most_probable() -> None:
 
 def test_what_was_measured_is_not_drawn() -> None:
     known = {
-        SHEAR: Provenance("our bench", "measured"),
         "finger.asperities.type": Provenance("our bench", "measured"),
         MOISTURE: Provenance("a guess", "assumed"),
     }
     display = dataclasses.replace(STATOR, provenance=known)
-    assert {one.path for one in model_choices(display, sheared=True)} == {MOISTURE, SLIP}
-    assert SHEAR not in {one.path for one in model_choices(STATOR, sheared=False)}
+    assert {one.path for one in model_choices(display)} == {MOISTURE, SLIP}
 
 
 LAWS = {

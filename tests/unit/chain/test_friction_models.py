@@ -12,5 +12,5 @@ def test_every_model_has_a_kind() -> None:
     assert MODEL_KINDS[DEFAULT_MODEL].shares_load
     closed = {name for name, kind in MODEL_KINDS.items() if not kind.shares_load}
     assert closed == {"paper2008", "paper2008-printed"}
-    timed = {name for name, kind in MODEL_KINDS.items() if kind.knows_speed}
-    assert timed == {"levitation", "levitation-ridges", "partial-levitation-shear"}
+    timed = {name for name, kind in MODEL_KINDS.items() if kind.fitted}
+    assert timed == {"levitation", "levitation-ridges"}

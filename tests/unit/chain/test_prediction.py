@@ -107,22 +107,13 @@ def test_film_and_asperities_share_the_load_where_a_rival_is_asked_for(
     stator: Display, plate: Display
 ) -> None:
     for display in (stator, plate):
-        p = predict(display, model="partial-levitation-shear")
+        p = predict(display, model="partial-levitation")
         sharing = p.touch.sharing
         assert sharing is not None
         assert p.relative_friction == pytest.approx(float(sharing.relative_friction[0]))
-        # Shear builds up within the taps: friction is less than the asperities' share of the load.
-        alone = predict(display, model="partial-levitation")
-        carried = alone.touch.sharing
-        assert carried is not None
-        assert alone.relative_friction == pytest.approx(1 - float(carried.film_share[0]), abs=1e-6)
-        assert float(sharing.film_share[0]) == pytest.approx(float(carried.film_share[0]))
-        assert p.relative_friction < alone.relative_friction
-        # A finger too fast for it slips all through; one that creeps keeps little.
-        slow, fast = (
-            predict(display, speed=v, model=p.model).relative_friction for v in (0.01, 3.0)
-        )
-        assert slow < p.relative_friction < fast == pytest.approx(alone.relative_friction, rel=0.05)
+        assert p.relative_friction == pytest.approx(1 - float(sharing.film_share[0]), abs=1e-6)
+        # No speed enters.
+        assert predict(display, speed=0.01, model=p.model).relative_friction == p.relative_friction
         assert p.relative_friction_limits is not None
         own, tied = p.relative_friction_limits
         assert own == pytest.approx(p.relative_friction)
@@ -134,7 +125,7 @@ def test_film_and_asperities_share_the_load_where_a_rival_is_asked_for(
 
 
 def test_a_stiff_pad_out_of_range_does_not_take_the_friction_with_it() -> None:
-    p = predict("biet2008-stator", vibration_amplitude=45e-6, model="partial-levitation-shear")
+    p = predict("biet2008-stator", vibration_amplitude=45e-6, model="partial-levitation")
     with pytest.raises(OutOfRangeError, match="pressed through"):
         p.law.limits(45e-6)
     assert p.relative_friction_limits is None
@@ -191,17 +182,16 @@ def test_moisture_changes_the_friction_without_vibration(plate: Display) -> None
     assert predict(moist).friction_coefficient > predict(plate).friction_coefficient
 
 
-def test_a_vacuum_takes_the_film_s_reduction_away_and_leaves_the_taps_(stator: Display) -> None:
+def test_a_vacuum_takes_less_from_films_over_single_ridges(stator: Display) -> None:
     thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(2e3))
     here, there = (predict(one, model="partial-levitation") for one in (stator, thin))
     assert 1 - there.relative_friction < 0.2 * (1 - here.relative_friction)
     here, there = predict(stator), predict(thin)
     # Measured at a sixtieth of an atmosphere: 0.60 to 0.82, which this model cannot give.
     assert 0.2 < (1 - there.relative_friction) / (1 - here.relative_friction) < 0.5
-    # What touches in bursts shears off in a vacuum just as well: most of the reduction stays.
-    here, there = (predict(one, model="partial-levitation-shear") for one in (stator, thin))
-    assert there.relative_friction > 1.3 * here.relative_friction
-    assert 1 - there.relative_friction > 0.5 * (1 - here.relative_friction)
+    # Films over single ridges are far from their asymptote, and give it.
+    here, there = (predict(one, model="levitation-ridges") for one in (stator, thin))
+    assert 0.5 < (1 - there.relative_friction) / (1 - here.relative_friction) < 0.9
 
 
 def test_unknown_models_are_refused(stator: Display) -> None:

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import erf
 
-from squeezefilm.contact.asperity_kernel import asperities_at, asperity_mean
+from squeezefilm.contact.asperity_kernel import asperity_mean
 from squeezefilm.contact.rough_contact import LEAST_GAP, RoughContact, Spectrum
 from squeezefilm.errors import InputError, OutOfRangeError
 
@@ -123,12 +123,12 @@ def test_far_away_nothing_is_carried() -> None:
 
 def test_compiled_code_has_the_same_law() -> None:
     compiled = CONTACT.compiled()
-    for gap in np.linspace(0.06e-6, 14e-6, 200):
-        pressure, stiffness = asperities_at(compiled, gap)
-        assert pressure == pytest.approx(float(CONTACT.pressure(gap)), rel=1e-12)
-        if gap < 13e-6:
-            around = [float(CONTACT.pressure(gap + step)) for step in (-1e-11, 1e-11)]
-            assert stiffness == pytest.approx((around[0] - around[1]) / 2e-11, rel=1e-4)
+    for gap in np.linspace(0.06e-6, 13e-6, 200):
+        # Hardly anything vibrates: the first harmonic is stiffness times amplitude.
+        mean, first = asperity_mean(compiled, gap, 1e-11)
+        assert mean == pytest.approx(float(CONTACT.pressure(gap)), rel=1e-4)
+        around = [float(CONTACT.pressure(gap + step)) for step in (-1e-11, 1e-11)]
+        assert first == pytest.approx((around[0] - around[1]) / 2, rel=1e-3)
     for u, a in ((2.0e-6, 1.2e-6), (6e-6, 5.5e-6), (20e-6, 19e-6), (60e-6, 59e-6)):
         mean, first = asperity_mean(compiled, u, a)
         turn = np.cos(2 * np.pi * np.arange(4096) / 4096)

@@ -21,7 +21,7 @@ from squeezefilm.plausibility.checks import implausibilities
 # implausible by itself. All others differ by less than ten.
 DIFFER = {
     "quality_factor": 1e3,
-    "voltage": 1e2,
+    "voltage": 1e3,
     "roughness": 1e4,
     "asperity_roughness": 1e4,
     "skin_roughness": 1e3,
@@ -46,6 +46,8 @@ DIFFER = {
     "ceramic_thickness": 1e2,
     "ceramic_outer_diameter": 1e2,
     "plateau_width": 1e2,
+    "contact_decay_length": 1e2,
+    ("measured", "vibration_amplitude"): 1e2,
     "ridge_amplitude": 1e2,
     "radial_width": 1e2,
     "width": 1e2,
@@ -57,7 +59,7 @@ LEFT_OUT = {
     "duty", "duty_window", "slew", "continuous_voltage", "heat", "lowest_frequency",
     "highest_frequency", "emissivity", "temperature_coefficient", "contact_area_exponent",
     "decay_speed_exponent",
-    "hurst_exponent", "longest_wavelength", "shortest_wavelength", "tangential_ratio",
+    "hurst_exponent", "longest_wavelength", "shortest_wavelength",
     "ambient_temperature", "mass_per_area", "damping_per_area", "ridge_angle",
 }  # fmt: skip
 

@@ -30,8 +30,8 @@ class Laws:
     """Friction that falls with amplitude over force and may rise with speed; it holds up to an
     amplitude."""
 
-    def __init__(self, reach: float = math.inf, shear: bool = True) -> None:
-        self.reach, self.asked, self.tried, self.shear = reach, [], 0, shear
+    def __init__(self, reach: float = math.inf, timed: bool = True) -> None:
+        self.reach, self.asked, self.tried, self.timed = reach, [], 0, timed
 
     def friction_law(self, display: Any, half: float, frequency: float, **how: Any) -> Any:
         self.asked.append((half, frequency, how))
@@ -47,11 +47,11 @@ class Laws:
         def over_speeds(amplitude: Any, speed: Any) -> Any:
             return (
                 curve(amplitude) * (1 - np.exp(-speed / 0.1))[:, None]
-                if self.shear
+                if self.timed
                 else (np.repeat(curve(amplitude)[None, :], speed.size, axis=0))
             )
 
-        kind = SimpleNamespace(knows_speed=self.shear)
+        kind = SimpleNamespace(fitted=self.timed)
         return SimpleNamespace(over_speeds=over_speeds, force=force, kind=kind, place="a place")
 
 
@@ -95,7 +95,7 @@ def test_the_tables_hold_law_and_load_over_force_and_amplitude(laws: Laws) -> No
 
 
 def test_a_law_that_knows_no_speed_has_a_table_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    use(monkeypatch, Laws(shear=False))
+    use(monkeypatch, Laws(timed=False))
     found = working_point(STATOR, SETTINGS, MODE)
     np.testing.assert_array_equal(found.speeds, [0.0])
     friction = 1 / (1 + 1e6 * found.amplitudes[None, :] / FORCES[:, None])

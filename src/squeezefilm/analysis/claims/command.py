@@ -10,7 +10,7 @@ from typing import Any
 
 from squeezefilm import presets
 from squeezefilm import quantities as si
-from squeezefilm.analysis.claims import actuators, metal  # noqa: F401 # each enters what it computes
+from squeezefilm.analysis.claims import actuators  # noqa: F401 # each enters what it computes
 from squeezefilm.analysis.claims.contact import DIRECTION_VALUES
 from squeezefilm.analysis.claims.procedure import Design
 from squeezefilm.analysis.claims.record import (
@@ -25,9 +25,6 @@ from squeezefilm.errors import ConfigError
 from squeezefilm.kept.store import Kept
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import stamp, to_json
-
-# Registers what it computes; named so that the import is no accident.
-METAL_SPEEDS = metal.PREDICTED_SPEEDS
 
 _VALUES: Kept[ClaimValue] = Kept("claims", ClaimValue)
 
@@ -131,9 +128,6 @@ def judge(claim: Claim, found: ClaimValue) -> ClaimResult:
 
 
 def _verdict(claim: Claim, found: ClaimValue) -> Verdict:
-    if claim.grounds == "prediction":
-        # Nothing was compared, whatever was found.
-        return "prediction only"
     passed = VERDICT_OF_GROUNDS.get(claim.grounds)
     if claim.relation == "equals":
         if _near(found.value, claim):

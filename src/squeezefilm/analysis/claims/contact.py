@@ -39,7 +39,7 @@ def _(model: str) -> ClaimValue:
         return (1 - inside) / (1 - at.relative_friction(model))
 
     shares = left("fukui-kaneko"), left("veijola")
-    if not MODELS[model].film or MODELS[model].lifted:
+    if MODELS[model] == "closed form":
         return ClaimValue(shares)
     path = FROZEN.gas.at_pressure(_THIN).mean_free_path
     return ClaimValue(

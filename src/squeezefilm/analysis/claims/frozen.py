@@ -11,66 +11,43 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.asperities import (
-    MINDLIN_RATIO,
-    AsperityLaw,
-    TangentialStiffness,
-)
+from squeezefilm.contact.asperities import AsperityLaw
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
+from squeezefilm.contact.rough_contact import ContactLaw
 from squeezefilm.contact.sharing.balance import share_load
 from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.contact.sharing.levitation import levitation_friction, levitation_scale
+from squeezefilm.contact.sharing.levitation import (
+    levitation_friction,
+    levitation_scale,
+    ridge_films,
+    ridge_friction,
+)
 from squeezefilm.contact.sharing.pad import PadPosture, pad_friction, pad_points
-from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
-from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.errors import InputError
 from squeezefilm.materials import Gas
 
+Kind = Literal["balance", "closed form", "ridges"]
 
-@dataclass(frozen=True)
-class FrozenModel:
-    """A model that published directions are asked of: its law of contact and of shear.
+MODELS: Mapping[str, Kind] = MappingProxyType(
+    {"partial-levitation": "balance", "levitation": "closed form", "levitation-ridges": "ridges"}
+)
+"""The models that published directions are asked of, and what each solves: the balance of a film
+with asperities of `FrozenContact.law`, or a film that lifts the contact off over a length fitted to
+people, in closed form or solved over a ridge."""
 
-    `film` is False for contact alone, without a gas (`contact.sharing.tapping`); a model that is
-    `lifted` is the closed form of `contact.sharing.levitation`, which takes neither law.
-    """
-
-    law: ContactLaw
-    stiffness: TangentialStiffness
-    film: bool = True
-    lifted: bool = False
-
-    @property
-    def words(self) -> str:
-        """What it is, in words."""
-        if self.lifted:
-            return "a film lifts the contact off over a length fitted to people on glass"
-        if not self.film:
-            return "taps of a linear skin that shears until it slips, no gas"
-        shear = {
-            "rigid": "all that touches slides",
-            "constant": "elastic in shear until it slips, with a constant stiffness",
-            "following": "elastic in shear until it slips, with a stiffness that follows the load",
-        }
-        return f"film and {self.law.words}; {shear[self.stiffness]}"
-
-
-MODELS: Mapping[str, FrozenModel] = MappingProxyType(
+WORDS: Mapping[Kind, str] = MappingProxyType(
     {
-        "partial-levitation": FrozenModel(AsperityLaw(), "rigid"),
-        "partial-levitation-shear": FrozenModel(RoughContact(), "following"),
-        "levitation": FrozenModel(RoughContact(), "rigid", lifted=True),
-        "intermittent-contact": FrozenModel(AsperityLaw(), "constant", film=False),
+        "balance": f"film and {AsperityLaw().words}; all that touches slides",
+        "closed form": "a film lifts the contact off over a length fitted to people on glass",
+        "ridges": "a film solved over each ridge lifts it off over a length fitted to people",
     }
 )
-"""The models by name, each law named here and not left to what a finger has by default."""
 
 
 def _evidence() -> Mapping[str, str]:
@@ -88,8 +65,6 @@ def _evidence() -> Mapping[str, str]:
             "roughness": "published: the paper's adhesive",
             "plateau_pressure": "assumed: 0.36 N on 1 cm², carried by 5/7 of it",
             "speed": "published: between the 77 and 86 mm/s of Smith, Gosselin and Houde 2002",
-            "friction_coefficient": "assumed",
-            "stiffness_ratio": "derived: Mindlin, incompressible bodies",
         }
     )
 
@@ -111,16 +86,15 @@ class FrozenContact:
     roughness: si.Metre = 0.6e-6
     plateau_pressure: si.Pascal = 5e3
     speed: si.MetrePerSecond = 0.08
-    friction_coefficient: si.Dimensionless = 0.9
-    stiffness_ratio: si.Dimensionless = MINDLIN_RATIO
     evidence: Mapping[str, str] = field(default_factory=_evidence)
 
-    def law(self, model: str) -> ContactLaw:
-        """The law of contact of a model on the frozen roughness: its heights grow with those of
-        skin and face together. Raises `InputError` for a model that is not known."""
-        law, skin = _model(model).law, self.finger.skin_roughness
+    @property
+    def law(self) -> ContactLaw:
+        """The law of contact on the frozen roughness: its heights grow with those of skin and face
+        together."""
+        skin = self.finger.skin_roughness
         factor = math.hypot(skin, self.roughness) / math.hypot(skin, FROZEN.roughness)
-        return law.scaled(factor)
+        return AsperityLaw().scaled(factor)
 
     def relative_friction(
         self,
@@ -133,64 +107,54 @@ class FrozenContact:
         """µ′/µ by a model, with what is given changed (`changes` by the names above) and all else
         as it is frozen. Raises `InputError` for a model that is not known."""
         here = replace(self, **changes)
-        if _model(model).lifted:
-            scale = here._levitation_scale(ambient_pressure)
-            return float(levitation_friction(np.array([here.amplitude / scale]))[0])
-        if not _model(model).film:
-            # Without gas neither pressure nor a skin that the gas would move makes a difference.
-            return here._tapped(model)
+        if _kind(model) != "balance":
+            met = np.array([here.amplitude])
+            return float(here._lifted(model, met, ambient_pressure)[0])
         table = here._films(ambient_pressure)
-        shared = share_load(
-            table, here.law(model), here.amplitude, here.plateau_pressure, skin=skin
-        )
-        return float(sheared_friction(shared, here._shear(model), here.frequency))
+        shared = share_load(table, here.law, here.amplitude, here.plateau_pressure, skin=skin)
+        return float(shared.relative_friction)
 
     def pad_friction(self, model: str, ridge_angle: si.Radian) -> si.Dimensionless:
         """µ′/µ by a model of a whole pad over an antinode, its ridges turned by an angle (rad) out
         of the nodal lines, each place at its own balance. Raises as `relative_friction`."""
         points = pad_points(replace(self.finger, ridge_angle=ridge_angle))
-        if _model(model).lifted:
+        if _kind(model) != "balance":
             wave = np.abs(np.cos(np.pi * points.along / self.half_wavelength))
-            met = self.amplitude * wave / self._levitation_scale(None)
-            return float(levitation_friction(met) @ points.shares)
+            return float(self._lifted(model, self.amplitude * wave, None) @ points.shares)
         found = pad_friction(
             self._films(None),
-            self.law(model),
+            self.law,
             self.amplitude,
             self.half_wavelength,
             points.along,
             self.plateau_pressure,
             posture=PadPosture(shares=points.shares),
-            shear=self._shear(model),
         )
         return float(found.relative_friction[0])
 
-    def _levitation_scale(self, ambient_pressure: si.Pascal | None) -> si.Metre:
-        finger, ambient = self.finger, ambient_pressure or self.gas.ambient_pressure
-        pressure = self.plateau_pressure * finger.plateau_width / finger.ridge_period
-        return levitation_scale(float(finger.decay_length_at(self.speed)), pressure, ambient)
+    def _lifted(
+        self, model: str, amplitude: si.MetreArray, ambient_pressure: si.Pascal | None
+    ) -> si.DimensionlessArray:
+        """µ′/µ at the amplitudes that a contact meets (m), lifted over a length fitted to people.
+        Neither asperities nor the skin's vibration enter."""
+        finger, load = self.finger, self.plateau_pressure
+        if _kind(model) == "ridges":
+            films = ridge_films(*self._film_of(ambient_pressure))
+            return ridge_friction(films, amplitude, load, float(finger.ridge_length_at(self.speed)))
+        pressure = load * finger.plateau_width / finger.ridge_period
+        ambient = ambient_pressure or self.gas.ambient_pressure
+        length = float(finger.decay_length_at(self.speed))
+        return levitation_friction(amplitude / levitation_scale(length, pressure, ambient))
+
+    def _film_of(self, ambient_pressure: si.Pascal | None) -> tuple[si.Hertz, si.Metre, Gas, str]:
+        gas = self.gas if ambient_pressure is None else self.gas.at_pressure(ambient_pressure)
+        return self.frequency, self.finger.plateau_width, gas, self.slip
 
     def _films(self, ambient_pressure: si.Pascal | None) -> FilmTable:
-        gas = self.gas if ambient_pressure is None else self.gas.at_pressure(ambient_pressure)
-        return film_table(self.frequency, self.finger.plateau_width, gas, self.slip)
-
-    def _shear(self, model: str) -> AsperityShear:
-        kind = _model(model).stiffness
-        return AsperityShear(self.speed, self.friction_coefficient, kind, self.stiffness_ratio)
-
-    def _tapped(self, model: str) -> si.Dimensionless:
-        return tapping_friction(
-            self.amplitude,
-            self.frequency,
-            self.speed,
-            self.plateau_pressure,
-            friction_coefficient=self.friction_coefficient,
-            normal_stiffness=self.plateau_pressure / self.law(model).decay_length,
-            stiffness_ratio=self.stiffness_ratio,
-        ).relative_friction
+        return film_table(*self._film_of(ambient_pressure))
 
 
-def _model(name: str) -> FrozenModel:
+def _kind(name: str) -> Kind:
     if name not in MODELS:
         raise InputError(
             f"published directions are not asked of a model '{name}'."

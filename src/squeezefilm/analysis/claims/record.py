@@ -19,18 +19,16 @@ Verdict = Literal[
     "sign only",
     "true by construction",
     "reachable with parameters of our choice",
-    "prediction only",
 ]
 Relation = Literal["equals", "above", "at_least", "at_most", "within"]
 """How what is computed must stand to what was printed; "within" the range of several measured."""
-Grounds = Literal["compared", "sign", "construction", "our parameters", "prediction"]
+Grounds = Literal["compared", "sign", "construction", "our parameters"]
 """What a claim that passes is worth: see `VERDICT_OF_GROUNDS`."""
 
 VERDICT_OF_GROUNDS: dict[Grounds, Verdict] = {
     "sign": "sign only",
     "construction": "true by construction",
     "our parameters": "reachable with parameters of our choice",
-    "prediction": "prediction only",
 }
 """The verdict on a claim that passes, where it is less than "reproduces" or "holds"."""
 
@@ -45,7 +43,6 @@ MEANINGS: dict[Verdict, str] = {
     "true by construction": "what was put in makes it so, whatever the values: no test of a model",
     "reachable with parameters of our choice": "it comes out with values that we chose or fitted, "
     "since those of the measurement could not be read",
-    "prediction only": "our number, on record before any comparison with a published one",
 }
 """What each verdict says, in words."""
 

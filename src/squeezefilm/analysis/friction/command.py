@@ -16,13 +16,11 @@ from squeezefilm.analysis.friction.wanted import Wanted, wanted_friction
 from squeezefilm.analysis.uncertainty import SAMPLES, UncertainFriction, interval_or_reason
 from squeezefilm.analysis.verdict import Finding, friction_verdict, held_back, why_not_good
 from squeezefilm.arguments import called_with
-from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.chain.pad_place import FacePlace
 from squeezefilm.chain.prediction import Prediction, predict
 from squeezefilm.chain.wanted_voltage import WantedFriction
 from squeezefilm.contact.sharing.pad import FrictionRipple
-from squeezefilm.contact.sharing.tapping import tapping_friction
 from squeezefilm.display import Display, NamedDisplay
 from squeezefilm.from_text import reads_text
 from squeezefilm.progress import Pace, SayProgress, said_with_time_left
@@ -42,15 +40,6 @@ class FrictionMap:
     model: str
 
 
-@dataclass(frozen=True)
-class Tapping:
-    """What the competing mechanism alone would leave: intermittent contact without gas, for a
-    finger speed (m/s). It needs sliding, and fades with speed; partial levitation does not."""
-
-    speed: si.MetrePerSecond
-    relative_friction: si.Dimensionless
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class FrictionAnalysis(Result):
     """The friction at a working point: models side by side, uncertainty, map and ripple.
@@ -67,7 +56,6 @@ class FrictionAnalysis(Result):
     map: FrictionMap
     ripple: FrictionRipple | None
     wanted: Wanted | None
-    tapping: Tapping
     verdict: tuple[Finding, ...]
     active_area: JudgedArea | None = None
     _shown: ClassVar[str] = (
@@ -123,7 +111,6 @@ class FrictionAnalysis(Result):
             "heat": to_json(p.heat),
             "standing_wave_ripple": None if self.ripple is None else self.ripple.ripple,
             "wanted": None if self.wanted is None else self.wanted.summary(),
-            "intermittent_contact": to_json(self.tapping),
             "models": [
                 {
                     "model": curve.model,
@@ -223,35 +210,12 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         found,
         _ripple(prediction),
         wanted,
-        Tapping(prediction.speed, without_gas(prediction.law, prediction.vibration_amplitude)),
         tuple(
             held_back(finding, why)
             for finding in friction_verdict(prediction, unsure, why_not, area)
         ),
         area,
     )
-
-
-@si.checked_numbers
-def without_gas(law: FrictionLaw, amplitude: si.Metre) -> si.Dimensionless:
-    """µ′/µ by the competing mechanism, intermittent contact without gas, at an amplitude (m) and
-    the law's speed, whatever its model: the mean over the ridges. See `contact.sharing.tapping`.
-    """
-    pressure = law.finger.plateau_pressure(law.normal_force)
-    decay = law.finger.asperity_law(law.surface.roughness).decay_length
-    swings, weights = law.ridge_swings
-    each = [
-        tapping_friction(
-            float(amplitude * swing),
-            law.frequency,
-            law.speed,
-            pressure,
-            friction_coefficient=law.friction_coefficient,
-            normal_stiffness=pressure / decay,
-        ).relative_friction
-        for swing in swings
-    ]
-    return float(np.array(each) @ weights)
 
 
 def _missed(model: str) -> list[dict[str, str]] | None:

@@ -9,7 +9,6 @@ from typing import Annotated, Literal
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.contact.asperities import MINDLIN_RATIO, TangentialStiffness
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw, RoughContact
@@ -79,11 +78,9 @@ class Finger:
     along the nodal lines. `speed` is that of sliding.
 
     `asperities` is the law of the contact with a surface as rough as `asperity_roughness`; on
-    another surface its heights scale with √(skin_roughness² + roughness²). What touches is elastic
-    against shear until it slips, with `tangential_stiffness` and κ = `tangential_ratio` (see
-    `contact.sharing.shear`). Of `shear_strength` τ, given with a `RoughContact`, follows the
-    friction without vibration, τ times the real contact area; without it (None) the friction
-    coefficient of the surface stands, at every load.
+    another surface its heights scale with √(skin_roughness² + roughness²). With a
+    `shear_strength` τ and a `RoughContact` the friction without vibration is τ times the real
+    contact area; without it (None) the friction coefficient of the surface stands, at every load.
 
     Over `contact_decay_length` ℓ the pressure of the contact falls by e as a film lifts it off, at
     `decay_speed`; it grows with `decay_speed_exponent` of the speed. Both are fitted to published
@@ -109,8 +106,6 @@ class Finger:
     fingerpad: FingerpadDynamics = _FINGERPAD
     moisture: Moisture = "normal"
     speed: Annotated[si.MetrePerSecond, FINGER_SPEED] = EXPLORING_SPEED
-    tangential_stiffness: TangentialStiffness = "following"
-    tangential_ratio: Annotated[si.Dimensionless, si.Above(0), si.AtMost(100)] = MINDLIN_RATIO
     shear_strength: Annotated[si.Pascal, PRESSURE] | None = None
     contact_decay_length: Annotated[si.Metre, si.Above(0), si.AtMost(1e-3)] = CONTACT_DECAY_LENGTH
     decay_speed_exponent: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(2)] = (

@@ -20,7 +20,6 @@ from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import ContactLaw
 from squeezefilm.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.contact.sharing.gas_table import FilmTable
-from squeezefilm.contact.sharing.shear import AsperityShear, sheared_friction
 from squeezefilm.errors import InputError
 
 Limit = Literal["own", "one-gap"]
@@ -83,13 +82,11 @@ class PadPosture:
 class PadFriction:
     """The pad's friction at an array of amplitudes (one-dimensional), in one limit.
 
-    `relative_friction` is µ′/µ: the asperities' share of the load, or, where what touches is
-    elastic until it slips, the share of the friction at rest that it keeps.
+    `relative_friction` is µ′/µ: the asperities' share of the load.
     `mean_gap` is the mean over the plateaus (m). `film_pressure` and `asperity_pressure` are means
     over all plateaus and the period (Pa); their shares of the plateau's pressure sum to 1 within
     `residual`, the largest imbalance.
-    `relative_friction_error` bounds what the film table's error does to µ′/µ: that of the
-    asperities' share, in proportion.
+    `relative_friction_error` bounds what the film table's error does to µ′/µ.
     """
 
     amplitude: si.MetreArray
@@ -195,13 +192,11 @@ def pad_friction(
     limit: Limit = "own",
     posture: PadPosture | None = None,
     skin: Skin | None = None,
-    shear: AsperityShear | None = None,
 ) -> PadFriction:
     """The friction of plateaus at `points` (m from the pad's centre) over a standing wave.
 
     `amplitude` (m, at an antinode) may be an array; the plate's amplitude at x is
-    a |cos(πx/half_wavelength)|, unless the posture has its own swings. Without a `shear` friction
-    is the asperities' share of the load. Raises as `share_load` does.
+    a |cos(πx/half_wavelength)|, unless the posture has its own swings. Raises as `share_load` does.
     """
     if points.ndim != 1:
         si.require("points", points, si.Unit("m"), axes=1)
@@ -214,7 +209,7 @@ def pad_friction(
             (wave,), shares = _kinds(shares, np.round(wave, 9))
             offset = np.zeros(wave.shape)
         ridges = _Tied(np.outer(a, wave), offset, shares)
-        tied = _tied(table, asperities, ridges, plateau_pressure, skin, shear)
+        tied = _tied(table, asperities, ridges, plateau_pressure, skin)
         return dataclasses.replace(tied, amplitude=a, ridge_points=points.size)
     # Ridges on the two sides of an antinode do the same: each kind is balanced once.
     if points.size > _KINDS:
@@ -229,22 +224,19 @@ def pad_friction(
             lean = np.round(_KINDS * lean) / _KINDS
         (wave, lean), weight = _kinds(shares, np.round(wave, 9), np.round(lean, 9))
     own = share_load(table, asperities, np.outer(a, wave), plateau_pressure * lean, skin=skin)
-    share = own.relative_friction
-    kept = share if shear is None else sheared_friction(own, shear, table.frequency)
     carrying = weight * lean / np.sum(weight * lean)
-    # Weights sum to 1 within rounding only.
-    friction, carried = np.minimum(kept @ carrying, 1.0), share @ carrying
     return PadFriction(
         amplitude=a,
-        relative_friction=friction,
+        # Weights sum to 1 within rounding only.
+        relative_friction=np.minimum(own.relative_friction @ carrying, 1.0),
         mean_gap=own.mean_gap @ weight,
         film_pressure=own.gas_pressure @ weight,
         asperity_pressure=own.asperity_pressure @ weight,
-        relative_friction_error=(own.relative_friction_error * lean) @ weight * friction / carried,
+        relative_friction_error=(own.relative_friction_error * lean) @ weight,
         residual=float(np.max(np.abs(own.residual))),
         ridge_points=points.size,
         limit="own",
-        model=_named(own.model, shear),
+        model=own.model,
     )
 
 
@@ -274,7 +266,6 @@ def _tied(
     tied_ridges: _Tied,
     plateau_pressure: si.Pascal,
     skin: Skin | None,
-    shear: AsperityShear | None,
 ) -> PadFriction:
     """All plateaus at one mean gap, each of its amplitudes."""
     swings, offset, shares = tied_ridges
@@ -285,38 +276,18 @@ def _tied(
         )
         for one in swings
     ]
-    share = np.array([one.relative_friction for one in tied])
-    gaps = np.array([one.mean_gap for one in tied])
-    kept = share
-    if shear is not None:
-        # What the skin moves at ultrasonic frequency is left out of the shear's swing.
-        ridges = dataclasses.replace(
-            tied[0],
-            mean_gap=gaps[:, None] + offset,
-            gap_amplitude=swings,
-            plateau_pressure=np.full(swings.shape, plateau_pressure),
-        )
-        kept = np.minimum(sheared_friction(ridges, shear, table.frequency) @ shares, 1.0)
     return PadFriction(
         amplitude=swings.max(axis=1),
-        relative_friction=kept,
-        mean_gap=gaps,
+        relative_friction=np.array([one.relative_friction for one in tied]),
+        mean_gap=np.array([one.mean_gap for one in tied]),
         film_pressure=np.array([one.gas_pressure for one in tied]),
         asperity_pressure=np.array([one.asperity_pressure for one in tied]),
-        relative_friction_error=np.array([one.relative_friction_error for one in tied])
-        * kept
-        / share,
+        relative_friction_error=np.array([one.relative_friction_error for one in tied]),
         residual=max(float(abs(one.residual)) for one in tied),
         ridge_points=offset.size,
         limit="one-gap",
-        model=_named(tied[0].model, shear),
+        model=tied[0].model,
     )
-
-
-def _named(model: str, shear: AsperityShear | None) -> str:
-    if shear is None:
-        return model
-    return f"{model}, {shear.words}"
 
 
 @si.checked_numbers
@@ -355,7 +326,6 @@ def friction_ripple(
     normal_force: si.Newton | None = None,
     limit: Limit = "own",
     positions: Annotated[int, si.AtLeast(4)] = 24,
-    shear: AsperityShear | None = None,
 ) -> FrictionRipple:
     """The friction as the pad crosses the wave's nodes, over half a wavelength.
 
@@ -374,7 +344,6 @@ def friction_ripple(
             finger.plateau_pressure(normal_force),
             limit=limit,
             posture=PadPosture(position=float(x), shares=points.shares),
-            shear=shear,
         ).relative_friction[0]
         for x in where
     ]

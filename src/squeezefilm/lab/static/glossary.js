@@ -114,8 +114,6 @@ export const DISPLAY = {
   longest_wavelength: { name: "longest wavelength", text: "Of the roughness: at most the width of a plateau.", source: "assumed" },
   shortest_wavelength: { name: "shortest wavelength", text: "Of the roughness: where it ends, which decides the slope and with it the real contact area.", source: "assumed" },
   speed: { name: "finger speed", symbol: "U", text: "Of sliding, for which friction is said: the faster, the more of what touches slips within a period.", source: "77 to 86 mm/s explored by hand: Smith, Gosselin, Houde 2002 (10.1007/s00221-002-1240-4)" },
-  tangential_stiffness: { name: "tangential stiffness", text: "Of what touches, against shear: rigid (all of it slips), constant (as at rest) or following the load at every moment.", source: "assumed" },
-  tangential_ratio: { name: "tangential ratio", symbol: "κ", text: "Tangential over normal stiffness of what touches.", source: "Mindlin: 2/3 of an incompressible skin" },
   shear_strength: { name: "shear strength", symbol: "τ", text: "Of the real contact: gives the friction without vibration in place of the surface's coefficient.", source: "yours to give" },
   asperity_roughness: { name: "asperity roughness", text: "Of the surface for which the asperities' law holds; on another one the heights scale with both roughnesses.", source: "assumed" },
   skin_roughness: { name: "skin roughness", text: "Of the ridges' tops; adds to the surface's as independent heights do.", source: "assumed" },

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.claims.command import ClaimResult
-from squeezefilm.analysis.claims.frozen import MODELS
+from squeezefilm.analysis.claims.frozen import MODELS, WORDS
 from squeezefilm.analysis.claims.record import MEANINGS, missed_by
 from squeezefilm.report.claims.prototype import Table
 from squeezefilm.report.kit.model_rows import cited, missed_directions
@@ -65,7 +65,7 @@ def direction_table(results: Iterable[ClaimResult]) -> Table:
 
 def model_sentences() -> list[str]:
     """The models that directions are asked of, each in a sentence."""
-    return [f"{name}: {model.words}." for name, model in MODELS.items()]
+    return [f"{name}: {WORDS[kind]}." for name, kind in MODELS.items()]
 
 
 def missed_lists() -> list[tuple[str, list[str]]]:

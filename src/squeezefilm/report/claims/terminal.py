@@ -27,7 +27,6 @@ _VERDICT_STYLES = {
     "sign only": "cyan",
     "true by construction": "cyan",
     "reachable with parameters of our choice": "cyan",
-    "prediction only": "cyan",
     "does not reproduce": "yellow",
     "does not hold": "yellow",
 }

@@ -39,7 +39,6 @@ _NAMES_OF_PARAMETERS = {
     "finger.contact_area_exponent": "growth of the contact with force",
     "finger.normal_force": "force of the finger",
     "finger.moisture": "moisture of the finger",
-    "finger.tangential_stiffness": "shear element of what touches",
     "height_law": "law of the heights",
     "gas.slip": "slip law of the gas",
     "actuator.quality_factor": "quality factor",
@@ -61,7 +60,7 @@ def models(result: FrictionAnalysis) -> Figure:
     axes = figure.subplots()
     for curve in curves:
         color, dashes, name = look_of(curve.model)
-        name += f", at {shown(p.speed, SPEED)}" if MODEL_KINDS[curve.model].knows_speed else ""
+        name += f", at {shown(p.speed, SPEED)}" if MODEL_KINDS[curve.model].fitted else ""
         x, width = 1e6 * curve.amplitude, 2.4 if curve.model == p.model else 1.4
         axes.plot(x, curve.relative_friction, color=color, ls=dashes, lw=width, label=name)
     at, words = 1e6 * p.vibration_amplitude, f"{p.relative_friction:.2f}"
@@ -180,12 +179,13 @@ def ripple(result: FrictionAnalysis) -> Figure:
     found = result.ripple
     assert found is not None, "nothing vibrates"
     half, model = found.half_wavelength, result.prediction.model
+    lifted = MODEL_KINDS[model].friction == "lift"
     x = np.concatenate([found.position, found.position + half, [2 * half]])
     y = np.concatenate([found.relative_friction] * 2 + [found.relative_friction[:1]])
     figure = style.new_figure(
         f"The wave itself is felt: {100 * found.ripple:.2g} % of ripple every "
         f"{shown(half, M, 3)} under a contact of {shown(found.contact_length, M, 3)}",
-        f"{model if MODEL_KINDS[model].knows_speed else 'partial-levitation'}, ridge by ridge",
+        f"{model if lifted else 'partial-levitation'}, ridge by ridge",
         4.0,
     )
     axes = figure.subplots()

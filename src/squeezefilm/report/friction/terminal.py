@@ -35,13 +35,6 @@ def show_friction(result: FrictionAnalysis) -> None:
         (curve.model, "–" if (at := curve.at(p.vibration_amplitude)) is None else f"{at:.3f}")
         for curve in result.curves
     ]
-    tapping = result.tapping
-    others.append(
-        (
-            f"intermittent contact at {shown(tapping.speed, si.Unit('m/s'))}, no gas",
-            f"{tapping.relative_friction:.3f}",
-        )
-    )
     table(console, ("model", "µ′/µ"), others)
     show_missed(console, p.model)
     if unsure is not None:

@@ -17,7 +17,6 @@ class Look(NamedTuple):
 
 _LOOKS = {
     "levitation": Look(style.INK, "-", "levitation, fitted to people"),
-    "partial-levitation-shear": Look(style.BLUE, (0, (6, 1.6)), "partial levitation with shear"),
     "partial-levitation": Look(style.BLUE, "-", "partial levitation"),
     "paper2008": Look(*style.LINES[1], "paper's asymptote"),
     "paper2008-printed": Look(*style.LINES[1], "paper's asymptote, as printed"),

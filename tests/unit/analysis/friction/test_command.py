@@ -13,7 +13,6 @@ from squeezefilm.analysis.curves import ModelCurve
 from squeezefilm.analysis.friction import command
 from squeezefilm.analysis.friction.command import (
     FrictionAnalysis,
-    Tapping,
     Wanted,
     analyze_friction,
     friction_map,
@@ -135,7 +134,6 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         stand_in(name, f"the {name}")
     stand_in("interval_or_reason", ("the interval", "a reason"))
     stand_in("friction_verdict", (Finding("doubt", "the verdict"),))
-    stand_in("without_gas", 0.6)
     monkeypatch.setattr(command, "why_not_good", lambda display, p: None)
     return asked
 
@@ -169,7 +167,6 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
         ),
         ("judged_area", (thin, PREDICTION), {"samples": 16, "seed": 9}),
         ("_ripple", (PREDICTION,), {}),
-        ("without_gas", (PREDICTION.law, 2e-6), {}),
         ("friction_verdict", (PREDICTION, "the interval", "a reason", "the judged_area"), {}),
     ]  # fmt: skip
     assert (found.display, found.prediction) == (thin, PREDICTION)
@@ -177,7 +174,6 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
         "the model_curves", "the friction_map", "the interval", "the _ripple",
     )  # fmt: skip
     assert found.wanted == "the wanted"
-    assert found.tapping == Tapping(0.1, 0.6)
     assert found.verdict == (Finding("doubt", "the verdict"),)
     assert found.active_area == "the judged_area"
     assert told == [
@@ -190,7 +186,7 @@ def test_what_is_not_asked_for_is_not_computed(stator: Display, parts: list[Any]
     found = analyze_friction(stator, vibration_amplitude=2e-6, samples=0)
     assert [name for name, *_ in parts] == [
         "predict", "model_curves", "friction_map", "interval_or_reason",
-        "judged_area", "_ripple", "without_gas", "friction_verdict",
+        "judged_area", "_ripple", "friction_verdict",
     ]  # fmt: skip
     assert parts[0][1][0] is stator
     assert parts[0][2]["vibration_amplitude"] == 2e-6
@@ -204,7 +200,7 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
     unsure = SimpleNamespace(interval=(0.3, 0.5), level=0.9, summary=lambda: {"seed": 1})
     found: Any = FrictionAnalysis(
         stator, PREDICTION, (curve,), unsure, None, SimpleNamespace(ripple=0.07),  # type: ignore[arg-type]
-        Wanted(0.6, 1.4e-6, 12.0), Tapping(0.08, 0.7), (Finding("limit", "open"),),
+        Wanted(0.6, 1.4e-6, 12.0), (Finding("limit", "open"),),
     )  # fmt: skip
     said = found.summary()
     assert said.pop("provenance")["config_sha256"]
@@ -229,7 +225,6 @@ def test_a_summary_has_every_number_under_its_name(stator: Display) -> None:
             "relative_friction": 0.6, "vibration_amplitude_m": 1.4e-6, "voltage_V": 12.0,
             "why_not": "", "why_no_interval": "",
         },
-        "intermittent_contact": {"speed_m_per_s": 0.08, "relative_friction": 0.7},
         # In the middle of 0.8 at 1 µm and 0.4 at 3 µm.
         "models": [{"model": "paper2008", "relative_friction": pytest.approx(0.6)}],
         "measurements_missed": None, "uncertainty": {"seed": 1}, "warnings": ["mind this"],
@@ -244,7 +239,7 @@ def test_a_summary_says_none_where_there_is_nothing(stator: Display) -> None:
     )
     none: Any = None
     said = FrictionAnalysis(
-        stator, p, (), none, none, none, none, Tapping(0.1, 0.5), (Finding("doubt", ""),)
+        stator, p, (), none, none, none, none, (Finding("doubt", ""),)
     ).summary()
     for name in ("relative_friction_interval", "interval_level", "relative_friction_limits",
                  "load_shares", "standing_wave_ripple", "wanted", "uncertainty"):  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from squeezefilm.analysis.claims.command import ClaimResult
 from squeezefilm.analysis.claims.frozen import MODELS
-from squeezefilm.analysis.claims.record import MEANINGS, Claim
+from squeezefilm.analysis.claims.record import MEANINGS, Claim, Verdict
 from squeezefilm.report.claims.directions import (
     directions,
     missed_lists,
@@ -16,7 +16,9 @@ from squeezefilm.report.claims.directions import (
 )
 
 
-def result(number: int, model: str = "", printed: tuple[float, ...] = (2.0,)) -> ClaimResult:
+def result(
+    number: int, model: str = "", printed: tuple[float, ...] = (2.0,), verdict: Verdict = "holds"
+) -> ClaimResult:
     claim = Claim(
         f"claim-{number}",
         "here",
@@ -28,7 +30,6 @@ def result(number: int, model: str = "", printed: tuple[float, ...] = (2.0,)) ->
         relation="at_most",
         model=model,
     )
-    verdict = "prediction only" if not printed else "holds"
     return ClaimResult(claim, (1.0,), None, None, verdict, "")
 
 
@@ -52,10 +53,10 @@ def test_directions_are_kept_together() -> None:
 
 
 def test_verdicts_are_counted_and_explained() -> None:
-    head, rows = verdict_table((result(1), result(2), result(3, printed=())))
+    head, rows = verdict_table((result(1), result(2), result(3, verdict="sign only")))
     assert head == ("verdict", "claims", "what it says")
     assert list(rows) == [
-        ("holds", "2", MEANINGS["holds"]), ("prediction only", "1", MEANINGS["prediction only"]),
+        ("holds", "2", MEANINGS["holds"]), ("sign only", "1", MEANINGS["sign only"]),
     ]  # fmt: skip
 
 

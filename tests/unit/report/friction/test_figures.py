@@ -117,14 +117,14 @@ def test_every_model_is_drawn_in_its_own_way() -> None:
     assert axes.get_legend() is not None
 
 
-def test_with_shear_the_curve_is_drawn_that_the_working_point_is_on() -> None:
-    point = SimpleNamespace(**{**vars(POINT), "model": "partial-levitation-shear", "speed": 0.08})
-    curves = (*CURVES, curve("partial-levitation-shear", FINE, 0.5))
+def test_the_curve_is_drawn_that_the_working_point_is_on() -> None:
+    point = SimpleNamespace(**{**vars(POINT), "model": "levitation-ridges", "speed": 0.08})
+    curves = (*CURVES, curve("levitation-ridges", FINE, 0.5))
     figure = models(without(curves=curves, prediction=point))
-    line = labelled(figure.axes[0])["partial levitation with shear, at 80 mm/s"]
+    line = labelled(figure.axes[0])["levitation, films over single ridges, at 80 mm/s"]
     assert line.get_ydata() == pytest.approx(1 - 0.5 * np.linspace(0, 1, 9))
     assert words(ripple(without(prediction=point)).get_supxlabel()).startswith(
-        "Model: partial-levitation-shear, ridge by ridge"
+        "Model: levitation-ridges, ridge by ridge"
     )
 
 
