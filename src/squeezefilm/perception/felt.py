@@ -23,11 +23,13 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics, skin_displacement_per_friction
 from squeezefilm.perception.observer import Observer
-from squeezefilm.perception.senses import COARSEST_PERIOD, D_PRIME_OF_75, FINEST_PERIOD
+from squeezefilm.perception.senses import COARSEST_PERIOD
 
+FINEST_TRIED: si.Metre = 0.125e-3
+"""The finest at which thresholds were measured."""
 _FINEST_LINE: si.Metre = 0.1e-3
-_SAMPLES = 128
-"""Over a period; the sixth harmonic, the last that counts, has twenty."""
+_SAMPLES = 256
+"""Over a period; the fifteenth harmonic, the last that counts, has seventeen."""
 
 
 @si.checked_numbers
@@ -41,9 +43,9 @@ class Rubbed:
 
 
 def tried_periods(points: int = 81) -> si.MetreArray:
-    """The periods (m) that are tried, those that an observer may perceive, evenly in their
-    logarithm: 0.25 to 20 mm in steps of 5.6 %."""
-    return np.asarray(np.geomspace(FINEST_PERIOD, COARSEST_PERIOD, points))
+    """The periods (m) that are tried, evenly in their logarithm: 0.125 to 20 mm in steps of
+    6.6 %."""
+    return np.asarray(np.geomspace(FINEST_TRIED, COARSEST_PERIOD, points))
 
 
 @si.checked_numbers
@@ -54,7 +56,7 @@ def switched_amplitude(
 ) -> si.MetreArray:
     """The amplitude (m) over one period of a square grating between 0 and `high`, settled.
 
-    `passage` is what one period takes (s), shape (n,); the result has shape (n, 128), from where
+    `passage` is what one period takes (s), shape (n,); the result has shape (n, 256), from where
     the drive is switched on. First-order envelope at resonance, equal grooves and ridges.
     """
     time = (np.arange(_SAMPLES) + 0.5) / _SAMPLES * passage[:, None]
@@ -84,16 +86,14 @@ def grating_evidence(
     lines = np.fft.rfft(friction, axis=1) / friction.shape[1]
     pad, power = rubbed.pad, np.zeros(period.size)
     mean = np.abs(lines[:, 0]) / pad.stiffness
-    masked = 2 / math.pi * observer.friction_weber_fraction * mean / D_PRIME_OF_75
     for harmonic in range(1, observer.harmonics + 1):
         frequency = harmonic * rubbed.speed / period
         moved = skin_displacement_per_friction(frequency, pad.stiffness, pad.damping, pad.mass)
         skin = 2 * np.abs(lines[:, harmonic]) * np.abs(moved)
         seen = np.where(period / harmonic >= _FINEST_LINE, skin, 0.0)
-        share = observer.harmonic_weight ** (2 * (harmonic - 1))
         for channel in observer.channels:
-            noise = np.hypot(channel.threshold, masked)
-            power += share * (channel.gain(frequency) * seen / noise) ** 2
+            passed = channel.gain(period / harmonic, rubbed.speed) * seen
+            power += (passed / channel.noise(mean)) ** 2
     return np.asarray(np.sqrt(power))
 
 

@@ -20,6 +20,8 @@ from squeezefilm.contact.finger.fingertip import Moisture
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import ReadBy
 
+TUNED_AT: si.MetrePerSecond = 0.05
+"""Speed of the detection thresholds that channels are fitted to (`tools/threshold_fit.py`)."""
 _MOST_FINGERS = 64
 _FINGERS_STREAM = 71
 
@@ -35,6 +37,10 @@ class SensoryChannel:
         threshold: amplitude (m, zero-to-peak) of a sine inside the band that has d′ = 1.
         spatial: whether a real grating is felt by its pattern in the skin (`spatial_sensitivity`)
             instead of by the vibration it makes.
+        masking: noise of skin that slides, as a share of its mean displacement (1).
+        speed_exponent: 1 for a channel that goes by the frequency, 0 for one that goes by the
+            spatial period, and answers at every speed as at `TUNED_AT`; between for one that is
+            partly tuned to either (1).
 
     Raises:
         InputError: a value outside its range.
@@ -45,14 +51,23 @@ class SensoryChannel:
     high: si.Hertz
     threshold: Annotated[si.Metre, si.Above(0.0)]
     spatial: bool = False
+    masking: Annotated[si.Dimensionless, si.AtLeast(0.0)] = 0.0
+    speed_exponent: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 1.0
 
     def __post_init__(self) -> None:
         si.require("high", self.high, si.Unit("Hz"), above=self.low)
 
-    def gain(self, frequency: si.HertzLike) -> si.DimensionlessLike:
-        """Share of a displacement's amplitude that passes, at frequencies (Hz): second-order
-        slopes on both sides, 1/√2 at the corners. The shape is assumed."""
-        f = np.asarray(frequency, dtype=float)
+    def noise(self, mean_displacement: si.MetreLike) -> si.MetreLike:
+        """Amplitude (m, zero-to-peak) of a sine inside the band that has d′ = 1 on skin whose mean
+        displacement is `mean_displacement` (m): threshold and masking add in squares."""
+        return np.hypot(self.threshold, self.masking * np.abs(mean_displacement))
+
+    def gain(self, period: si.MetreLike, speed: si.MetrePerSecondLike) -> si.DimensionlessLike:
+        """Share of the amplitude that passes of a displacement of a period (m) along the way of a
+        finger at a speed (m/s): second-order slopes on both sides of its band, 1/√2 at the corners.
+        The shape is assumed."""
+        tuned = TUNED_AT * (np.asarray(speed, dtype=float) / TUNED_AT) ** self.speed_exponent
+        f = np.asarray(tuned / period)
         falling = 1.0 / np.sqrt(1.0 + (f / self.high) ** 4)
         if self.low == 0.0:
             return np.asarray(falling)
@@ -81,9 +96,8 @@ class Observer:
     Args:
         name, title: what it is called.
         channels: of the skin.
-        friction_weber_fraction: step of friction over its mean that is told apart in 75 % of
-            two-interval trials (1); applied to slow and fast changes alike.
-        indentation_weber_fraction: the same for the depth of a real grating's indentation (1).
+        strength_weber_fraction: difference of two clear strengths, in parts of the weaker, that is
+            told in 75 % of two-interval trials (1).
         period_weber_fraction: the same for spatial periods felt clearly (1).
         period_spread: of the period's Weber fraction.
         harmonic_weight: of each further harmonic when a rhythm is told from its lines (1).
@@ -113,8 +127,7 @@ class Observer:
     name: str
     title: str
     channels: tuple[SensoryChannel, ...]
-    friction_weber_fraction: Annotated[si.Dimensionless, si.Above(0.0)]
-    indentation_weber_fraction: Annotated[si.Dimensionless, si.Above(0.0)]
+    strength_weber_fraction: Annotated[si.Dimensionless, si.Above(0.0)]
     period_weber_fraction: Annotated[si.Dimensionless, si.Above(0.0)]
     period_spread: Annotated[si.Dimensionless, si.AtLeast(0.0)]
     harmonic_weight: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)]

@@ -207,9 +207,7 @@ def _felt(observer: Observer, runs: list[_OneRun]) -> RunPercept | None:
         for name in ("stretch", "speed", "asked", "felt")
     )
     mean = abs(float(np.mean(way)))
-    found = evidence(
-        observer, amplitude, channel_gains(observer, speed), mean, observer.friction_weber_fraction
-    )
+    found = evidence(observer, amplitude, channel_gains(observer, speed), mean)
     lengths = np.array([one.length for one in runs])
     rhythms = candidates(observer, found, float(share @ lengths / share.sum()))
     return RunPercept(

@@ -63,7 +63,7 @@ class Apparatus:
 class Percept:
     """What one finger gets of one surface: `evidence` by period and the `candidates` in it.
 
-    `mean_displacement` (m) is what Weber fractions are of.
+    `mean_displacement` (m) of the skin is what masks.
     """
 
     evidence: Evidence
@@ -110,7 +110,6 @@ def percept(
         line_amplitudes(passes),
         channel_gains(observer, np.maximum(speeds, 0.0)),
         mean,
-        observer.friction_weber_fraction,
     )
     return Percept(found, candidates(observer, found), mean), played
 
@@ -130,7 +129,6 @@ def grating_percept(grating: Grating, observer: Observer, finger: FingerClass) -
         line_amplitudes(profile[None, :]),
         channel_gains(observer, speed),
         0.5 * depth,
-        observer.indentation_weber_fraction,
         grating.period,
         grating.groove_width,
     )

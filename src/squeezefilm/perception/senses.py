@@ -17,6 +17,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -38,6 +39,7 @@ _LOG_STEP = 0.004
 # A pass begins with the pad being stretched: this much of it is not looked at.
 SETTLING: si.Metre = 2e-3
 D_PRIME_OF_75 = 0.9538725524
+"""√2 z(0.75): what is told in 75 % of two-interval trials."""
 # Passes of many lengths share the waves of the next longer block.
 _BLOCK = 512
 # A rhythm below this is none: it would never reach a criterion but by noise alone.
@@ -71,13 +73,24 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Candidates:
-    """Periods that compete for being perceived, the clearest first; d′ is −∞ where there is none.
+    """Periods that compete for being perceived, the clearest first.
 
-    `period` (m) and `d_prime` (1) have the same shape (…, candidates).
+    `period` (m) and `d_prime` (1) have the same shape (…, candidates). `d_prime` is in steps of the
+    noise of a percept, which grows with the strength once that is clear (`candidates`); −∞ where
+    there is none.
     """
 
     period: si.MetreArray
     d_prime: si.DimensionlessArray
+
+
+@si.checked_numbers
+def percept_deviation(
+    weber_fraction: Annotated[si.Dimensionless, si.Above(0.0)],
+) -> si.Dimensionless:
+    """The standard deviation of one percept's natural logarithm (1) with which a difference of this
+    Weber fraction is told in 75 % of two-interval trials."""
+    return math.log1p(weber_fraction) / D_PRIME_OF_75
 
 
 def line_periods() -> si.MetreArray:
@@ -125,10 +138,8 @@ def channel_gains(observer: Observer, speed: si.MetrePerSecondArray) -> si.Dimen
     """
     # Speeds enter by their histogram: a stroke has thousands, all alike to a few per cent.
     shares = np.quantile(speed, (np.arange(24) + 0.5) / 24)
-    frequency = shares[:, None] / line_periods()
-    return np.array(
-        [np.sqrt(np.mean(one.gain(frequency) ** 2, axis=0)) for one in observer.channels]
-    )
+    gains = [channel.gain(line_periods(), shares[:, None]) for channel in observer.channels]
+    return np.sqrt(np.mean(np.square(gains), axis=1))
 
 
 def evidence(
@@ -136,7 +147,6 @@ def evidence(
     amplitude: si.MetreArray,
     gains: si.DimensionlessArray,
     mean_displacement: si.Metre,
-    weber_fraction: si.Dimensionless,
     pattern_period: si.Metre | None = None,
     groove_width: si.Metre = 0.0,
 ) -> Evidence:
@@ -146,30 +156,27 @@ def evidence(
         observer: whose senses.
         amplitude: of lines (m), as `line_amplitudes` gives them.
         gains: as `channel_gains` gives them.
-        mean_displacement: that the Weber fraction is of (m).
-        weber_fraction: (1).
+        mean_displacement: of the skin (m), which masks.
         pattern_period, groove_width: of a real grating (m): its pattern in the skin then takes the
             place of what spatial channels see of lines.
     """
     si.require("mean_displacement", mean_displacement, si.Unit("m"), at_least=0.0)
-    masked = 2.0 / math.pi * weber_fraction * mean_displacement / D_PRIME_OF_75
-    noise = np.array([math.hypot(one.threshold, masked) for one in observer.channels])
+    noise = np.array([channel.noise(mean_displacement) for channel in observer.channels])
     d_prime = gains * amplitude / noise[:, None]
     periods = line_periods()
     if pattern_period is not None:
         away = (1.0 / periods - 1.0 / pattern_period) / _line_width(observer.stroke_length)
         felt = spatial_sensitivity(groove_width) * np.exp(-0.5 * (2.0 * away) ** 2)
         d_prime[[one.spatial for one in observer.channels]] = felt
-    rhythm = _rhythm(observer, np.sum(d_prime**2, axis=0))
-    return Evidence(periods, amplitude, d_prime, rhythm)
+    lines = _harmonics(observer, np.sum(d_prime**2, axis=0))
+    return Evidence(periods, amplitude, d_prime, np.sqrt(lines.sum(axis=0)))
 
 
-def _rhythm(observer: Observer, power: si.DimensionlessArray) -> si.DimensionlessArray:
-    log_period, found = np.log(line_periods()), np.zeros_like(power)
-    for harmonic in range(1, observer.harmonics + 1):
-        share = observer.harmonic_weight ** (2 * (harmonic - 1))
-        found += share * np.interp(log_period - math.log(harmonic), log_period, power, left=0.0)
-    return np.asarray(np.sqrt(found))
+def _harmonics(observer: Observer, power: si.DimensionlessArray) -> si.DimensionlessArray:
+    """d′² (1) of the harmonics of every period, shape (harmonics, n)."""
+    log_period = np.log(line_periods())
+    shifts = np.log(np.arange(1, observer.harmonics + 1))
+    return np.array([np.interp(log_period - one, log_period, power, left=0.0) for one in shifts])
 
 
 def _line_width(stroke_length: si.Metre) -> si.PerMetre:
@@ -192,7 +199,9 @@ def candidates(
     """The clearest rhythms, each in what the clearer ones leave unexplained.
 
     The lines of a rhythm chosen, and whatever the stroke is too short to tell from them, are taken
-    out before the next is looked for; else every rhythm would come with its own multiples.
+    out before the next is looked for; else every rhythm would come with its own multiples. A rhythm
+    of evidence e has d′ = asinh(k e)/k, with k of the Weber fraction of strengths: e while it is
+    faint, and equal ratios of clear strengths are equally far apart.
     `stroke_length` (m) is the observer's own where it is not given.
     """
     per_metre, width = 1.0 / found.period, _line_width(stroke_length or observer.stroke_length)
@@ -200,12 +209,15 @@ def candidates(
     inside = found.period >= FINEST_PERIOD
     periods: si.FloatArray = np.full(observer.candidates, FINEST_PERIOD)
     d_prime: si.FloatArray = np.full(observer.candidates, -np.inf)
+    deviation = percept_deviation(observer.strength_weber_fraction)
+    weight = observer.harmonic_weight ** np.arange(observer.harmonics)
     for k in range(observer.candidates):
-        rhythm = np.where(inside, _rhythm(observer, power), 0.0)
-        best = int(np.argmax(rhythm))
-        if rhythm[best] <= _FAINTEST:
+        lines = _harmonics(observer, power)
+        best = int(np.argmax(np.where(inside, weight @ np.sqrt(lines), 0.0)))
+        evident = math.sqrt(lines[:, best].sum())
+        if evident <= _FAINTEST:
             break
-        periods[k], d_prime[k] = found.period[best], rhythm[best]
+        periods[k], d_prime[k] = found.period[best], math.asinh(deviation * evident) / deviation
         base = per_metre[best]
         harmonic = np.maximum(np.round(per_metre / base), 1.0)
         power = np.where(np.abs(per_metre - harmonic * base) < width, 0.0, power)

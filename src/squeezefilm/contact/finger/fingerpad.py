@@ -47,6 +47,15 @@ class FingerpadDynamics:
     damping: Annotated[si.NewtonSecondPerMetre, PAD_DAMPING] = 1.40
     mass: Annotated[si.Kilogram, PAD_MASS] = 1.67e-4
 
+    @classmethod
+    def pressed(
+        cls, normal_force: Annotated[si.Newton, si.Above(0.0), si.AtMost(2.0)]
+    ) -> FingerpadDynamics:
+        """The published pad at a normal force (N). Raises `InputError` for one out of range."""
+        si.require("normal_force", normal_force, si.Unit("N"), above=0.0, at_most=2.0)
+        rise = normal_force**0.35
+        return cls(1480.0 * rise, 1.78 * rise, 0.20e-3 * normal_force**0.26)
+
     @property
     def resonance_frequency(self) -> si.Hertz:
         """Undamped resonance frequency of the sliding skin (Hz)."""

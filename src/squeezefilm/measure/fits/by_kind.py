@@ -21,6 +21,7 @@ from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.working import solid_mode
 
 # The module of `measure.fits` and its function; imported when a recording of the kind is fitted.
+OF_MANY_PEOPLE = kinds.FrictionDecays | kinds.FingertipImpedances | kinds.DetectionThresholds
 FITS: dict[type, tuple[str, str]] = {
     kinds.ImpedanceSweep: ("circuit.impedance", "fit_impedance"),
     kinds.FrequencyResponse: ("vibration.frequency_response", "fit_frequency_response"),
@@ -76,7 +77,7 @@ def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None
     a recording that its fit refuses.
     """
     known = FITS.get(type(recording))
-    if isinstance(recording, kinds.FrictionDecays | kinds.FingertipImpedances):
+    if isinstance(recording, OF_MANY_PEOPLE):
         raise InputError(
             f"'{recording.told.name}' holds numbers of many people, which are compared and not "
             "fitted: squeezefilm reproduce --data FOLDER"

@@ -284,4 +284,5 @@ _OF_KIND: Mapping[str, Callable[[Reading], kinds.Recording]] = {
     "friction curve": assembled_friction.curve,
     "friction decays": assembled_friction.decays,
     "fingertip impedances": assembled_friction.touches,
+    "detection thresholds": assembled_friction.detection,
 }

@@ -114,6 +114,18 @@ def touches(reading: Reading) -> kinds.FingertipImpedances:
     )
 
 
+def detection(reading: Reading) -> kinds.DetectionThresholds:
+    """Published detection thresholds. Raises `ConfigError` at its key or column."""
+    said: Any = reading.description.said
+    return kinds.DetectionThresholds(
+        reading.take("spatial_period"),
+        reading.take("friction_coefficient"),
+        told=reading.told(),
+        people=said.people,
+        **{name: _condition(reading, name) for name in _CONDITIONS[1:]},
+    )
+
+
 def _display(reading: Reading) -> str:
     """The display that is named, the path of a file from where the description stands."""
     said: Any = reading.description.said

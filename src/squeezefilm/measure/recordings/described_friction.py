@@ -108,3 +108,24 @@ class DescribedTouches(Described):
     frequency: Annotated[si.Hertz, FREQUENCY]
     normal_force: Annotated[si.Newton, FORCE]
     display: str = ""
+
+
+@dataclass(frozen=True)
+class DetectionColumns:
+    """Spatial periods, and the least amplitude of the friction coefficient that is detected."""
+
+    spatial_period: Column
+    friction_coefficient: Column
+
+
+@si.checked_numbers
+@dataclass(frozen=True, kw_only=True)
+class DescribedDetection(Described):
+    """Medians over so many `people` of the least modulation of friction that is detected, one row
+    a spatial period."""
+
+    kind: Literal["detection thresholds"]
+    columns: DetectionColumns
+    normal_force: Annotated[si.Newton, FORCE]
+    speed: Annotated[si.MetrePerSecond, FINGER_SPEED]
+    people: Annotated[int, si.AtLeast(1)]

@@ -22,6 +22,7 @@ from squeezefilm.measure.recordings.described_friction import (
     DescribedBench,
     DescribedCurve,
     DescribedDecays,
+    DescribedDetection,
     DescribedTouches,
 )
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
@@ -201,6 +202,7 @@ KINDS: Mapping[str, type[Described]] = {
     "friction curve": DescribedCurve,
     "friction decays": DescribedDecays,
     "fingertip impedances": DescribedTouches,
+    "detection thresholds": DescribedDetection,
 }
 """The kinds of recordings by the word for them."""
 

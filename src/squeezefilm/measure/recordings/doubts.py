@@ -271,4 +271,5 @@ _OF_KIND: dict[type, Callable[[Any], Iterator[str]]] = {
     kinds.FrictionCurve: _curve,
     kinds.FrictionDecays: lambda _: iter(()),
     kinds.FingertipImpedances: lambda _: iter(()),
+    kinds.DetectionThresholds: lambda _: iter(()),
 }

@@ -258,6 +258,24 @@ class FingertipImpedances:
         si.require_alike(damping=self.damping, mass=self.mass)
 
 
+@si.checked_numbers
+@dataclass(frozen=True, eq=False)
+class DetectionThresholds:
+    """The least `amplitude` (zero-to-peak, 1) of the friction coefficient that is detected of sines
+    of a spatial `period` (m), both (periods,): medians over `people` whose fingers slide at a
+    `speed` (m/s) under a `normal_force` (N)."""
+
+    period: Annotated[si.MetreArray, si.Above(0.0)]
+    amplitude: Annotated[si.DimensionlessArray, si.Above(0.0)]
+    normal_force: si.Newton
+    speed: si.MetrePerSecond
+    people: Annotated[int, si.AtLeast(1)]
+    told: Told = field(default_factory=Told)
+
+    def __post_init__(self) -> None:
+        si.require_alike(period=self.period, amplitude=self.amplitude)
+
+
 Recording = (
     ImpedanceSweep
     | FrequencyResponse
@@ -270,4 +288,5 @@ Recording = (
     | FrictionCurve
     | FrictionDecays
     | FingertipImpedances
+    | DetectionThresholds
 )

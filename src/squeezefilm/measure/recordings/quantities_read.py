@@ -62,6 +62,7 @@ QUANTITIES: dict[str, Quantity] = {
     "voltage": Quantity(_V, MOST_VOLTAGE),
     "coherence": Quantity(_ONE, 1.000001, 0.0),
     "position": Quantity(_M, SIDE.most),
+    "spatial_period": Quantity(_M, SIDE.most, 1e-6),
     "x": Quantity(_M, SIDE.most),
     "y": Quantity(_M, SIDE.most),
     "time": Quantity(_S, 1e9),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm import quantities as si
+from squeezefilm.perception.felt import FINEST_TRIED
 from squeezefilm.report.kit.numbers import M, V, shown
 
 if TYPE_CHECKING:
@@ -98,8 +99,9 @@ def _felt_remark(felt: FeltGratings, one: FeltAt) -> str:
 def _period(value: si.Metre | None) -> str:
     if value is None:
         return "none"
-    # The finest that an observer may perceive.
-    return "0.25 mm or finer" if value < 0.2501e-3 else shown(value, M, 2)
+    if value < 1.001 * FINEST_TRIED:
+        return f"{shown(FINEST_TRIED, M, 3)} or finer"
+    return shown(value, M, 2)
 
 
 def sensitivity_rows(found: DisplaySensitivities) -> list[list[str]]:

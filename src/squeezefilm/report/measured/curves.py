@@ -27,6 +27,12 @@ from squeezefilm.report.kit.page_style import (
 )
 from squeezefilm.report.kit.terminal import bullets as printed_bullets
 from squeezefilm.report.kit.terminal import heading, plain_console, table
+from squeezefilm.report.measured.detection import (
+    DETECTION_HEAD,
+    detection_figure,
+    detection_rows,
+    detection_words,
+)
 from squeezefilm.report.measured.figures import measured_points
 from squeezefilm.results import stamp
 
@@ -239,6 +245,10 @@ def show_comparisons(compared: FolderComparison) -> None:
         heading(console, f"{people.told.name}: {people.quantity}")
         table(console, PEOPLE_HEAD, people_rows(people), fixed=(0,))
         printed_bullets(console, [("", people_words(people), "")])
+    for detected in compared.detections:
+        heading(console, detected.told.name)
+        table(console, DETECTION_HEAD, detection_rows(detected), fixed=(0,))
+        printed_bullets(console, [("", words, "") for words in detection_words(detected)])
     if len(compared.curves) > 1:
         heading(console, "All curves")
         table(console, TOTALS_HEAD, total_rows(compared), fixed=(0,))
@@ -269,6 +279,12 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
          text_table("What each model gives", PEOPLE_HEAD, people_rows(people)),
          people_figure(people))
         for people in compared.populations
+    ]  # fmt: skip
+    parts += [
+        (detected.told, detection_words(detected),
+         text_table("What each rival gives", DETECTION_HEAD, detection_rows(detected)),
+         detection_figure(detected))
+        for detected in compared.detections
     ]  # fmt: skip
     for number, (told, said, rows, figure) in enumerate(parts, 1):
         files[f"curve-{number}.png"] = style.png(figure)

@@ -178,6 +178,12 @@ def _touches(figure: Figure, touches: kinds.FingertipImpedances) -> None:
     _scatter(figure, touches.damping, 1e3 * touches.mass, words)
 
 
+def _detection(figure: Figure, measured: kinds.DetectionThresholds) -> None:
+    words = ("spatial period (mm)", "amplitude of the friction coefficient detected")
+    _scatter(figure, 1e3 * measured.period, measured.amplitude, words)
+    figure.axes[0].set(xscale="log", yscale="log")
+
+
 def _signal(axes: Axes, time: si.SecondArray, values: si.FloatArray) -> None:
     """A signal against milliseconds; of very many samples what they span in each stretch."""
     if values.size <= _MOST_POINTS:
@@ -201,4 +207,5 @@ _OF_KIND: Mapping[type, tuple[str, Callable[[Figure, Any], None]]] = {
     kinds.FrictionCurve: ("a friction curve", _curve),
     kinds.FrictionDecays: ("published fits of friction", _decays),
     kinds.FingertipImpedances: ("impedances of fingertips", _touches),
+    kinds.DetectionThresholds: ("detection thresholds", _detection),
 }

@@ -22,6 +22,12 @@ from squeezefilm.report.measured.curves import (
     people_words,
     total_rows,
 )
+from squeezefilm.report.measured.detection import (
+    DETECTION_HEAD,
+    detection_figure,
+    detection_rows,
+    detection_words,
+)
 from squeezefilm.results import write_whole
 
 _HEAD = f"""# Published friction
@@ -50,13 +56,17 @@ def write_friction_docs(compared: FolderComparison, root: Path | None = None) ->
     write_whole(
         docs / "pictures" / "published-friction.png", style.png(all_curves_figure(compared))
     )
+    for detected in compared.detections:
+        write_whole(
+            docs / "pictures" / "published-thresholds.png", style.png(detection_figure(detected))
+        )
     path = docs / "reference" / "published-friction.md"
     write_whole(path, friction_markdown(compared))
     return path
 
 
 def friction_markdown(compared: FolderComparison) -> str:
-    """The text of the page: all curves, each curve, and the numbers of many people."""
+    """The text of the page: all curves, each curve, the numbers of many people, and thresholds."""
     lines = [_HEAD, "## All curves", ""]
     lines += markdown_table((TOTALS_HEAD, total_rows(compared)))
     lines += ["", f"{covered_words(compared)}. {SCORES}", ""]
@@ -75,4 +85,9 @@ def friction_markdown(compared: FolderComparison) -> str:
         ]
         lines += markdown_table((PEOPLE_HEAD, people_rows(people)))
         lines.append("")
+    for detected in compared.detections:
+        lines += [f"## {detected.told.name.capitalize()}", "", f"{detected.told.source}.", ""]
+        lines += markdown_table((DETECTION_HEAD, detection_rows(detected)))
+        lines += ["", *(f"{words}.\n" for words in detection_words(detected))]
+        lines += ["![Measured and computed thresholds](../pictures/published-thresholds.png)", ""]
     return "\n".join(lines)

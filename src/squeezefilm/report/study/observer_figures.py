@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.perception.observer import TUNED_AT
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.numbers import M, shown
 
@@ -31,14 +32,15 @@ def channels(tables: ChainTables) -> Figure:
     ]
     figure = style.new_figure(
         f"Channels of '{style.plain(observer.name)}': {', '.join(bands)}",
-        "second-order bands, assumed shapes and thresholds (amplitude of d′ = 1); marks: textures "
+        "second-order bands, assumed shapes and thresholds (d′ = 1, skin at rest); marks: textures "
         "under the median speed; dotted: the displays' envelope bandwidths",
         3.8,
     )
     axes = figure.subplots()
     for one, (color, dashes) in zip(observer.channels, style.LINES, strict=False):
         said = style.plain(one.name)
-        axes.plot(frequency, one.gain(frequency), color=color, ls=dashes, label=said)
+        gain = one.gain(TUNED_AT / frequency, TUNED_AT)
+        axes.plot(frequency, gain, color=color, ls=dashes, label=said)
     marks: dict[str, list[str]] = {}
     for name, why in tables.explain().items():
         marks.setdefault(f"{why.texture_frequency:.4g}", []).append(name)

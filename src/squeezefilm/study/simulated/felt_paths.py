@@ -26,7 +26,7 @@ from squeezefilm.perception.observer import FingerClass, NamedObserver, Observer
 from squeezefilm.perception.path_percepts import PathPercept, RunPercept, path_percept
 from squeezefilm.perception.perceived import Perceived
 from squeezefilm.perception.percepts import Apparatus, grating_percept
-from squeezefilm.perception.senses import D_PRIME_OF_75
+from squeezefilm.perception.senses import percept_deviation
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.plate.layout import AnnularStator
 from squeezefilm.progress import SayProgress
@@ -282,7 +282,7 @@ def _perceived(felt: PathPercept, observer: Observer) -> Perceived:
 
 
 def _apart(one: PathPercept, other: PathPercept, observer: Observer) -> si.Dimensionless:
-    spread = math.log1p(observer.period_weber_fraction) / D_PRIME_OF_75
+    spread = percept_deviation(observer.period_weber_fraction)
     found = difference(
         _perceived(one, observer), _perceived(other, observer), np.ones(2), np.full(2, spread)
     )
@@ -296,7 +296,7 @@ def _to_gratings(
     answers go; infinitely far where nothing was felt."""
     both = [one for one in (felt.along, felt.across) if one is not None]
     best = max(both, key=lambda one: one.clearest_d_prime)
-    spread = math.log1p(observer.period_weber_fraction) / D_PRIME_OF_75
+    spread = percept_deviation(observer.period_weber_fraction)
     found = []
     for one in design.alternatives:
         touched = grating_percept(one, observer, finger).candidates

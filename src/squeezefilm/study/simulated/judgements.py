@@ -22,7 +22,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.perception.observer import Observer
 from squeezefilm.perception.perceived import Perceived, perceived
-from squeezefilm.perception.senses import FINEST_PERIOD, Candidates
+from squeezefilm.perception.senses import FINEST_PERIOD, Candidates, percept_deviation
 from squeezefilm.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method
 from squeezefilm.study.design.study_design import StudyDesign
@@ -325,9 +325,11 @@ def _number(
         # Strength has no unit of its own: that of the reference is felt as often as it likes.
         place = room.place[design.reference] if design.reference else 0
         known = room.tables.directions.d_prime[0, people.finger[:count], place, :, 0].max(axis=-1)
-        level = np.log(np.maximum(one.strength, _FAINTEST))
-        known = np.log(np.maximum(known, _FAINTEST))
-        error = people.memory[:count] / np.exp(known)
+        step = percept_deviation(room.observer.strength_weber_fraction)
+        level, known = (step * np.maximum(x, _FAINTEST) for x in (one.strength, known))
+        error = people.memory[:count] * step / np.tanh(known)
+        # Back from steps of the noise to strengths.
+        level, known = np.log(np.sinh(level)), np.log(np.sinh(known))
     else:
         level = np.where(one.felt, one.log_period, math.log(FINEST_PERIOD))
         known, error = np.full(count, math.log(here)), people.spread * people.memory

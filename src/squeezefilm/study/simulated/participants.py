@@ -11,7 +11,6 @@ practice. Where a surface is matched with the stimuli themselves, `recalled` say
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -23,16 +22,15 @@ from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
 from squeezefilm.perception.observer import Observer
 from squeezefilm.perception.perceived import perceived
-from squeezefilm.perception.senses import D_PRIME_OF_75, Candidates
+from squeezefilm.perception.senses import Candidates, percept_deviation
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.recalled import recalled_distances
+from squeezefilm.study.simulated.simulated_people import CHUNK
 
-_CHUNK = 60
-"""Orders of more people repeat those of the first so many: a multiple of all rows for 5 stimuli."""
 _MOST_PEOPLE = 1_000_000
 _STREAM = 29
 
@@ -177,12 +175,12 @@ def simulate_matches(
     found = chain_tables(design, observer) if tables is None else tables
     if found.design != design or found.observer != observer:
         raise InputError("the tables are of another design or observer; leave them out")
-    display, stimulus, number = _orders(design, min(participants, _CHUNK), seed)
-    rows = np.arange(participants) % _CHUNK
+    display, stimulus, number = _orders(design, min(participants, CHUNK), seed)
+    rows = np.arange(participants) % CHUNK
     chunks = []
-    for first in range(0, participants, _CHUNK):
-        count = min(_CHUNK, participants - first)
-        random = np.random.default_rng([seed, _STREAM, first // _CHUNK])
+    for first in range(0, participants, CHUNK):
+        count = min(CHUNK, participants - first)
+        random = np.random.default_rng([seed, _STREAM, first // CHUNK])
         chunks.append(_answers(found, display, stimulus, number, random, count))
     choice, felt, times, finger = (np.concatenate([one[i] for one in chunks]) for i in range(4))
     return SimulatedStudy(
@@ -239,17 +237,17 @@ def _answers(
     Noise is drawn for a whole chunk whatever `count` is, so that people do not depend on it.
     """
     observer, asked = tables.observer, display.shape[1]
-    finger = random.integers(0, len(tables.fingers), _CHUNK)[:count]
-    weber = math.log1p(observer.period_weber_fraction) / D_PRIME_OF_75
-    sigma = weber * np.exp(observer.period_spread * random.standard_normal(_CHUNK)[:count])
+    finger = random.integers(0, len(tables.fingers), CHUNK)[:count]
+    clear = percept_deviation(observer.period_weber_fraction)
+    sigma = clear * np.exp(observer.period_spread * random.standard_normal(CHUNK)[:count])
     lapse = observer.lapse_rate * np.exp(
-        observer.lapse_spread * random.standard_normal(_CHUNK)[:count]
+        observer.lapse_spread * random.standard_normal(CHUNK)[:count]
     )
     display, stimulus, number = display[:count], stimulus[:count], number[:count]
     skill = 1.0 + observer.learning_excess * np.exp(-number / observer.learning_trials)
     if tables.design.matched_with == "stimuli":
         away, felt = recalled_distances(
-            tables, display, finger, stimulus, skill, sigma[:, None], random, _CHUNK
+            tables, display, finger, stimulus, skill, sigma[:, None], random, CHUNK
         )
         # In standard deviations already; what is faint is like what is faint, so nobody guesses.
         decides, unit = np.ones(felt.shape, dtype=bool), np.ones_like(skill)
@@ -258,12 +256,12 @@ def _answers(
             tables, display, finger, stimulus, skill, sigma, random, (count, asked)
         )
         decides, unit = felt & np.isfinite(away).any(axis=2), sigma[:, None] * skill
-    guess = random.integers(0, away.shape[2], (_CHUNK, asked))[:count]
-    blind = random.random((_CHUNK, asked))[:count] < lapse[:, None]
+    guess = random.integers(0, away.shape[2], (CHUNK, asked))[:count]
+    blind = random.random((CHUNK, asked))[:count] < lapse[:, None]
     decides = decides & ~blind
     choice = np.where(decides, np.argmin(away, axis=2), guess)
     doubt = np.where(decides, _doubt(away, unit), 1.0)
-    spread = random.standard_normal((_CHUNK, asked))[:count]
+    spread = random.standard_normal((CHUNK, asked))[:count]
     times = (observer.response_time + observer.doubt_time * doubt) * np.exp(
         observer.response_time_spread * spread
     )
@@ -286,9 +284,9 @@ def _from_gratings(
     count, asked = people
     places = display, finger[:, None], stimulus
     felt_now = Candidates(shown.period[places], shown.d_prime[places])
-    virtual, felt = _perceived(felt_now, skill, sigma[:, None], observer, random, (_CHUNK, asked))
+    virtual, felt = _perceived(felt_now, skill, sigma[:, None], observer, random, (CHUNK, asked))
     gratings = touched.period.shape[1]
-    shape = (_CHUNK, asked, gratings)
+    shape = (CHUNK, asked, gratings)
     within = (count, asked, gratings, touched.period.shape[-1])
     again = (
         np.broadcast_to(one[finger][:, None], within) for one in (touched.period, touched.d_prime)

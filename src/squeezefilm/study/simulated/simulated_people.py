@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.perception.observer import Observer
-from squeezefilm.perception.senses import D_PRIME_OF_75
+from squeezefilm.perception.senses import percept_deviation
 
 CHUNK = 60
-"""People whose noise is drawn together; orders of more people repeat those of the first so many."""
+"""People whose noise is drawn together: a multiple of all rows for 5 stimuli. Orders of more people
+repeat those of the first so many."""
 _STREAM = 31
 _OWN_SCALE, _OWN_MIDDLE = 0.5, 10.0
 """People without a modulus: spread of ln of their scales, and the middle of them."""
@@ -46,10 +46,10 @@ class SimulatedPeople:
         """Whoever is in a chunk; nobody depends on how many there are."""
         random = _random(seed, chunk)
         normal, among = random.standard_normal, random.random
-        weber = math.log1p(observer.period_weber_fraction) / D_PRIME_OF_75
+        clear = percept_deviation(observer.period_weber_fraction)
         return cls(
             finger=random.integers(0, fingers, CHUNK),
-            spread=weber * np.exp(observer.period_spread * normal(CHUNK)),
+            spread=clear * np.exp(observer.period_spread * normal(CHUNK)),
             lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(CHUNK)),
             scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(CHUNK)),
             memory=normal(CHUNK),

@@ -287,8 +287,9 @@ def _of_fractions(
     persons = people.estimates(level)
     pooled, spread = persons[0].estimate, None
     if len(persons) > 1:
-        population = Population(people.likelihoods()).estimate(level)
-        pooled, spread = of_population(population, _POPULATION)
+        population = Population(people.likelihoods())
+        pooled, spread = of_population(population.estimate(level), _POPULATION)
+        notes += filter(None, [population.lapse_note])
     else:
         notes.append(
             "one participant: the population's interval is theirs, and says nothing of others"

@@ -133,6 +133,21 @@ class Population:
         weight = np.exp(total - total.max()) * self._widths[:, None]
         return np.asarray(weight.sum(axis=(0, 1)) / weight.sum())
 
+    @property
+    def lapse_note(self) -> str:
+        """What is to be said where answers at random are more than the model knows; else "".
+
+        A surface that is not felt is guessed too. The model then takes a part of the guesses for a
+        lack of sharpness.
+        """
+        if self.lapses()[-1] < 0.5:
+            return ""
+        return (
+            f"answers at random may be more than the {si.percent(MEAN_LAPSES[-1])} of all that the "
+            "model knows, as where surfaces are not felt and guessed; Weber fractions of two "
+            "intervals are then too large, and those of same or different less so"
+        )
+
     def estimate(
         self, level: si.Dimensionless = 0.95, people: si.IntArray | None = None
     ) -> PopulationEstimate:

@@ -61,10 +61,14 @@ def test_friction_is_read_as_it_was_published(tmp_path: Path) -> None:
 def test_what_comes_with_the_program_can_be_read() -> None:
     found = check_folder(presets.friction_folder())
     assert found.refused == ()
-    assert len(found.checks) == 6
-    assert {check.kind for check in found.checks} == set(FRICTION)
+    assert len(found.checks) == 7
+    assert {check.kind for check in found.checks} == {*FRICTION, "detection thresholds"}
     for check in found.checks:
         assert check.recording.told.source
+        if isinstance(check.recording, kinds.DetectionThresholds):
+            assert check.recording.period == pytest.approx(8e-3 / 2.0 ** np.arange(7))
+            assert (check.recording.people, check.recording.speed) == (15, 0.05)
+            continue
         assert isinstance(
             check.recording,
             kinds.FrictionCurve | kinds.FrictionDecays | kinds.FingertipImpedances,

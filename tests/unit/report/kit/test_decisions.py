@@ -68,22 +68,22 @@ def test_what_is_felt_stands_beside_what_survives() -> None:
         "somebody",
         1.0,
         (
-            FeltAt(0.1, 0.335e-3, 0.25e-3, (0.25e-3, 0.45e-3), 0.0),
-            FeltAt(0.2, 0.67e-3, 0.43e-3, (0.25e-3, None), 0.03),
+            FeltAt(0.1, 0.335e-3, 0.125e-3, (0.125e-3, 0.45e-3), 0.0),
+            FeltAt(0.2, 0.67e-3, 0.43e-3, (0.125e-3, None), 0.03),
         ),
         0.1,
     )
     assert felt_rows(felt) == [
         (
             "Finest grating felt at 100 mm/s",
-            "0.25 mm or finer",
-            "0.25 mm or finer at best and 0.45 mm at worst (90 % interval); 0.34 mm survives the "
+            "0.125 mm or finer",
+            "0.125 mm or finer at best and 0.45 mm at worst (90 % interval); 0.34 mm survives the "
             "resonator",
         ),
         (
             "Finest grating felt at 200 mm/s",
             "0.43 mm",
-            "0.25 mm or finer at best and none at worst (90 % interval); none is felt in 3 % of "
+            "0.125 mm or finer at best and none at worst (90 % interval); none is felt in 3 % of "
             "the draws; 0.67 mm survives the resonator",
         ),
     ]

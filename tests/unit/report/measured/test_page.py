@@ -62,6 +62,9 @@ RECORDINGS: dict[str, kinds.Recording] = {
     "friction curve": CURVE,
     "friction decays": kinds.FrictionDecays(ONES * 1e-6, ONES, 30e3, told=TOLD),
     "fingertip impedances": kinds.FingertipImpedances(ONES, ONES * 1e-4, 30e3, 0.5, TOLD),
+    "detection thresholds": kinds.DetectionThresholds(
+        ONES * 1e-3, ONES * 0.01, 0.5, 0.05, 15, TOLD
+    ),
 }
 
 

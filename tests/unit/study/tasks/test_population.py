@@ -102,3 +102,11 @@ def test_nobody_is_no_population() -> None:
         Population([])
     with pytest.raises(InputError, match="level"):
         Population([person(0.0, 1.0)]).estimate(1.0)
+
+
+def test_more_answers_at_random_than_the_model_knows_are_told() -> None:
+    many = Population([person(0.1, 0.1, (0.1, 0.2, 0.4, 0.7, 1.0))] * 6)
+    few = Population([person(0.1, 0.1, (1.0, 0.7, 0.4, 0.2, 0.1))] * 6)
+    assert many.lapses()[-1] > 0.5
+    assert "more than the 8 %" in many.lapse_note
+    assert few.lapse_note == ""

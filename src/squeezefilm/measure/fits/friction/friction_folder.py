@@ -1,4 +1,5 @@
-"""All friction in a folder beside every model: curves, published fits and fingertips."""
+"""All friction in a folder beside every model: curves, published fits, fingertips, and thresholds
+of its modulation."""
 
 from __future__ import annotations
 
@@ -7,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.friction.detection import DetectionComparison, compare_detection
 from squeezefilm.measure.fits.friction.friction_curve import (
     CurveComparison,
     compare_friction_curve,
@@ -23,6 +25,7 @@ from squeezefilm.measure.fits.friction.populations import (
     compare_impedances,
 )
 from squeezefilm.measure.recordings.kinds import (
+    DetectionThresholds,
     FingertipImpedances,
     FrictionCurve,
     FrictionDecays,
@@ -34,12 +37,13 @@ from squeezefilm.results import to_json
 
 @dataclass(frozen=True, eq=False)
 class FolderComparison:
-    """All friction that a folder holds beside every model: curves with their total scores, and the
-    numbers of many people."""
+    """All friction that a folder holds beside every model: curves with their total scores, the
+    numbers of many people, and thresholds of modulation beside the rival senses."""
 
     curves: tuple[CurveComparison, ...]
     totals: tuple[TotalScore, ...]
     populations: tuple[PopulationComparison, ...]
+    detections: tuple[DetectionComparison, ...] = ()
 
     @property
     def units_covered(self) -> tuple[int, int, tuple[float, float]]:
@@ -64,12 +68,13 @@ class FolderComparison:
             "totals": to_json(self.totals),
             "units_covered": {"covered": within, "units": units, "share_interval": list(ends)},
             "populations": [compared.summary() for compared in self.populations],
+            "detections": [compared.summary() for compared in self.detections],
         }
 
 
 def compare_folder(folder: str | Path, progress: SayProgress | None = None) -> FolderComparison:
     """`compare_friction_curve` for every friction curve that a folder's TOML files describe, and
-    the same for published fits and fingertips.
+    the same for published fits, fingertips and detection thresholds.
 
     Recordings of other kinds are passed over. Raises `InputError` for a folder that has none, and
     for a file that cannot be read, before anything is computed.
@@ -77,7 +82,7 @@ def compare_folder(folder: str | Path, progress: SayProgress | None = None) -> F
     found = check_folder(folder)
     if found.refused:
         raise InputError(found.refused[0].why)
-    kinds = FrictionCurve | FrictionDecays | FingertipImpedances
+    kinds = FrictionCurve | FrictionDecays | FingertipImpedances | DetectionThresholds
     recordings = [check.recording for check in found.checks if isinstance(check.recording, kinds)]
     if not recordings:
         raise InputError(
@@ -85,13 +90,19 @@ def compare_folder(folder: str | Path, progress: SayProgress | None = None) -> F
             + ", ".join(sorted({check.kind for check in found.checks}))
             + '; write kind = "friction curve" into the description of one'
         )
-    displays = [display_of(recording.told.name, recording.display) for recording in recordings]
-    for recording in recordings:
+    detections = tuple(
+        compare_detection(recording)
+        for recording in recordings
+        if isinstance(recording, DetectionThresholds)
+    )
+    on_displays = [r for r in recordings if not isinstance(r, DetectionThresholds)]
+    displays = [display_of(recording.told.name, recording.display) for recording in on_displays]
+    for recording in on_displays:
         if isinstance(recording, FrictionCurve):
             rest_friction(recording)
     curves: list[CurveComparison] = []
     populations: list[PopulationComparison] = []
-    for recording, display in zip(recordings, displays, strict=True):
+    for recording, display in zip(on_displays, displays, strict=True):
         if isinstance(recording, FrictionCurve):
             curves.append(compare_friction_curve(recording, progress, display))
         elif isinstance(recording, FrictionDecays):
@@ -102,4 +113,4 @@ def compare_folder(folder: str | Path, progress: SayProgress | None = None) -> F
     if curves:
         scores = [compared.models for compared in curves]
         totals = total_scores([compared.curve for compared in curves], scores)
-    return FolderComparison(tuple(curves), totals, tuple(populations))
+    return FolderComparison(tuple(curves), totals, tuple(populations), detections)
