@@ -52,6 +52,7 @@ _BY_UNIT = {
 }  # fmt: skip
 
 _BY_NAME: dict[str, Any] = {
+    "people": 15,
     "amplitude": 1e-6, "free_amplitude": 1e-6, "low": 0.0, "high": 1e-6, "roughness": 1e-6,
     "vibration_amplitude": 1e-6, "ridge_amplitude": 50e-6, "ridge_period": 350e-6,
     "plateau_width": 250e-6, "film_thickness": 5e-6, "mean_gap": 5e-6, "gap": 2e-6,

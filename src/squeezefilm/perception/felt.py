@@ -5,7 +5,7 @@ be. A finger slides steadily at a speed v over a square grating of period λ, th
 between two amplitudes with the first-order envelope of the resonator. The friction over one
 passage has the lines µF c_h at the frequencies h v/λ; the skin moves by each of them as the
 fingerpad's mass, spring and damper have it (`contact.finger.fingerpad`), and the channels make d′
-of that as in `senses`: thresholds, Weber fraction of the mean stretch, and the sum over harmonics.
+of that as in `senses`: thresholds, what the mean stretch masks, and the sum over harmonics.
 
 What a stroke adds (it speeds up and slows down, the pad lies on the standing wave, the sensor is
 late) is left out; `percepts.percept` has it, a second for each grating.
@@ -23,11 +23,10 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics, skin_displacement_per_friction
 from squeezefilm.perception.observer import Observer
-from squeezefilm.perception.senses import COARSEST_PERIOD
+from squeezefilm.perception.senses import COARSEST_PERIOD, FINEST_LINE
 
 FINEST_TRIED: si.Metre = 0.125e-3
 """The finest at which thresholds were measured."""
-_FINEST_LINE: si.Metre = 0.1e-3
 _SAMPLES = 256
 """Over a period; the fifteenth harmonic, the last that counts, has seventeen."""
 
@@ -90,7 +89,7 @@ def grating_evidence(
         frequency = harmonic * rubbed.speed / period
         moved = skin_displacement_per_friction(frequency, pad.stiffness, pad.damping, pad.mass)
         skin = 2 * np.abs(lines[:, harmonic]) * np.abs(moved)
-        seen = np.where(period / harmonic >= _FINEST_LINE, skin, 0.0)
+        seen = np.where(period / harmonic >= FINEST_LINE, skin, 0.0)
         for channel in observer.channels:
             passed = channel.gain(period / harmonic, rubbed.speed) * seen
             power += (passed / channel.noise(mean)) ** 2

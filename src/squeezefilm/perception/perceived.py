@@ -60,3 +60,19 @@ def perceived(
     clear = np.where(felt, np.maximum(d_prime, _FAINTEST), np.inf)
     wide = spread * skill * np.sqrt(1.0 + 1.0 / clear**2)
     return Perceived(np.log(period) + wide * blur, strength, felt)
+
+
+def perceived_anew(
+    surface: Candidates,
+    observer: Observer,
+    skill: si.DimensionlessArray,
+    spread: si.DimensionlessArray,
+    random: np.random.Generator,
+    drawn: int,
+) -> Perceived:
+    """`perceived` with noise of its own; `surface` has shape (people, …, candidates), and the noise
+    of `drawn` people is drawn, so that nobody depends on how many there are."""
+    count, *shape = surface.period.shape
+    noise = random.standard_normal((drawn, *shape))[:count]
+    blur = random.standard_normal((drawn, *shape[:-1]))[:count]
+    return perceived(surface, observer, skill, spread, noise, blur)

@@ -2,14 +2,13 @@
 
 A displacement along the finger's way has lines at spatial periods λ. Each channel sees a line of
 amplitude A through its gain at the temporal frequencies v/λ of the stroke, in the noise of its
-threshold θ and of a Weber fraction w of the mean displacement M:
+threshold θ and of what the mean displacement M masks:
 
-    d′_c(λ) = g_c(λ) A(λ) / √(θ_c² + s²),    s = (2/π) w M / d′(75 %),    d′(75 %) = √2 z(0.75),
+    d′_c(λ) = g_c(λ) A(λ) / √(θ_c² + (m_c M)²).
 
-where (2/π) is the amplitude of a square step's fundamental and w the step told apart in 75 % of
-two-interval trials. Channels add in squares. A rhythm of period λ is evidence from its harmonics,
-Σ_h w_h² d′²(λ/h) with w_h = harmonic_weight^(h−1), after the subharmonic summation of Hermes 1988
-(10.1121/1.396427); which makes a fundamental win over its multiples and parts.
+Channels, and the harmonics of a rhythm of period λ, add in squares. Of all rhythms the clearest has
+the greatest Σ_h w_h d′(λ/h) with w_h = harmonic_weight^(h−1): the subharmonic summation of Hermes
+1988 (10.1121/1.396427), with which a fundamental wins over its multiples and parts.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ SPACING: si.Metre = 25e-6
 # Lines are looked for down to the harmonics of the finest period, where a step is a third of the
 # half-width that a stroke of 4 cm gives a line. By falling between two steps a line seems fainter
 # by at most 2 % at 0.4 mm, 5 % at 0.25 mm and (a harmonic only) 32 % at 0.1 mm.
-_FINEST_LINE: si.Metre = 0.1e-3
+FINEST_LINE: si.Metre = 0.1e-3
 _LOG_STEP = 0.004
 # A pass begins with the pad being stretched: this much of it is not looked at.
 SETTLING: si.Metre = 2e-3
@@ -95,8 +94,8 @@ def percept_deviation(
 
 def line_periods() -> si.MetreArray:
     """The spatial periods (m) at which lines are looked for, in steps of 0.4 %."""
-    count = math.floor(math.log(COARSEST_PERIOD / _FINEST_LINE) / _LOG_STEP) + 1
-    periods: si.MetreArray = _FINEST_LINE * np.exp(_LOG_STEP * np.arange(count))
+    count = math.floor(math.log(COARSEST_PERIOD / FINEST_LINE) / _LOG_STEP) + 1
+    periods: si.MetreArray = FINEST_LINE * np.exp(_LOG_STEP * np.arange(count))
     return periods
 
 
@@ -138,8 +137,8 @@ def channel_gains(observer: Observer, speed: si.MetrePerSecondArray) -> si.Dimen
     """
     # Speeds enter by their histogram: a stroke has thousands, all alike to a few per cent.
     shares = np.quantile(speed, (np.arange(24) + 0.5) / 24)
-    gains = [channel.gain(line_periods(), shares[:, None]) for channel in observer.channels]
-    return np.sqrt(np.mean(np.square(gains), axis=1))
+    gains = np.array([one.gain(line_periods(), shares[:, None]) for one in observer.channels])
+    return np.asarray(np.sqrt(np.mean(gains**2, axis=1)))
 
 
 def evidence(

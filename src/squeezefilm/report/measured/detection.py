@@ -47,7 +47,7 @@ def detection_words(compared: DetectionComparison) -> list[str]:
         f"least amplitude (zero-to-peak) of the friction coefficient that is detected: medians of "
         f"{m.people} people, {1e3 * m.speed:g} mm/s, {m.normal_force:g} N",
         f"{np.count_nonzero(off < np.log(1.5))} of {m.period.size} medians within a factor of 1.5, "
-        f"the farthest by {np.exp(off.max()):.2f}; two numbers were fitted to those at "
+        f"the farthest by {np.exp(off.max()):.3f}; two numbers were fitted to those at "
         f"{1e3 * TUNED_AT:g} mm/s, where the rivals are alike",
         f"the mean friction coefficient is not published: {MEAN_FRICTION:g} is assumed, and that "
         "what is detected is in proportion to it; how people differ is not known",

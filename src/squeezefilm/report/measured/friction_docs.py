@@ -88,6 +88,6 @@ def friction_markdown(compared: FolderComparison) -> str:
     for detected in compared.detections:
         lines += [f"## {detected.told.name.capitalize()}", "", f"{detected.told.source}.", ""]
         lines += markdown_table((DETECTION_HEAD, detection_rows(detected)))
-        lines += ["", *(f"{words}.\n" for words in detection_words(detected))]
+        lines += ["", *(f"{words[0].upper()}{words[1:]}.\n" for words in detection_words(detected))]
         lines += ["![Measured and computed thresholds](../pictures/published-thresholds.png)", ""]
     return "\n".join(lines)

@@ -179,16 +179,14 @@ def chain_tables(
     )
 
 
-def _along(felt: FeltSurface) -> Candidates:
-    return felt.candidates
-
-
 def _across(felt: FeltSurface) -> Candidates:
     assert felt.across is not None
     return felt.across
 
 
-def _competing(tree: Any, which: Callable[[FeltSurface], Candidates] = _along) -> Candidates:
+def _competing(
+    tree: Any, which: Callable[[FeltSurface], Candidates] = lambda felt: felt.candidates
+) -> Candidates:
     return Candidates(
         _gathered(tree, lambda one: which(one).period),
         _gathered(tree, lambda one: which(one).d_prime),

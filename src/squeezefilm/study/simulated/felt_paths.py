@@ -282,11 +282,9 @@ def _perceived(felt: PathPercept, observer: Observer) -> Perceived:
 
 
 def _apart(one: PathPercept, other: PathPercept, observer: Observer) -> si.Dimensionless:
-    spread = percept_deviation(observer.period_weber_fraction)
-    found = difference(
-        _perceived(one, observer), _perceived(other, observer), np.ones(2), np.full(2, spread)
-    )
-    return float(found)
+    spread = np.full(2, percept_deviation(observer.period_weber_fraction))
+    here, there = _perceived(one, observer), _perceived(other, observer)
+    return float(difference(here, there, np.ones(2), spread))
 
 
 def _to_gratings(

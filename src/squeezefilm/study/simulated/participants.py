@@ -21,7 +21,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
 from squeezefilm.perception.observer import Observer
-from squeezefilm.perception.perceived import perceived
+from squeezefilm.perception.perceived import perceived_anew
 from squeezefilm.perception.senses import Candidates, percept_deviation
 from squeezefilm.results import Result, stamp, to_json
 from squeezefilm.study.design.study_design import StudyDesign
@@ -252,9 +252,7 @@ def _answers(
         # In standard deviations already; what is faint is like what is faint, so nobody guesses.
         decides, unit = np.ones(felt.shape, dtype=bool), np.ones_like(skill)
     else:
-        away, felt = _from_gratings(
-            tables, display, finger, stimulus, skill, sigma, random, (count, asked)
-        )
+        away, felt = _from_gratings(tables, display, finger, stimulus, skill, sigma, random)
         decides, unit = felt & np.isfinite(away).any(axis=2), sigma[:, None] * skill
     guess = random.integers(0, away.shape[2], (CHUNK, asked))[:count]
     blind = random.random((CHUNK, asked))[:count] < lapse[:, None]
@@ -276,46 +274,27 @@ def _from_gratings(
     skill: si.DimensionlessArray,
     sigma: si.DimensionlessArray,
     random: np.random.Generator,
-    people: tuple[int, int],
 ) -> tuple[si.FloatArray, NDArray[np.bool_]]:
     """How far the period perceived lies from that of each real grating, shape (people, trials,
     gratings), infinite where that was not felt; and whether the surface was."""
-    observer, shown, touched = tables.observer, tables.virtual, tables.real
-    count, asked = people
+    shown, touched = tables.virtual, tables.real
     places = display, finger[:, None], stimulus
     felt_now = Candidates(shown.period[places], shown.d_prime[places])
-    virtual, felt = _perceived(felt_now, skill, sigma[:, None], observer, random, (CHUNK, asked))
-    gratings = touched.period.shape[1]
-    shape = (CHUNK, asked, gratings)
-    within = (count, asked, gratings, touched.period.shape[-1])
+    virtual = perceived_anew(felt_now, tables.observer, skill, sigma[:, None], random, CHUNK)
+    within = (*display.shape, *touched.period.shape[1:])
     again = (
         np.broadcast_to(one[finger][:, None], within) for one in (touched.period, touched.d_prime)
     )
-    real, real_felt = _perceived(
+    real = perceived_anew(
         Candidates(*again),
+        tables.observer,
         skill[:, :, None],
         sigma[:, None, None],
-        observer,
         random,
-        shape,
+        CHUNK,
     )
-    return np.where(real_felt, np.abs(virtual[:, :, None] - real), np.inf), felt
-
-
-def _perceived(
-    surface: Candidates,
-    skill: si.DimensionlessArray,
-    sigma: si.DimensionlessArray,
-    observer: Observer,
-    random: np.random.Generator,
-    shape: tuple[int, ...],
-) -> tuple[si.FloatArray, NDArray[np.bool_]]:
-    """Logarithm of the period perceived and whether anything was, over the last axis."""
-    count = surface.period.shape[0]
-    noise = random.standard_normal((*shape, surface.period.shape[-1]))[:count]
-    blur = random.standard_normal(shape)[:count]
-    found = perceived(surface, observer, skill, sigma, noise, blur)
-    return found.log_period, found.felt
+    apart = np.abs(virtual.log_period[:, :, None] - real.log_period)
+    return np.where(real.felt, apart, np.inf), virtual.felt
 
 
 def _doubt(away: si.FloatArray, sigma: si.DimensionlessArray) -> si.DimensionlessArray:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
-from squeezefilm.perception.perceived import Perceived, perceived
+from squeezefilm.perception.perceived import Perceived, perceived_anew
 from squeezefilm.perception.senses import Candidates
 
 if TYPE_CHECKING:
@@ -69,24 +69,14 @@ def recalled_distances(
         drawn: people whose noise is drawn, so that nobody depends on how many there are.
     """
     found, observer = tables.directions, tables.observer
-    count, asked = display.shape
-    directions, rhythms = found.period.shape[-2:]
-    known = found.period.shape[2]
-    rows = display, finger[:, None], stimulus
 
-    def felt(surface: Candidates, shape: tuple[int, ...], deep: int) -> Perceived:
-        noise = random.standard_normal((drawn, *shape, rhythms))[:count]
-        blur = random.standard_normal((drawn, *shape))[:count]
+    def felt(rows: tuple[si.IntArray, ...], deep: int) -> Perceived:
+        surface = Candidates(found.period[rows], found.d_prime[rows])
         own = (slice(None), slice(None), *(None,) * deep)
-        return perceived(surface, observer, skill[own], spread[own], noise, blur)
+        return perceived_anew(surface, observer, skill[own], spread[own], random, drawn)
 
-    now = felt(Candidates(found.period[rows], found.d_prime[rows]), (asked, directions), 1)
-    everything = display, finger[:, None]
-    then = felt(
-        Candidates(found.period[everything], found.d_prime[everything]),
-        (asked, known, directions),
-        2,
-    )
+    now = felt((display, finger[:, None], stimulus), 1)
+    then = felt((display, finger[:, None]), 2)
     shown = Perceived(now.log_period[:, :, None], now.strength[:, :, None], now.felt[:, :, None])
     own = (slice(None), slice(None), None, None)
     anything: NDArray[np.bool_] = np.any(now.felt, axis=-1, keepdims=True)[..., 0]

@@ -124,9 +124,7 @@ def test_a_transient_of_eleven_per_cent_is_told_by_the_same_senses() -> None:
     found = []
     for friction in (0.2, 0.4):
         period = 0.04 / order
-        moved = skin_displacement_per_friction(
-            0.08 / period, pad.stiffness, pad.damping, pad.mass
-        )
+        moved = skin_displacement_per_friction(0.08 / period, pad.stiffness, pad.damping, pad.mass)
         skin = 2 / math.pi * 0.11 * friction / order * np.abs(moved)
         power = sum(
             np.sum((c.gain(period, 0.08) * skin / c.noise(friction / pad.stiffness)) ** 2)

@@ -34,7 +34,7 @@ def test_a_row_has_the_median_and_every_rival() -> None:
 def test_what_is_assumed_is_said() -> None:
     measured, near, assumed = detection_words(COMPARED)
     assert "12 people, 50 mm/s, 0.7 N" in measured
-    assert near.startswith("2 of 3 medians within a factor of 1.5, the farthest by 2.00")
+    assert near.startswith("2 of 3 medians within a factor of 1.5, the farthest by 2.000")
     assert "0.5 is assumed" in assumed
 
 

@@ -1,0 +1,28 @@
+"""Two intervals, and same or different, of the same simulated people: the Weber fraction of the
+spatial period that they were made with comes out of both."""
+
+from __future__ import annotations
+
+import pytest
+
+from squeezefilm.perception.observer import load_observer
+from squeezefilm.study.design.study_design import load_design
+from squeezefilm.study.simulated.answers import SimulatedAnswers, simulate_participants
+
+PEOPLE, SEED = 24, 7
+OBSERVER = load_observer()
+# Noise is 1.3 times as large at first, and falls by a factor e in 20 trials of some 130.
+LEARNT = 1.045
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", ["period-jnd", "period-same-different"])
+def test_the_weber_fraction_of_a_period_comes_out(name: str) -> None:
+    study = simulate_participants(load_design(name), OBSERVER, PEOPLE, SEED)
+    assert isinstance(study, SimulatedAnswers)
+    (found,) = study.analyses.values()
+    true = OBSERVER.period_weber_fraction * LEARNT
+    assert found.pooled.low < true < found.pooled.high
+    # Where a grating was not felt it was guessed, and two intervals said 14 %.
+    assert found.pooled.value == pytest.approx(true, rel=0.2)
+    assert not any("at random" in note for note in found.notes)
