@@ -5,13 +5,15 @@
 prints the two numbers of each person (decay length and friction at rest), those of the seventy
 strokes, the defaults of `contact.finger.fingertip` and `contact.finger.people` that follow; how a
 person who was left out is predicted from the others, beside the mean and spread of the others
-without physics; and how the log-normal population predicts a stroke beside a resample of the
-strokes.
+without physics; how the log-normal population predicts a stroke beside a resample of the strokes;
+and what partial levitation makes of the same people, of skins that move by their own phase, and of
+a vacuum, with the roughness of skin as the literature has it and fitted.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from typing import NamedTuple
 
@@ -22,7 +24,10 @@ from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.contact.finger.fingertip import Finger
+from squeezefilm.contact.finger.skin import Skin
+from squeezefilm.contact.rough_contact import RoughContact
 from squeezefilm.display import load_display
+from squeezefilm.errors import ConvergenceError, OutOfRangeError
 from squeezefilm.measure.fits.friction.friction_scores import rest_friction
 from squeezefilm.measure.fits.friction.person import PersonFit, fitted_person, with_decay_length
 from squeezefilm.measure.recordings.kinds import FrictionCurve, FrictionDecays
@@ -182,6 +187,81 @@ def population_scores(logarithms: si.FloatArray) -> si.FloatArray:
     return np.array(scores)
 
 
+class Balances(NamedTuple):
+    """Partial levitation beside the same data. `as_read` is what it leaves of each person with the
+    literature's roughness and modulus, over the friction at rest; `fitted` with the roughness (m)
+    that is nearest to each, and that roughness; `skins` the least and the greatest µ′/µ, at 2.1 µm
+    and 0.5 N, over skins that move by their own phase; `vacuum` the least and the greatest share
+    of the effect that they leave at 0.017 atm."""
+
+    as_read: list[float]
+    fitted: list[tuple[float, float]]
+    skins: tuple[float, float]
+    vacuum: tuple[float, float]
+
+
+def balances(found: Fits) -> Balances:
+    """Ask partial levitation of persons, artificial skins and a vacuum."""
+    laws = [law.by("partial-levitation") for law in found.laws]
+    fitted = []
+    for curve, law in zip(found.curves, laws, strict=True):
+        tried = [(_left(curve, _rough(law, r, 3.2e6)), r) for r in np.geomspace(0.2e-6, 8e-6, 60)]
+        fitted.append(min(tried))
+    middle = float(np.median([roughness for _, roughness in fitted]))
+    skins, vacuum = [], []
+    for force, frequency in ((0.5, 32.112e3), (0.35, 29.075e3)):
+        law = law_of(found.curves[0].display, frequency, force, 0.01).by("partial-levitation")
+        law = dataclasses.replace(_rough(law, middle, 3.2e6), slip="fukui-kaneko")
+        thin = dataclasses.replace(law, gas=law.gas.at_pressure(0.017 * 101325))
+        inertia = Skin().mass_per_area * (2 * math.pi * frequency) ** 2
+        for stiffness, damping in itertools.product((0.0, 1.1, 1.5, 2.0, 4.0), (1e5, 3e5, 1e6)):
+            skin = Skin(stiffness_per_area=stiffness * inertia, damping_per_area=damping)
+            if force == 0.5:
+                skins.append(_yielding(law, 2.1e-6, skin))
+            else:
+                inside = _yielding(thin, 1.6e-6, skin)
+                vacuum.append((1 - inside) / (1 - _yielding(law, 1.6e-6, skin)))
+    as_read = [
+        _left(curve, _rough(law, 5e-6, 20e6)) for curve, law in zip(found.curves, laws, strict=True)
+    ]
+    return Balances(
+        as_read,
+        fitted,
+        (float(np.nanmin(skins)), float(np.nanmax(skins))),
+        (float(np.nanmin(vacuum)), float(np.nanmax(vacuum))),
+    )
+
+
+def _rough(law: FrictionLaw, roughness: float, modulus: float) -> FrictionLaw:
+    """The law of a skin of a roughness (m) and modulus (Pa) on the law's own face."""
+    contact = RoughContact(roughness=roughness, modulus=modulus)
+    finger = dataclasses.replace(
+        law.finger, asperities=contact, asperity_roughness=law.surface.roughness
+    )
+    return dataclasses.replace(law, finger=finger)
+
+
+def _left(curve: FrictionCurve, law: FrictionLaw) -> float:
+    """The root mean square that a law leaves of a curve over its friction at rest, which is fitted;
+    infinite where the law ends."""
+    try:
+        relative = law.curve(curve.vibration_amplitude)
+    except OutOfRangeError:
+        return math.inf
+    rest = float(curve.friction @ relative / (relative @ relative))
+    missed = float(np.sqrt(np.mean((curve.friction - rest * relative) ** 2)))
+    return missed / rest_friction(curve)
+
+
+def _yielding(law: FrictionLaw, amplitude: float, skin: Skin) -> float:
+    """µ′/µ at an amplitude (m) of a skin that moves by its own phase; NaN where the law ends."""
+    law = dataclasses.replace(law, finger=dataclasses.replace(law.finger, skin=skin))
+    try:
+        return float(law.sharing(amplitude, yielding=True).relative_friction[0])
+    except (OutOfRangeError, ConvergenceError):
+        return math.nan
+
+
 def main() -> None:
     """Fit and print."""
     found = fits()
@@ -237,6 +317,20 @@ def main() -> None:
             f"{name} artificial skin, mu'/mu {friction} at 2.1 um, 0.5 N: {1e6 * length:.2f} um, "
             f"over single ridges {1e6 * over.finger.ridge_length_at(0.01):.2f} um"
         )
+    tried = balances(found)
+    print("partial levitation, what touches slips:")
+    for curve, as_read, (left, roughness) in zip(
+        found.curves, tried.as_read, tried.fitted, strict=True
+    ):
+        print(
+            f"{curve.told.name:26}  5 um and 20 MPa of the literature left {as_read:.3f}; fitted "
+            f"{1e6 * roughness:.2f} um left {left:.3f}"
+        )
+    print(
+        f"over skins that move by their own phase mu'/mu {tried.skins[0]:.2f} to "
+        f"{tried.skins[1]:.2f} at 2.1 um (measured 0.084 and 0.81), and {tried.vacuum[0]:.2f} to "
+        f"{tried.vacuum[1]:.2f} of the effect at 0.017 atm (measured 0.60 to 0.82)"
+    )
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ def test_known_models_are_compared_the_papers_first() -> None:
     names = [model for model, _ in COMPARED]
     assert names[0] == "paper2008"
     assert set(names) < set(MODEL_KINDS) == set(get_args(FrictionModel))
-    assert len(set(names)) == len(names) == 6
+    assert len(set(names)) == len(names) == 5
 
 
 def test_a_curve_is_read_between_its_points_and_not_beyond() -> None:
