@@ -7,9 +7,8 @@ and meets the error if there is one. So nothing depends on it, and what comes of
 same with it and without.
 
 A verb has one for its time, `second_process`; what it calls asks for work by `later` and for what
-comes of it by `values`. Without one all of it is done here, when its value is asked for. A verb
-that may find all it needs on disk leaves its start to whoever finds something lacking,
-`start_second_process`.
+comes of it by `values`. Without one all of it is done here, when its value is asked for. One
+process takes less time of both processors together: it is worth it for what takes long.
 
 On Linux it is a copy of this process (fork), made once both have what they need. Elsewhere, and
 where a thread beside the main one asks, it is a new one that loads all again, which takes seconds
@@ -218,17 +217,15 @@ _PRESENT: ContextVar[SecondProcess | None] = ContextVar("second process", defaul
 
 @contextmanager
 def second_process(
-    *prepare: Callable[[], object], at_once: bool = True
+    *prepare: Callable[[], object],
 ) -> Iterator[SecondProcess | None]:
     """A `SecondProcess` for the block; None unless there is a second processor for it, and in a
-    process that must not have children, as the lab's workers are. It is started `at_once`, or when
-    somebody calls `start_second_process`."""
+    process that must not have children, as the lab's workers are."""
     if _processors() < 2 or multiprocessing.current_process().daemon:
         yield None
         return
     process = SecondProcess(*prepare)
-    if at_once:
-        process.start()
+    process.start()
     before = _PRESENT.set(process)
     try:
         # Threads of either would wait for the other's.
@@ -237,13 +234,6 @@ def second_process(
     finally:
         _PRESENT.reset(before)
         process.end()
-
-
-def start_second_process() -> None:
-    """Start the block's process, where it has one that waits for that: there is work for it."""
-    process = _PRESENT.get()
-    if process is not None:
-        process.start()
 
 
 def is_present() -> bool:

@@ -26,7 +26,6 @@ from squeezefilm.second_process import (
     is_present,
     later,
     second_process,
-    start_second_process,
     values,
 )
 
@@ -192,20 +191,6 @@ def test_it_is_there_for_the_block_only() -> None:
         assert is_present()
         assert values(*(later(ADD, k, k) for k in range(6))) == [0, 2, 4, 6, 8, 10]
     assert not is_present()
-    assert not process._process.is_alive()
-
-
-def test_one_that_is_not_needed_is_never_started() -> None:
-    with second_process(time.time, at_once=False) as process:
-        if process is None:
-            pytest.skip("there is one processor")
-        early = later(ADD, 1, 2)
-        assert values(early) == [3]
-        assert not hasattr(process, "_process")
-        waiting = later(ADD, 3, 4)
-        start_second_process()
-        start_second_process()
-        assert values(waiting, *(later(ADD, k, k) for k in range(6))) == [7, 0, 2, 4, 6, 8, 10]
     assert not process._process.is_alive()
 
 

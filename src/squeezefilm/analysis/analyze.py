@@ -68,7 +68,6 @@ from squeezefilm.progress import Deadline, Pace, SayProgress, said_with_time_lef
 from squeezefilm.render.fidelity.survival import EXPLORING_SPEEDS, FidelityTable
 from squeezefilm.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.results import Result, stamp, to_json
-from squeezefilm.second_process import later, values
 
 BAND_POINTS, BAND_SAMPLES = 9, 64
 """Amplitudes at which the band of the friction is computed, and draws at each."""
@@ -209,8 +208,8 @@ class Analysis(Result):
         return measured_beside(self.display, self.prediction)
 
     def compute(self, names: Sequence[str], tell: SayProgress) -> None:
-        """Compute the properties of some names, the longest first, with a second process where
-        there is one; those that take long are kept on disk. `tell` is told each."""
+        """Compute the properties of some names; those that take long are kept on disk. `tell` is
+        told each."""
         dear = [name for name in names if name in KEPT]
         types = tuple(get_type_hints(getattr(Analysis, name).func)["return"] for name in dear)
         kept: Kept[tuple[Any, ...]] = Kept("beside", tuple[types], large=True)  # type: ignore[valid-type]
@@ -219,10 +218,10 @@ class Analysis(Result):
         asked = description_of(self.display, self.prediction, more)
         known = kept.get(asked)
         vars(self).update(zip(dear, known or (), strict=False))
-        begun = {name: later(getattr, self, name) for name in names if name not in vars(self)}
-        for name, piece in reversed(begun.items()):
-            tell(name.replace("_", " "))
-            vars(self)[name] = values(piece)[0]
+        for name in names:
+            if name not in vars(self):
+                tell(name.replace("_", " "))
+                getattr(self, name)
         if known is None:
             kept.put(asked, tuple(vars(self)[name] for name in dear))
 
@@ -365,9 +364,6 @@ def _what_follows(
     """What one decides from, of a prediction; what a deadline leaves no room for is left out."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
-    asked = description_of(display, prediction)
-    table = _GRATINGS.get(asked)
-    survives = None if table is not None else later(what_survives, prediction, tau)
     tell("friction against amplitude")
     own = friction_curve(prediction, prediction.surface, prediction.model)
     tell("how sure the friction is")
@@ -379,8 +375,10 @@ def _what_follows(
     tell("friction over the active area")
     area = judged_area(display, prediction, samples=0 if unsure is None else samples)
     tell("verdict")
-    if survives is not None:
-        (table,) = values(survives)
+    asked = description_of(display, prediction)
+    table = _GRATINGS.get(asked)
+    if table is None:
+        table = what_survives(prediction, tau)
         if table is not None:
             _GRATINGS.put(asked, table)
     return Analysis(

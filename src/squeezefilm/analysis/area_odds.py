@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.drawn import DRAWN_AT_ONCE, KeptDraws, evaluate
+from squeezefilm.analysis.drawn import KeptDraws, evaluate
 from squeezefilm.analysis.draws import Mixture, Outcome, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import quantiles
 from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, sobol_points
@@ -26,7 +26,6 @@ from squeezefilm.chain.pad_place import pad_place
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
-from squeezefilm.second_process import later, values
 
 _KEPT: KeptDraws[si.FloatArray] = KeptDraws("draws-over-areas", si.FloatArray)
 
@@ -93,20 +92,8 @@ def area_odds(
     mixture = mixture_of(display, p)
     points = sobol_points(mixture, POINTS * samples, seed)
     outcomes = np.stack(evaluate(mixture, points, lambda _: None)[0], axis=1)
-    make = functools.partial(_in_two_processes, mixture, over, points, outcomes)
+    make = functools.partial(_drawn, mixture, over, points, outcomes)
     return AreaOdds(_KEPT.found(mixture, points, over, make))
-
-
-def _in_two_processes(
-    mixture: Mixture,
-    over: list[_Elsewhere | None],
-    points: si.DimensionlessArray,
-    outcomes: si.FloatArray,
-) -> si.DimensionlessArray:
-    """What `_drawn` makes of them, some at a time."""
-    blocks = max(len(points) // DRAWN_AT_ONCE, 1)
-    parts = zip(np.array_split(points, blocks), np.array_split(outcomes, blocks), strict=True)
-    return np.concatenate(values(*[later(_drawn, mixture, over, *part) for part in parts]))
 
 
 @as_drawn()

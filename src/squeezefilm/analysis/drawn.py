@@ -1,4 +1,4 @@
-"""Many draws of a mixture: in two processes, and kept on disk.
+"""Many draws of a mixture, kept on disk.
 
 Whoever analyses a display again, with another texture or report, asks for the same draws again.
 """
@@ -23,12 +23,11 @@ from squeezefilm.errors import SqueezefilmError
 from squeezefilm.kept.store import Kept
 from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
-from squeezefilm.second_process import is_present, later, start_second_process, values
 
 _Found = TypeVar("_Found")
 
-# So many that nobody waits long for the other process, and so few messages that they take no time.
-DRAWN_AT_ONCE = 12
+# So many messages take no time.
+_TOLD = 20
 
 # Fewer are drawn again sooner than found.
 _WORTH_KEEPING = 100
@@ -50,12 +49,7 @@ class KeptDraws(Generic[_Found]):
     ) -> _Found:
         """What `make` makes of the draws at points of the unit cube, shape (n, inputs), and of
         whatever `more` there is to it: found where it was made before."""
-
-        def made() -> _Found:
-            start_second_process()
-            return make()
-
-        return self._kept.found(_asked(mixture, points, more), made)
+        return self._kept.found(_asked(mixture, points, more), make)
 
 
 _KEPT: KeptDraws[tuple[si.FloatArray, Tally]] = KeptDraws("draws", tuple[si.FloatArray, Tally])
@@ -68,8 +62,7 @@ def evaluate(
     what: str = "friction of draw",
 ) -> tuple[Outcome, Refusals]:
     """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
-    where refused; and what was refused. `tell` is told some twenty times; a second process takes
-    its share."""
+    where refused; and what was refused. `tell` is told some twenty times."""
     found = mixture.known(points)
     new = np.flatnonzero(np.isnan(found[:, 0]))
     make = functools.partial(_drawn_now, mixture, points, new, tell, what)
@@ -110,12 +103,13 @@ def _asked(mixture: Mixture, points: si.DimensionlessArray, more: object = None)
     told = (mixture.display, mixture.inputs, numbers, place, words, *law.ridge_swings, points, more)
     stream = io.BytesIO()
     pickler = pickle.Pickler(stream, protocol=5)
-    # By values alone: which of them are one object differs in a process that they were sent to.
+    # By values alone: which of them are one object differs between processes.
     pickler.fast = True
     pickler.dump(told)
     return blake2b(stream.getvalue()).hexdigest()
 
 
+@as_drawn()
 def _drawn_now(
     mixture: Mixture,
     points: si.DimensionlessArray,
@@ -124,29 +118,14 @@ def _drawn_now(
     what: str,
 ) -> tuple[si.FloatArray, Tally]:
     """What comes of the points numbered `new`, shape (n, 3), and what was refused."""
-    found = np.full((len(points), 3), np.nan)
-    blocks = np.array_split(new, -(-new.size // DRAWN_AT_ONCE)) if new.size else []
-    pieces = [later(_evaluated, mixture, points[block]) for block in blocks]
-    every = max(len(pieces) // 20, 1)
-    # The other process begins with the first of them.
-    for number, piece in enumerate(reversed(pieces) if is_present() else pieces):
+    found, tally = np.full((new.size, 3), np.nan), Tally()
+    every = max(new.size // _TOLD, 1)
+    draws = mixture.draws(points[new]) if new.size else iter(())
+    for number, (point, draw) in enumerate(zip(points[new], draws, strict=True)):
         if number % every == 0:
-            tell(f"{what} {number * DRAWN_AT_ONCE + 1} of {len(points)}")
-        values(piece)
-    tally = Tally()
-    for block, piece in zip(blocks, pieces, strict=True):
-        found[block], refused = piece.value
-        tally.take(refused)
-    return found[new], tally
-
-
-@as_drawn()
-def _evaluated(mixture: Mixture, points: si.DimensionlessArray) -> tuple[si.FloatArray, Tally]:
-    """What comes of some draws, shape (n, 3), and what was refused."""
-    found, tally = np.full((len(points), 3), np.nan), Tally()
-    for number, draw in enumerate(mixture.draws(points)):
+            tell(f"{what} {number + 1} of {len(points)}")
         try:
-            found[number] = mixture.outcome(points[number], draw)
+            found[number] = mixture.outcome(point, draw)
         except SqueezefilmError as error:
             tally.refuse(draw.heights, error)
     return found, tally

@@ -184,13 +184,3 @@ def friction_law(
         speed=display.finger.speed if speed is None else speed,
         place=place,
     )
-
-
-def prepare() -> None:
-    """Load the compiled code that a friction takes, before any is asked for."""
-    from squeezefilm.display import load_display
-
-    law = friction_law(load_display("biet2008-plate"), 10e-3, 30e3)
-    # At rest no film is solved.
-    law.felt_stiffness(0.0)
-    law.limits(0.0)

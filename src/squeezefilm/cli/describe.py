@@ -161,7 +161,7 @@ def analyze(asked: AnalyzeOptions) -> None:
     if is_actuator(asked.target):
         import_module("squeezefilm.cli.actuator").analyze_actuator(asked)
         return
-    from squeezefilm.second_process import second_process
+    from squeezefilm.blas_threads import one_blas_thread
 
     with loading():
         display = to_be_solved(
@@ -171,8 +171,7 @@ def analyze(asked: AnalyzeOptions) -> None:
             theory=asked.theory,
             quiet=asked.as_json,
         )
-    prepare = (_prepare, _prepare_figures) if asked.out is not None else (_prepare,)
-    with second_process(*prepare, at_once=False), working(asked.as_json) as step:
+    with one_blas_thread(), working(asked.as_json) as step:
         with loading():
             from squeezefilm.analysis.analyze import analyze as run
             from squeezefilm.measure.fits.friction.person import with_finger
@@ -195,23 +194,6 @@ def analyze(asked: AnalyzeOptions) -> None:
     answer(asked.as_json, result, show, report=written)
     if written is None and not asked.as_json:
         typer.echo("add --out DIR to write result.json and a report with figures")
-
-
-def _prepare() -> None:
-    """Load what an analysis takes, before there is anything to analyse."""
-    from squeezefilm.loading import loading
-
-    with loading():
-        import_module("squeezefilm.analysis.analyze")
-        import_module("squeezefilm.chain.friction").prepare()
-
-
-def _prepare_figures() -> None:
-    """Load what figures take, before there is anything to draw."""
-    from squeezefilm.loading import loading
-
-    with loading():
-        import_module("squeezefilm.report.display.figures").prepare()
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@ only one of its name."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -22,6 +22,7 @@ from squeezefilm.analysis.plate.listed_modes import (
 from squeezefilm.display import Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.plate.solid.resonances import DrivenMode
 from squeezefilm.plate.solid.screening import forbidden_by, screened_modes
 from squeezefilm.plate.working_mode import WorkingMode
 
@@ -71,9 +72,9 @@ def why_undriven(display: Display, mode: WorkingMode) -> str | None:
 def mode_doubts(display: Display, mode: WorkingMode) -> tuple[ModeDoubt, ...]:
     """What speaks against the mode that a display works in, the worst first.
 
-    A plate is screened around the mode (some tenths of a second); of discs and stators it is said
-    only whether people hear them. Empty where nothing is to be said, or the plate cannot be
-    screened.
+    What lies around it is taken from a plate's solution, of a plate that was not solved from
+    screening (some tenths of a second); of discs and stators it is said only whether people hear
+    them. Empty where nothing is to be said, or the plate cannot be screened.
     """
     return tuple(_doubts(display, mode))
 
@@ -96,9 +97,7 @@ def _doubts(display: Display, mode: WorkingMode) -> Iterator[ModeDoubt]:
 
 def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
     """Neighbours and modes of the same name."""
-    around = (1 - _NEAR) * mode.resonance_frequency, (1 + _NEAR) * mode.resonance_frequency
-    modes = _screened(plate, around)
-    solid = mode.solid
+    modes, solid = _around(plate, mode), mode.solid
     has = None if solid is None else solid.modes.labels[solid.index]
     if solid is not None and has != plate.working_label:
         lines = "moves in its plane" if has is None else f"has nodal lines ({has[0]},{has[1]})"
@@ -134,11 +133,10 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
         )
         yield ModeDoubt(
             "ambiguous",
-            f"{len(same) + 1} modes near have the label {mode.label}, at {listed} by screening: "
-            "the most strongly driven was taken, at "
+            f"{len(same) + 1} modes near have the label {mode.label}, at {listed}"
+            f"{' by screening' if solid is None else ''}: the most strongly driven was taken, at "
             f"{si.format_quantity(mode.resonance_frequency, _HZ)}. To choose, write "
-            "working_frequency beside nodal_lines. Modes that mix may be labelled otherwise by the "
-            "full solution.",
+            "working_frequency beside nodal_lines.",
         )
 
 
@@ -156,6 +154,18 @@ def _screened(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> tuple
         found = screened_modes(plate, band)
     except SqueezefilmError:
         return ()
+    return _listed(found)
+
+
+def _around(plate: RectangularPlate, mode: WorkingMode) -> tuple[ListedMode, ...]:
+    """The driven modes around a working mode as they are listed."""
+    band = (1 - _NEAR) * mode.resonance_frequency, (1 + _NEAR) * mode.resonance_frequency
+    if mode.solid is None:
+        return _screened(plate, band)
+    return _listed(mode.solid.response.settled_modes(band))
+
+
+def _listed(found: Sequence[DrivenMode]) -> tuple[ListedMode, ...]:
     strongest = max((mode.alone_per_volt for mode in found), default=0.0)
     driven = [mode for mode in found if mode.alone_per_volt >= DRIVEN_SHARE * strongest > 0]
     return with_neighbours([listed_mode(mode) for mode in driven])

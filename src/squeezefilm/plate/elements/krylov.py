@@ -65,7 +65,7 @@ def modes_near(
     X = solve(slabs.mass_times(start))
     before: si.FloatArray | None = None
     for _ in range(_MOST_STEPS):
-        X, MX = _orthonormal(slabs, X, Q, MQ)
+        X, MX = orthonormal(slabs, X, Q, MQ)
         if not X.shape[1]:
             break
         Q, MQ = np.concatenate([Q, X], axis=1), np.concatenate([MQ, MX], axis=1)
@@ -103,7 +103,7 @@ def modes_near(
     )
 
 
-def _orthonormal(
+def orthonormal(
     slabs: Slabs, X: si.FloatArray, Q: si.FloatArray, MQ: si.FloatArray
 ) -> tuple[si.FloatArray, si.FloatArray]:
     """A block orthonormal in mass to itself and to the basis Q, and M times it; directions that

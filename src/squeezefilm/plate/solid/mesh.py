@@ -51,6 +51,9 @@ _THINNEST = 2e4
 # 4e-5 of thin-plate theory at 290, within 1e-4 at 230, and off by 1e-3 at 430 and by 22 % at 1400,
 # where bending is lost in the rounding of membrane stiffness.
 _SLENDEREST = 250.0
+# Half waves of shear across a layer of the plate. Each layer is one element or two across: that of
+# order 3 (COARSE) has a standing wave of one half wave 3e-4 too high, and of two 23 %.
+_MOST_ACROSS = 1.0
 
 
 def wave_number(plate: RectangularPlate, frequency: float) -> float:
@@ -137,8 +140,8 @@ def plate_model(
 
     Raises `InputError` for a frequency beyond its hard limit, before elements are counted,
     `GeometryError` for a class that the plate does not have, `OutOfRangeError` for a plate so thin
-    against its length that elements lose their digits. `InputError` too for a model that would
-    not fit into memory.
+    against its length that elements lose their digits, or so thick that waves stand across a layer
+    which its elements do not resolve. `InputError` too for a model that would not fit into memory.
     """
     # What resolves a band lies somewhat above it.
     si.require("frequency", frequency, si.Unit("Hz"), above=0, at_most=2 * FREQUENCY.most)
@@ -149,6 +152,7 @@ def plate_model(
             )
     wave = wave_number(plate, frequency)
     _require_thick(plate, frequency, wave)
+    _require_thin(plate, frequency)
     z, layers, ceramics = through_thickness(plate, resolution)
     ways = [_in_plane(plate, along, wave, resolution, parity) for along in (0, 1)]
     work = [_work(x, y, z, resolution.trunk) for x, y in ways]
@@ -219,6 +223,27 @@ def _require_thick(plate: RectangularPlate, frequency: float, wave: float) -> No
             f"at {frequency:.4g} Hz half a wave on the plate is {ratio:.0f} times its thickness; "
             f"above {_SLENDEREST:.0f} three-dimensional elements lose their digits; ask for a "
             "higher frequency or use a plate theory"
+        )
+
+
+def _require_thin(plate: RectangularPlate, frequency: float) -> None:
+    """Refuse a frequency at which waves of shear stand across a layer, unresolved."""
+    substrate, ceramic = plate.substrate, plate.ceramic
+    times = {"the plate": plate.thickness / math.sqrt(substrate.shear_modulus / substrate.density)}
+    if plate.patches:
+        thickest = max(patch.thickness for patch in plate.patches)
+        times["a ceramic"] = thickest / math.sqrt(ceramic.shear_modulus / ceramic.density)
+    layer = max(times, key=lambda name: times[name])
+    across = 2 * frequency * times[layer]
+    if across > _MOST_ACROSS:
+        most = _MOST_ACROSS / (2 * times[layer])
+        hertz = si.Unit("Hz")
+        raise OutOfRangeError(
+            f"a mesh for modes up to {si.format_quantity(frequency, hertz)} (somewhat above what "
+            f"is asked for) meets {across:.3g} half waves of shear across {layer}, which its "
+            f"elements do not resolve above {_MOST_ACROSS:g}; ask for what needs a mesh up to "
+            f"{si.format_quantity(most, hertz)} at most, or for a thinner plate",
+            quantity="frequency",
         )
 
 

@@ -10,7 +10,7 @@ from scipy.linalg import eigh
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
-from squeezefilm.plate.elements.krylov import modes_near, prolonged
+from squeezefilm.plate.elements.krylov import modes_near, orthonormal, prolonged
 from squeezefilm.plate.elements.slab_factor import SlabFactor
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.coarse_modes import CoarseModes
@@ -166,6 +166,19 @@ def with_label(piece: RefinedModes, label: Label) -> RefinedModes:
         vectors=piece.vectors[:, keep],
         shunted=piece.shunted[keep],
     )
+
+
+def with_neighbours(piece: RefinedModes) -> si.FloatArray:
+    """The refined modes of a class, and beside them the others that the coarse mesh has, brought
+    onto the finer one by a step of inverse iteration; of unit mass, orthogonal to each other, shape
+    (unknowns, modes). The piece must have its factor."""
+    assert piece.factor is not None
+    slabs, found = piece.solved.slabs, piece.found
+    others = np.delete(found.vectors, piece.index, axis=1)
+    start = slabs.mass_times(prolonged(found.solved.slabs, slabs, others))
+    MV = slabs.mass_times(piece.vectors)
+    beside, _ = orthonormal(slabs, piece.factor.solve(start), piece.vectors, MV)
+    return np.concatenate([piece.vectors, beside], axis=1)
 
 
 def extrapolated(

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
 import numpy as np
+from scipy.linalg import eigh
 
 from squeezefilm import quantities as si
 from squeezefilm.blas_threads import one_blas_thread
@@ -18,7 +19,7 @@ from squeezefilm.plate.circuit import DrivenResponse
 from squeezefilm.plate.elements.again import SolvedAgain
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.layers import COARSE, NORMAL, Resolution
-from squeezefilm.plate.solid.modes import MODEL
+from squeezefilm.plate.solid.modes import MODEL, check_band
 from squeezefilm.plate.solid.reduced import (
     ReducedClass,
     class_slices,
@@ -32,11 +33,14 @@ from squeezefilm.plate.solid.refined_modes import (
     UNREFINED,
     RefinedModes,
     extrapolated_class,
+    with_neighbours,
 )
-from squeezefilm.plate.solid.resonances import Moving, driven_modes
+from squeezefilm.plate.solid.resonances import DrivenMode, Moving, driven_modes
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs, told_of
 
 _GRID = (121, 81)
+# A mode's relative change of frequency that is taken for none.
+_SETTLED = 1e-3
 
 
 @si.checked_numbers
@@ -136,6 +140,27 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         nearest = min(modes, key=lambda mode: abs(mode.frequency - frequency), default=None)
         return [mode for mode in modes if mode is not nearest]
 
+    @si.checked_numbers
+    def settled_modes(self, band: tuple[si.Hertz, si.Hertz]) -> list[DrivenMode]:
+        """The driven modes in a band (Hz) that this response is made of, ascending. Those whose
+        frequency changes by more than 1e-3 when the space loses its last quarter are left out:
+        each of them stands for several modes that the space does not tell apart.
+
+        Raises `InputError` for a band that is none.
+        """
+        check_band(band)
+        found: list[DrivenMode] = []
+        for part in self._parts:
+            shorter = _shortened(part)
+            squares = eigh(shorter.stiffness, shorter.mass, eigvals_only=True)
+            before = np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
+            found += [
+                mode
+                for mode in driven_modes(part, band)
+                if np.min(np.abs(before / mode.frequency - 1)) < _SETTLED
+            ]
+        return sorted(found, key=lambda mode: mode.frequency)
+
     def _face(self) -> si.FloatArray:
         """w of each coordinate on a grid over the upper face, shape (coordinates, points)."""
         x = np.linspace(0, self.plate.length, _GRID[0])
@@ -226,9 +251,9 @@ def harmonic_response(
     _require_answered(plate, f, loads)
     band = float(f[0]), float(f[-1])
     if steps is None:
-        # With the mode itself known few are left that the space must find over the band.
-        wider = (10 if solved else 40) * (band[1] - band[0]) / band[1]
-        steps = int(np.clip(14 + wider, 14, 60))
+        # With the modes about its middle known few are left that the space must find.
+        least, wider = (8, 10) if solved else (14, 40)
+        steps = min(int(least + wider * (band[1] - band[0]) / band[1]), 60)
     si.require("steps", steps, at_least=1)
     with one_blas_thread():
         parts = _reduced(plate, loads, band, steps, resolution, extrapolate, progress, solved)
@@ -298,7 +323,8 @@ def _reduced(
             part = reduced_class(plate, parity, band, steps, pressures, resolution)
         else:
             mesh = COARSE if known.level == UNREFINED else LEVELS[known.level]
-            part = reduced_model(known.solved, known.factor, mesh, steps, pressures, known.vectors)
+            modes = with_neighbours(known)
+            part = reduced_model(known.solved, known.factor, mesh, steps, pressures, modes)
         if not part.basis.shape[1]:
             raise InputError(
                 "the driven ceramics exert no force on the plate, so no resonance answers to "
@@ -334,23 +360,27 @@ def _truncation(
 ) -> float:
     """How much the admittance changes when each space loses its last quarter."""
     pick = np.arange(0, omega.size, max(1, omega.size // 12))
-    shorter: list[ReducedClass] = []
-    indices: list[int] = []
-    for one, at in zip(parts, class_slices(parts), strict=True):
-        n = max(1, (3 * one.basis.shape[1]) // 4)
-        indices += range(at.start, at.start + n)
-        shorter.append(
-            dataclasses.replace(
-                one,
-                basis=one.basis[:, :n],
-                mass=one.mass[:n, :n],
-                stiffness=one.stiffness[:n, :n],
-                loss=one.loss[:n, :n],
-                coupling=one.coupling[:n],
-            )
-        )
-    kept = np.array(indices)
+    shorter = [_shortened(one) for one in parts]
+    kept = np.concatenate(
+        [
+            np.arange(at.start, at.start + short.basis.shape[1])
+            for short, at in zip(shorter, class_slices(parts), strict=True)
+        ]
+    )
     less = None if added is None else added[np.ix_(pick, kept, kept)]
     _, _, charge = harmonic_solution(shorter, omega[pick], less, None, 1.0)
     change = np.abs(1j * omega[pick] * charge - admittance[pick])
     return float(np.max(change / np.max(np.abs(admittance))))
+
+
+def _shortened(one: ReducedClass) -> ReducedClass:
+    """A class without the last quarter of its space."""
+    n = max(1, (3 * one.basis.shape[1]) // 4)
+    return dataclasses.replace(
+        one,
+        basis=one.basis[:, :n],
+        mass=one.mass[:n, :n],
+        stiffness=one.stiffness[:n, :n],
+        loss=one.loss[:n, :n],
+        coupling=one.coupling[:n],
+    )

@@ -41,7 +41,6 @@ from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.plate.solid.size import solve_size
 from squeezefilm.plate.solid.solve import solve_for_response
 from squeezefilm.progress import NO_HURRY, Deadline, Pace
-from squeezefilm.second_process import start_second_process
 
 RESPONSE_POINTS = 200
 _LINE_POINTS = 401
@@ -247,8 +246,6 @@ def _solid_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pa
     asked = repr((plate, label))
     kept = _KEPT.get(asked, [plate])
     if kept is None:
-        # What follows from a new plate is new, too; it loads while this one solves.
-        start_second_process()
         kept = _solved_mode(plate, label, pace)
         if not kept.coarseness:
             _KEPT.put(asked, _solved_again(kept, None, None), [plate])

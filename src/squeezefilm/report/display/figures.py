@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from squeezefilm.report.display import (
     area_figures,
@@ -46,7 +44,6 @@ FIGURES: tuple[FigureOf, ...] = (
         plate_figures.frequency_response,
         "Vibration amplitude per volt around the working resonance, without a finger. Outside the "
         "half-power band less than 71 % of it is left.",
-        needs=("response",),
     ),
     FigureOf(
         "band",
@@ -55,15 +52,9 @@ FIGURES: tuple[FigureOf, ...] = (
         "Friction divided by that without vibration, by the model of the verdict. The band and the "
         "bar hold what is uncertain in the description, in the finger and in the laws; in the bar "
         "the amplitude is uncertain too.",
-        needs=("band", "own_curves"),
     ),
 )
 """What one decides from, in the order of the page."""
-
-
-def prepare() -> None:
-    """Load what drawing takes, before there is anything to draw."""
-    style.svg(style.message_figure("Fonts", "are looked for"), "fonts", "")
 
 
 def drawing(analysis: Analysis, key: str) -> str:
@@ -73,10 +64,3 @@ def drawing(analysis: Analysis, key: str) -> str:
         figure = item.draw(analysis)
         message = " ".join(figure.get_suptitle().split())
         return style.svg(figure, key, f"{item.heading}. {message}. {item.reading}")
-
-
-def drawing_of(analysis: Analysis, key: str, shows: Mapping[str, Any]) -> str:
-    """As `drawing`, of an analysis of which what the figure `shows` is given, by name."""
-    whole = copy.copy(analysis)
-    vars(whole).update(shows)
-    return drawing(whole, key)

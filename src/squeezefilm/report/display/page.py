@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm import quantities as si
 from squeezefilm.kept.store import Kept
-from squeezefilm.report.display.figures import FIGURES, drawing_of
+from squeezefilm.report.display.figures import FIGURES, drawing
 from squeezefilm.report.display.rows import (
     decision_rows,
     more_rows,
@@ -43,7 +43,6 @@ from squeezefilm.report.kit.page_style import (
 )
 from squeezefilm.report.kit.point_rows import electronics_rows
 from squeezefilm.results import to_json
-from squeezefilm.second_process import later, start_second_process, values
 
 if TYPE_CHECKING:
     from squeezefilm.analysis.analyze import Analysis
@@ -69,8 +68,7 @@ def write_analysis(
 ) -> Path:
     """Write result.json and report.html into `folder`; the path of the page.
 
-    A second process takes its share of the figures and of what they show; figures are kept on
-    disk. Raises `InputError` where the folder cannot be written to.
+    Figures are kept on disk. Raises `InputError` where the folder cannot be written to.
     """
     folder, tell = require_folder(folder), progress or (lambda _: None)
     asked = ("sensitivities",) if analysis.has_sensitivities else ()
@@ -93,12 +91,7 @@ def _figures(analysis: Analysis, data: Mapping[str, Any]) -> dict[str, str]:
     asked = json.dumps(to_json([numbers, sorted(analysis.display.provenance.items())]))
 
     def drawn() -> dict[str, str]:
-        start_second_process()
-        pieces = {}
-        for item in FIGURES:
-            shows = {name: getattr(analysis, name) for name in item.needs}
-            pieces[item.key] = later(drawing_of, analysis, item.key, shows)
-        return dict(zip(pieces, values(*pieces.values()), strict=True))
+        return {item.key: drawing(analysis, item.key) for item in FIGURES}
 
     return _DRAWN.found(asked, drawn)
 

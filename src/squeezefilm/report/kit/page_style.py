@@ -160,8 +160,6 @@ class FigureOf:
         reading: how it is read.
         file: its name beside a page, where that is not its key.
         has: true of a result that has it; of every one, unless said.
-        needs: attributes of the result that it shows and that take their time, to be asked for
-            before it is drawn.
     """
 
     key: str
@@ -170,7 +168,6 @@ class FigureOf:
     reading: str = ""
     file: str = ""
     has: Callable[[Any], object] = _always
-    needs: tuple[str, ...] = ()
 
 
 def drawn_figures(

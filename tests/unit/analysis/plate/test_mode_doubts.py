@@ -50,8 +50,9 @@ def mode(
 
 
 def near(monkeypatch: pytest.MonkeyPatch, *modes: ListedMode) -> None:
-    """Let these modes be what screening finds."""
-    monkeypatch.setattr(room, "_screened", lambda plate, band: modes)
+    """Let these modes be what is driven."""
+    for looked_up in ("_screened", "_around"):
+        monkeypatch.setattr(room, looked_up, lambda plate, where: modes)
 
 
 def test_a_mode_alone_is_not_doubted(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -16,11 +14,10 @@ import pytest
 from squeezefilm.analysis.analyze import Analysis
 from squeezefilm.display import load_display
 from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.report.display.figures import FIGURES, drawing, drawing_of, prepare
+from squeezefilm.report.display.figures import FIGURES
 from squeezefilm.report.display.layout_figures import drive_strip
 from squeezefilm.report.display.plate_figures import half_power
 from squeezefilm.report.kit import style
-from squeezefilm.second_process import later, second_process, values
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = ("layout", "mode", "area", "response", "band")
@@ -152,36 +149,6 @@ def test_the_response_says_when_the_drive_is_beside_it_or_in_vain(
     said = f"{100 * share:.0f}\u00a0% of the motion"
     assert said in draw(analysis_of("off-resonance")).get_suptitle()
     assert "do not drive the mode" in draw(analysis_of("not-driven")).get_suptitle()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", PRESETS)
-def test_another_process_draws_the_same_from_what_a_figure_needs(
-    name: str, analysis_of: Callable[[str], Analysis]
-) -> None:
-    analysis = analysis_of(name)
-    with second_process(prepare) as aside:
-        if aside is None:
-            pytest.skip("there is one processor")
-        while not aside._is_ready:
-            time.sleep(0.01)
-        # Without what was asked of it before.
-        fresh, pieces = dataclasses.replace(analysis), {}
-        for item in FIGURES:
-            shows = {need: getattr(analysis, need) for need in item.needs}
-            pieces[item.key] = later(drawing_of, fresh, item.key, shows)
-        drawn = dict(zip(pieces, values(*pieces.values()), strict=True))
-    assert drawn == {key: drawing(analysis, key) for key in KEYS}
-
-
-@pytest.mark.slow
-def test_a_figure_computes_nothing_but_what_it_needs(plate_analysis: Analysis) -> None:
-    for item in FIGURES:
-        fresh = dataclasses.replace(plate_analysis)
-        vars(fresh).update({need: getattr(plate_analysis, need) for need in item.needs})
-        before = set(vars(fresh))
-        item.draw(fresh)
-        assert set(vars(fresh)) == before, item.key
 
 
 @pytest.mark.slow
