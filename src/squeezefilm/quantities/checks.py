@@ -290,9 +290,13 @@ CLOSED_FORMS: dict[str, Callable[..., Any]] = {}
 
 
 def _guarded(
-    function: Callable[_P, _R], strictly: frozenset[str], weakly: frozenset[str]
+    function: Callable[_P, _R],
+    strictly: frozenset[str] = frozenset(),
+    weakly: frozenset[str] = frozenset(),
+    module: str | None = None,
 ) -> Callable[_P, _R]:
-    """The function, its arguments checked before and its result after."""
+    """The function, its arguments checked before and its result after; `module` is where names of
+    its annotations are looked up, unless in its own globals."""
     names = list(inspect.signature(function).parameters)
     ruled: list[tuple[int, str, _Rule]] = []
     looks: list[tuple[int, str, IsPlain, bool]] = []
@@ -301,13 +305,14 @@ def _guarded(
         raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
     rules: dict[str, _Rule] = {}
     ready: list[bool] = []
-    makes = function.__name__ == "__init__"
+    makes = function.__name__ in ("__init__", "__new__")
 
     def read_annotations() -> None:
         # The result's annotation may be imported for type checking only.
         taken = types.SimpleNamespace(__annotations__=dict(inspect.get_annotations(function)))
         taken.__annotations__.pop("return", None)
-        names_there = getattr(inspect.unwrap(function), "__globals__", {})
+        its_own = getattr(inspect.unwrap(function), "__globals__", {})
+        names_there = its_own if module is None else vars(sys.modules[module])
         hints = typing.get_type_hints(taken, names_there, include_extras=True)
         for name, hint in hints.items():
             more = {"above": 0.0} if name in strictly else {}
@@ -383,8 +388,8 @@ def _guarded(
 
 
 def checked_numbers(item: _T) -> _T:
-    """Check what a function, a method or a dataclass takes against its annotations, and what it
-    gives.
+    """Check what a function, a method, a dataclass or a `NamedTuple` takes against its annotations,
+    and what it gives.
 
     An argument annotated as a number (`Metre`, `float`, `int`) is one finite number, one annotated
     as an array (`MetreArray`) a finite array, one that may be either (`MetreLike`) broadcasts with
@@ -394,9 +399,12 @@ def checked_numbers(item: _T) -> _T:
     """
     if isinstance(item, type):
         made = typing.cast(Any, item)
-        made.__init__ = _guarded(made.__init__, frozenset(), frozenset())
+        if issubclass(item, tuple):
+            made.__new__ = _guarded(made.__new__, module=item.__module__)
+        else:
+            made.__init__ = _guarded(made.__init__)
         return typing.cast(_T, item)
-    return typing.cast(_T, _guarded(item, frozenset(), frozenset()))
+    return typing.cast(_T, _guarded(item))
 
 
 def closed_form(

@@ -1,12 +1,15 @@
 """The standing-wave motor in time and in the mean, beside what can be said in closed form."""
 
+import math
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
+from typing import Any, get_type_hints
 
 import numpy as np
 import pytest
 
+from squeezefilm import quantities as si
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor import average_kernel, kernel
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
@@ -25,6 +28,7 @@ from squeezefilm.actuators.motor.description import (
     MotorDescription,
 )
 from squeezefilm.actuators.motor.in_time import simulate
+from squeezefilm.actuators.motor.parts import Feet, Slider, Stator
 from squeezefilm.actuators.motor.stator import face_mode
 from squeezefilm.display import load_display
 from squeezefilm.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
@@ -395,3 +399,19 @@ def test_the_trends_that_the_paper_tells() -> None:
     assert by_amplitude == sorted(by_amplitude, reverse=True)
     speeds = [no_load_speed(there, Working(amplitude=a)) for a in (5e-7, 1e-6, 2e-6)]
     assert speeds == sorted(speeds)
+
+
+@pytest.mark.parametrize("kind", [Stator, Feet, Slider])
+def test_parts_made_by_hand_hold_no_number_that_is_none(kind: Any) -> None:
+    hints = get_type_hints(kind)
+    good = {name: np.ones(2) if hint == si.FloatArray else hint(1) for name, hint in hints.items()}
+    assert kind(**good)._asdict().keys() == good.keys()
+    for name, hint in hints.items():
+        if hint is bool:
+            continue
+        bad = math.nan if hint is float else np.array([1.0, math.nan])
+        with pytest.raises(InputError, match=f"{name} = nan"):
+            kind(**good | {name: bad})
+        if hint is not float:
+            with pytest.raises(InputError, match=f"{name} = inf"):
+                kind(**good | {name: (1.0, math.inf)})

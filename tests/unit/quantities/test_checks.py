@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import pint
@@ -48,6 +48,13 @@ def many(value: MetreArray) -> Any:
 @checked_numbers
 def either(value: MetreLike, other: MetreLike = 0.0, third: MetreArray | None = None) -> Any:
     return np.asarray(value + other) if isinstance(value, np.ndarray) else value
+
+
+@checked_numbers
+class Row(NamedTuple):
+    width: Metre
+    places: FloatArray
+    is_held: bool = False
 
 
 @checked_numbers
@@ -460,3 +467,13 @@ def test_what_is_taken_at_a_glance_is_what_the_full_look_takes(end: Any, value: 
     else:
         assert alone(value) == value
         assert many(given) is given
+
+
+def test_a_named_tuple_is_checked_where_it_is_made() -> None:
+    places = np.array([[1.0, 2.0]])
+    made = Row(2, places)  # type: ignore[arg-type]
+    assert (type(made.width), made.places is places, made.is_held) == (float, True, False)
+    assert "width = inf" in refusal(lambda: Row(math.inf, places))
+    assert "places = nan" in refusal(lambda: Row(2.0, np.array([1.0, math.nan]), is_held=True))
+    with pytest.raises(TypeError):
+        Row(2.0)  # type: ignore[call-arg]

@@ -9,38 +9,41 @@ from squeezefilm import quantities as si
 from squeezefilm.compiled import compiled
 
 
+@si.checked_numbers
 class Stator(NamedTuple):
     """Per mode: modal mass (kg), stiffness (N/m), damping (N·s/m), amplitude of the drive's force
     (N), angular frequency (rad/s), phase (rad), and the amplitude (m) at which it is held where
     `held` is 1. `bend` (1/m), `cube` (1/m²) and `rise` (1/m) are what the freely vibrating plate
     adds: see `spring_at` and `damping_at`."""
 
-    mass: si.Array
-    stiffness: si.Array
-    damping: si.Array
-    force: si.Array
-    omega: si.Array
-    phase: si.Array
-    amplitude: si.Array
-    bend: si.Array
-    cube: si.Array
-    rise: si.Array
+    mass: si.FloatArray
+    stiffness: si.FloatArray
+    damping: si.FloatArray
+    force: si.FloatArray
+    omega: si.FloatArray
+    phase: si.FloatArray
+    amplitude: si.FloatArray
+    bend: si.FloatArray
+    cube: si.FloatArray
+    rise: si.FloatArray
     held: bool
 
 
+@si.checked_numbers
 class Feet(NamedTuple):
     """Per foot and mode the motion across and along the face for 1 m of the mode, (feet, modes);
     per foot the stiffnesses (N/m), χ (s/m) and µ."""
 
-    across: si.Array
-    along: si.Array
-    k_nn: si.Array
-    k_nt: si.Array
-    k_tt: si.Array
-    chi: si.Array
-    mu: si.Array
+    across: si.FloatArray
+    along: si.FloatArray
+    k_nn: si.FloatArray
+    k_nt: si.FloatArray
+    k_tt: si.FloatArray
+    chi: si.FloatArray
+    mu: si.FloatArray
 
 
+@si.checked_numbers
 class Slider(NamedTuple):
     """Mass (kg), preload (N), damping of the guide across (N·s/m), its dry friction along (N), the
     load against +x (N), and whether the speed along is imposed."""
