@@ -91,9 +91,7 @@ def test_felt_gratings_and_odds_over_the_area_are_found_again(
     plate, called = load_display("biet2008-plate"), []
     monkeypatch.setattr(drawn, "_drawn_now", _told(drawn._drawn_now, "interval", called))
     monkeypatch.setattr(felt, "_felt_of_draws", _told(felt._felt_of_draws, "felt", called))
-    monkeypatch.setattr(
-        area_odds, "_in_two_processes", _told(area_odds._in_two_processes, "area", called)
-    )
+    monkeypatch.setattr(area_odds, "_drawn", _told(area_odds._drawn, "area", called))
     found = []
     for force in (0.5, 0.5, 0.6):
         prediction = predict(plate, normal_force=force)
