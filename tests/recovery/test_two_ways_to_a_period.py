@@ -3,6 +3,8 @@ spatial period that they were made with comes out of both."""
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 
 from squeezefilm.perception.observer import load_observer
@@ -26,3 +28,12 @@ def test_the_weber_fraction_of_a_period_comes_out(name: str) -> None:
     # Where a grating was not felt it was guessed, and two intervals said 14 %.
     assert found.pooled.value == pytest.approx(true, rel=0.2)
     assert not any("at random" in note for note in found.notes)
+
+
+@pytest.mark.nightly
+def test_answers_at_random_are_told_where_they_flatten_the_slope() -> None:
+    blind = dataclasses.replace(OBSERVER, name="blind", lapse_rate=0.15)
+    study = simulate_participants(load_design("period-jnd"), blind, 8, SEED)
+    assert isinstance(study, SimulatedAnswers)
+    (found,) = study.analyses.values()
+    assert any("answers at random may be more than the 8 %" in note for note in found.notes)

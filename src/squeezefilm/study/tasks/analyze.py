@@ -281,7 +281,11 @@ def _judgements(
 
 
 def _of_fractions(
-    people: PeopleOnGrid, level: float, conditions: tuple[ConditionFinding, ...], more: Numbers
+    people: PeopleOnGrid,
+    level: float,
+    conditions: tuple[ConditionFinding, ...],
+    more: Numbers,
+    criterion: bool = False,
 ) -> _Found:
     notes: list[str] = []
     persons = people.estimates(level)
@@ -289,7 +293,8 @@ def _of_fractions(
     if len(persons) > 1:
         population = Population(people.likelihoods())
         pooled, spread = of_population(population.estimate(level), _POPULATION)
-        notes += filter(None, [population.lapse_note])
+        # Answers at random go into a criterion where there is one.
+        notes += filter(None, [not criterion and population.lapse_note])
     else:
         notes.append(
             "one participant: the population's interval is theirs, and says nothing of others"
@@ -315,7 +320,7 @@ def _same_different(main: Answers, level: float, seed: int, tell: Tell) -> _Foun
     people = same_different_on_grid(main)
     conditions = same_different_conditions(main, level, seed)
     more = same_different_numbers(main, people.bias, level)
-    return _of_fractions(people, level, conditions, more)
+    return _of_fractions(people, level, conditions, more, criterion=True)
 
 
 def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> _Found:

@@ -140,12 +140,13 @@ class Population:
         A surface that is not felt is guessed too. The model then takes a part of the guesses for a
         lack of sharpness.
         """
-        if self.lapses()[-1] < 0.5:
+        # Twice what the prior has: beside a flat slope guesses are never sure.
+        if self.lapses()[-1] < 2.0 / len(MEAN_LAPSES):
             return ""
         return (
             f"answers at random may be more than the {si.percent(MEAN_LAPSES[-1])} of all that the "
-            "model knows, as where surfaces are not felt and guessed; Weber fractions of two "
-            "intervals are then too large, and those of same or different less so"
+            "model knows, as where surfaces are not felt and are guessed; the Weber fraction is "
+            "then too large"
         )
 
     def estimate(
