@@ -26,9 +26,11 @@ NAME = "biet2008-plate"
 
 @functools.cache
 def requirements_of(*, shapes: int = 1, objectives: int = 2) -> Requirements:
-    """Those of the preset, with a second shape or a third objective."""
+    """Those of the preset but for the finest period, after the rule below; with a second shape or a
+    third objective."""
     own = load_requirements(NAME)
-    own = replace(own, objectives=("relative_friction", "finest_period"))
+    limits = replace(own.limits, most_finest_period=0.6e-3)
+    own = replace(own, limits=limits, objectives=("relative_friction", "finest_period"))
     strips = own.shapes[0]
     more = (EdgeStrips(strips.sheets, strips.ceramics, 5, 9),) if shapes == 2 else ()
     third = ("mass",) if objectives == 3 else ()
