@@ -294,7 +294,7 @@ def _of_fractions(
         population = Population(people.likelihoods())
         pooled, spread = of_population(population.estimate(level), _POPULATION)
         # Answers at random go into a criterion where there is one.
-        notes += filter(None, [not criterion and population.lapse_note])
+        notes += [note for note in [population.lapse_note] if note and not criterion]
     else:
         notes.append(
             "one participant: the population's interval is theirs, and says nothing of others"
