@@ -69,7 +69,7 @@ class FeltGratings:
     level: si.Dimensionless = LEVEL
     draws: int = 0
     why_no_interval: str = ""
-    model: str = "steady strokes, first-order envelope, the pad's three constants; senses assumed"
+    model: str = "steady strokes, first-order envelope, the pad's three constants; senses fitted"
 
     @property
     def here(self) -> FeltAt:

@@ -1,7 +1,7 @@
 """A simulated participant's parameters: senses, uncertainty, exploration, and how people differ.
 
-Read one with `load_observer`. Every value of a preset says where it is from; most are assumed. The
-presets were written down before any table of answers was computed with them, and are not tuned.
+Read one with `load_observer`. Every value of a preset says where it is from; most are assumed. What
+channels mask is fitted to detection thresholds; nothing is tuned to any table of answers.
 """
 
 from __future__ import annotations

@@ -87,7 +87,7 @@ def felt_rows(felt: FeltGratings | None, speed: si.MetrePerSecond | None = None)
 def _felt_remark(felt: FeltGratings, one: FeltAt) -> str:
     survives = f"; {shown(one.survives, M, 2)} survives the resonator"
     if one.interval is None:
-        return f"by assumed senses ('{felt.observer}'){survives}"
+        return f"by the senses of '{felt.observer}'{survives}"
     low, high = (_period(end) for end in one.interval)
     said = "in all draws"
     if low != high:

@@ -90,7 +90,7 @@ def test_what_is_felt_stands_beside_what_survives() -> None:
     plain = dataclasses.replace(felt, at=(FeltAt(0.1, 0.5e-3, None),))
     assert felt_rows(plain)[0][1:] == (
         "none",
-        "by assumed senses ('somebody'); 0.5 mm survives the resonator",
+        "by the senses of 'somebody'; 0.5 mm survives the resonator",
     )
 
 
