@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 import sys
 from collections.abc import Mapping
 from dataclasses import replace
@@ -22,7 +23,7 @@ import numpy as np
 import tomlkit
 
 from levitation_fit import law_of
-from predict_disc import sealed
+from predict_disc import is_sealed, sealed
 from squeezefilm import presets
 from squeezefilm import quantities as si
 from squeezefilm.chain.friction import FrictionLaw
@@ -220,6 +221,16 @@ def text(model: FrictionModel) -> str:
     return tomlkit.dumps(document)
 
 
+def alike(written: str, made: str) -> bool:
+    """Whether a file that was written is sealed, and says what comes out now: numbers with
+    decimals may differ by one in the third, as they do where the same films are solved anew."""
+    number = re.compile(r"\d+\.\d+")
+    before, now = (one.rsplit("\nsha256", 1)[0] for one in (written, made))
+    numbers = [np.array([float(found) for found in number.findall(one)]) for one in (before, now)]
+    same_words = is_sealed(written) and number.sub("", before) == number.sub("", now)
+    return same_words and bool(np.all(np.abs(numbers[0] - numbers[1]) < 0.0015))
+
+
 def main() -> int:
     """Write the predictions, or compare them with those that were written."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -228,7 +239,7 @@ def main() -> int:
     for model, file in FILES.items():
         made = sealed(text(model))
         if check:
-            same = file.read_text(encoding="utf-8") == made
+            same = alike(file.read_text(encoding="utf-8"), made)
             print(f"{model}: {'the same' if same else 'another prediction comes out'}")
             changed |= not same
         else:

@@ -219,7 +219,7 @@ def test_a_draw_mixes_the_limits_of_the_skin(
 ) -> None:
     monkeypatch.setattr(Mixture, "law", lambda *_: _Law())
     mixture = Mixture(stator, point, driven=False)
-    draw = Draw(stator, 0.5, 0.25, "first", "persson")
+    draw = Draw(stator, 0.5, 0.25, "first", "persson", "levitation")
     value, amplitude, _ = outcome_of(mixture, draw, 3e-6)
     # At 3 µm 0.7 by each ridge's own balance, 0.4 at one gap.
     assert value == pytest.approx(0.25 * 0.7 + 0.75 * 0.4)
@@ -245,7 +245,7 @@ def test_a_finger_takes_its_share_of_a_driven_amplitude(
 
     monkeypatch.setattr(draws, "touch", touch)
     other = replaced(stator, {"actuator.quality_factor": 150.0})
-    draw = Draw(other, 0.5, 1.0, "first", "persson")
+    draw = Draw(other, 0.5, 1.0, "first", "persson", "levitation")
 
     def found(**changes: Any) -> Outcome:
         mixture: Any = SimpleNamespace(

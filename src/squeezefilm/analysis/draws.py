@@ -10,7 +10,7 @@ import warnings
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -23,6 +23,8 @@ from squeezefilm.analysis.joint_draws import (
 )
 from squeezefilm.analysis.model_choices import (
     HEIGHT_LAW,
+    LIFTS,
+    MECHANISM,
     MOISTURE,
     SLIP,
     Choice,
@@ -63,14 +65,16 @@ def as_drawn() -> Iterator[None]:
 @dataclass(frozen=True)
 class Draw:
     """One display of those that it may be: with other values and laws, its force (N), the pad's
-    softness (0: all ridges at one mean gap, 1: each at its own balance), the slip of its gas; of a
-    calibrated one the amplitude relative to the solved one, and what is added to friction."""
+    softness (0: all ridges at one mean gap, 1: each at its own balance), the slip of its gas and
+    the friction model; of a calibrated one the amplitude relative to the solved one, and what is
+    added to friction."""
 
     display: Display
     normal_force: si.Newton
     skin_compliance: si.Dimensionless
     slip: str
     heights: str
+    model: FrictionModel
     amplitude_share: si.Dimensionless = 1.0
     friction_offset: si.Dimensionless = 0.0
 
@@ -149,16 +153,16 @@ class Tally:
 _MOST_PARTS = 64
 
 _OF_LIFT = ("finger.contact_decay_length", "finger.decay_speed_exponent")
-_OF_BALANCE = ("finger.asperities", "finger.plateau_width", "roughness")
+_OF_BALANCE = ("finger.asperities", "roughness")
 
 
 class Mixture:
     """All that a display may be at a prediction's working point: `inputs`, each with a coordinate
     from 0 to 1 that says which value or law is drawn.
 
-    `driven` is whether a voltage moves it, so that its actuator is uncertain too. The model is the
-    prediction's where its inputs are uncertain, else the default one: those of the paper and of
-    2016 have constants of their own, and ridges a length that follows the default's.
+    `driven` is whether a voltage moves it, so that its actuator is uncertain too. The model is
+    partial levitation where that was asked for, else drawn from the two that are fitted to people:
+    those of the paper and of 2016 have constants of their own.
     """
 
     def __init__(self, display: Display, prediction: Prediction, *, driven: bool) -> None:
@@ -178,9 +182,11 @@ class Mixture:
         without = ["friction_coefficient", *(() if lifted else _OF_LIFT)]
         choices = model_choices(display)
         if lifted and not driven:
-            # Asperities and films decide what the plate feels of the finger, and nothing else.
+            # Asperities decide what the plate feels of the finger, and nothing else.
             without += _OF_BALANCE
-            choices = ()
+            choices = tuple(choice for choice in choices if choice.path == SLIP)
+        if lifted:
+            choices += (LIFTS,)
         parameters = tuple(
             one for one in parameters if not any(part in one.path for part in without)
         )
@@ -276,6 +282,7 @@ class Mixture:
             compliance,
             chosen.get(SLIP, p.law.slip),
             heights,
+            cast(FrictionModel, chosen.get(MECHANISM, self.model)),
             values.get(AMPLITUDE_SHARE, 1.0 if joint is None else joint.amplitude_share),
             values.get(FRICTION_OFFSET, 0.0 if joint is None else joint.friction_offset),
         )
@@ -325,7 +332,7 @@ class Mixture:
             half_wavelength=p.mode.half_wavelength,
             frequency=p.frequency,
             normal_force=draw.normal_force,
-            model=self.model,
+            model=draw.model,
             position=p.law.position,
             speed=p.law.speed,
             slip=draw.slip,

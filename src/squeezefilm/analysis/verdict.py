@@ -17,6 +17,7 @@ from squeezefilm.analysis.curves import (
     as_far_as_it_goes,
 )
 from squeezefilm.analysis.ears import AUDIBLE, EarExposure
+from squeezefilm.analysis.model_choices import MECHANISM
 from squeezefilm.analysis.plate.mode_doubts import mode_doubts, why_undriven
 from squeezefilm.analysis.uncertainty import UncertainFriction
 from squeezefilm.chain.active_area import CRITERIA
@@ -188,8 +189,8 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE
     text = (
-        f"µ′/µ is {unsure.nominal:.2f} as described {where}. When the uncertain inputs of this "
-        f"model vary, its median is {unsure.median:.2f} ({si.percent(unsure.level)} "
+        f"µ′/µ is {unsure.nominal:.2f} as described {where}. When the uncertain inputs and "
+        f"models vary, its median is {unsure.median:.2f} ({si.percent(unsure.level)} "
         f"interval {low:.2f}–{high:.2f}); it is below {asked}, with probability "
         f"{_probability(unsure.probability_below(PAPER_CRITERION))}, and below {noticed:.2f}, "
         "where people notice it, with probability "
@@ -250,16 +251,19 @@ def model_form(
     unsure: UncertainFriction, rivals: Mapping[str, si.Dimensionless], frequency: si.Hertz
 ) -> Finding:
     """What an interval of the friction has varied and what it has not: how much of it is laws that
-    nobody knows, and how far rival models lie apart beside its width."""
+    nobody knows and which friction model holds, and how far rival models lie apart beside its
+    width."""
     low, high = unsure.interval
     values = sum(not hasattr(influence.parameter, "options") for influence in unsure.influences)
     laws = len(unsure.influences) - values
     unknown = [group for group in unsure.groups if group.knowledge == "unknown"]
     part = f" ({si.percent(unknown[0].total)} of its variance)" if unknown else ""
+    drawn = [one for one in unsure.influences if one.parameter.path == MECHANISM]
+    among = f", among them the friction model ({si.percent(drawn[0].total)})," if drawn else ""
     text = (
-        f"The interval varies {values} inputs and {laws} laws of one model{part} by stated or "
-        f"assumed ranges and weights, not the frequency "
-        f"({si.format_quantity(frequency, si.Unit('Hz'))}) or the mechanism"
+        f"The interval varies {values} inputs and {laws} laws{part}{among} by stated or assumed "
+        f"ranges and weights, not the frequency "
+        f"({si.format_quantity(frequency, si.Unit('Hz'))})"
     )
     if not rivals:
         return Finding("doubt", f"{text}.")

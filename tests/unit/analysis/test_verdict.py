@@ -67,7 +67,7 @@ def test_a_verdict_is_the_probability_of_the_criterion(point: Prediction) -> Non
     assert inside == Finding(
         "limit",
         "µ′/µ is 0.51 as described at the antinode, x 0 mm, y 5 mm, taken as an even wave of "
-        f"half wavelength {half}, at 2 µm. When the uncertain inputs of this model "
+        f"half wavelength {half}, at 2 µm. When the uncertain inputs and models "
         "vary, its median is 0.40 "
         "(90 % interval 0.20–0.81); it is below 0.70, as the paper asks, with probability 0.50, "
         "and below 0.80, where people notice it, with probability 0.75. The criterion lies inside "
@@ -260,8 +260,8 @@ def test_gratings_that_nobody_feels_are_not_good(point: Prediction) -> None:
 
 
 def test_an_interval_says_what_it_has_varied_and_how_far_rival_models_lie_apart() -> None:
-    inputs = [SimpleNamespace(parameter=SimpleNamespace()) for _ in range(3)]
-    law = SimpleNamespace(parameter=SimpleNamespace(options=()))
+    inputs = [SimpleNamespace(parameter=SimpleNamespace(path="a")) for _ in range(3)]
+    law = SimpleNamespace(parameter=SimpleNamespace(path="friction_model", options=()), total=0.12)
     drawn = SimpleNamespace(
         interval=(0.3, 0.6), nominal=0.4, influences=(*inputs, law),
         groups=(SimpleNamespace(knowledge="unknown", total=0.25),),
@@ -269,13 +269,13 @@ def test_an_interval_says_what_it_has_varied_and_how_far_rival_models_lie_apart(
     wide = model_form(drawn, {"a": 0.1, "b": 0.9}, 30e3)  # type: ignore[arg-type]
     assert wide.kind == "doubt"
     assert "varies 3 inputs" in wide.text
-    assert "1 laws of one model (25 % of its variance)" in wide.text
-    assert "not the frequency (30 kHz) or the mechanism" in wide.text
+    assert "1 laws (25 % of its variance), among them the friction model (12 %)," in wide.text
+    assert "not the frequency (30 kHz):" in wide.text
     assert "0.10 ('a') to 0.90 ('b')" in wide.text
     assert "they span 0.80, more than the interval (0.30)" in wide.text
     narrow = model_form(drawn, {"a": 0.45}, 30e3)  # type: ignore[arg-type]
     assert "they span 0.05, no more than the interval (0.30)" in narrow.text
-    assert model_form(drawn, {}, 30e3).text.endswith("or the mechanism.")  # type: ignore[arg-type]
+    assert model_form(drawn, {}, 30e3).text.endswith("not the frequency (30 kHz).")  # type: ignore[arg-type]
 
 
 def test_rival_models_are_all_but_the_predictions_own(point: Prediction) -> None:

@@ -26,6 +26,7 @@ COLUMNS = 9
 
 _MOST_STEPS = 80
 _SETTLED = 1e-10
+_HALVINGS = 32
 
 
 class CompiledFilms(NamedTuple):
@@ -304,6 +305,37 @@ def balance_rows(
         if out[i, STATUS] == NEEDS_PANEL and lacking < 0:
             lacking = int(out[i, PANEL])
     return lacking
+
+
+@compiled(error_model="numpy")
+def lifted_rows(
+    amplitude: si.FloatArray,
+    pressure: float,
+    length: float,
+    films: CompiledFilms,
+    gaps: si.FloatArray,
+) -> int:
+    """The gaps (m) at which films carry p (1 − exp(−u/ℓ)) of a pressure (Pa) and length (m), each
+    at an amplitude (m) of its own, by bisection; returns the first panel lacking, or −1. Where
+    no gap that the vibration leaves is thin enough it is the thinnest."""
+    deepest = math.sqrt(-math.expm1(-films.edges[-1]))
+    nearest = films.scale[0] * math.exp(films.scale[2])
+    furthest = nearest * math.exp(films.built.shape[0]) * (1.0 - 1e-9)
+    for i in range(len(amplitude)):
+        low = max(amplitude[i] / deepest, nearest) * (1.0 + 1e-9)
+        # Further off the contact carries e^-40 of the load.
+        high = max(low, min(low + 40.0 * length, furthest))
+        for _ in range(_HALVINGS):
+            gap = math.sqrt(low * high)
+            film, lack = film_value(0, gap, amplitude[i], films)
+            if lack != -1:
+                return lack
+            if film > -pressure * math.expm1(-gap / length):
+                low = gap
+            else:
+                high = gap
+        gaps[i] = low
+    return -1
 
 
 @compiled(error_model="numpy")

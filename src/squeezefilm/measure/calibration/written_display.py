@@ -125,9 +125,9 @@ def _spread(one: CalibratedValue) -> Distribution:
     inside = one.prior[0] <= one.median - reach and one.median + reach <= one.prior[1]
     if one.left < _TOLD_WELL and inside:
         return Normal(one.median, one.standard_deviation)
-    # As wide as the draws: a uniform distribution with their interval's 5 % and 95 % ends.
+    # As wide as the draws, within the prior: uniform with their interval's 5 % and 95 % ends.
     wider = (high - low) / 18
-    return Uniform(low - wider, high + wider)
+    return Uniform(max(low - wider, one.prior[0]), min(high + wider, one.prior[1]))
 
 
 def _middle(one: CalibratedValue, spread: Distribution) -> float:

@@ -49,7 +49,7 @@ def friction(value: float, amplitude: float, error: float = 0.03) -> Observation
     return Observation("relative_friction", value, error, {"vibration_amplitude": amplitude})
 
 
-SEEN = (friction(0.85, 0.3e-6), friction(0.7, 0.6e-6), friction(0.55, 1.0e-6))
+SEEN = (friction(0.85, 0.3e-6), friction(0.7, 0.6e-6), friction(0.42, 2.0e-6))
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,7 @@ def test_friction_is_narrowed_and_the_file_has_the_same_interval(
     assert measured
     assert all(path.startswith(("finger", "surfaces", "gas")) for path in measured)
     assert read.calibration is not None
-    assert [one.measured for one in read.calibration.compared] == ["0.85", "0.7", "0.55"]
+    assert [one.measured for one in read.calibration.compared] == ["0.85", "0.7", "0.42"]
     for one in read.calibration.compared:
         assert one.before[0] < one.after[0] <= one.after[2] < one.before[2]
     assert set(json.loads(json.dumps(calibration.summary()))["laws"]) >= {"height_law"}

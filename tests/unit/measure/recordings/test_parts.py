@@ -105,7 +105,7 @@ def test_every_kind_may_be_doubted() -> None:
     f = np.linspace(29e3, 31e3, 5)
     few = doubts_of(kinds.ImpedanceSweep(f, (1e-6 + 1e-3j) * np.ones(5)))
     assert few == ("5 points are few for a resonance; sweep more finely",)
-    assert len(KINDS) == 11
+    assert len(KINDS) == 12
     f = np.linspace(29e3, 31e3, 51)
     h = 1e-7 / (1 - (f / 30e3) ** 2 + 1j * f / 30e3 / 60)
     assert doubts_of(kinds.FrequencyResponse(f, h)) == ()
