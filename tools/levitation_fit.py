@@ -26,6 +26,7 @@ from squeezefilm.chain.friction import FrictionLaw, friction_law
 from squeezefilm.contact.finger.fingertip import Finger
 from squeezefilm.contact.finger.skin import Skin
 from squeezefilm.contact.rough_contact import RoughContact
+from squeezefilm.contact.sharing.levitation import levitation_friction, levitation_scale
 from squeezefilm.display import load_display
 from squeezefilm.errors import ConvergenceError, OutOfRangeError
 from squeezefilm.measure.fits.friction.friction_scores import rest_friction
@@ -187,6 +188,25 @@ def population_scores(logarithms: si.FloatArray) -> si.FloatArray:
     return np.array(scores)
 
 
+def rounded(curve: FrictionCurve, law: FrictionLaw) -> tuple[float, float]:
+    """What the closed form leaves of a person, over the friction at rest, and the length (m), under
+    a round pad whose pressure falls toward its edge as Hertz has it, over the wave."""
+    across = (np.arange(40) + 0.5) / 40
+    x, y = (axis.ravel() for axis in np.meshgrid(across, across))
+    x, y = x[x**2 + y**2 < 1], y[x**2 + y**2 < 1]
+    share = np.sqrt(1 - x**2 - y**2)
+    share /= share.mean()
+    radius = law.contact_side / math.sqrt(math.pi)
+    met = np.abs(np.cos(np.pi * radius * x / law.half_wavelength))
+    even = levitation_scale(1.0, law.contact_pressure, law.gas.ambient_pressure)
+    tried = []
+    for length in np.geomspace(1e-6, 40e-6, 160):
+        scale = length * even * np.sqrt(share)
+        each = levitation_friction(np.outer(curve.vibration_amplitude, met / scale))
+        tried.append((_left_of(curve, each @ share / share.size), float(length)))
+    return min(tried)
+
+
 class Balances(NamedTuple):
     """Partial levitation beside the same data. `as_read` is what it leaves of each person with the
     literature's roughness and modulus, over the friction at rest; `fitted` with the roughness (m)
@@ -245,9 +265,13 @@ def _left(curve: FrictionCurve, law: FrictionLaw) -> float:
     """The root mean square that a law leaves of a curve over its friction at rest, which is fitted;
     infinite where the law ends."""
     try:
-        relative = law.curve(curve.vibration_amplitude)
+        return _left_of(curve, law.curve(curve.vibration_amplitude))
     except OutOfRangeError:
         return math.inf
+
+
+def _left_of(curve: FrictionCurve, relative: si.DimensionlessArray) -> float:
+    """The same of a relative friction at the curve's amplitudes."""
     rest = float(curve.friction @ relative / (relative @ relative))
     missed = float(np.sqrt(np.mean((curve.friction - rest * relative) ** 2)))
     return missed / rest_friction(curve)
@@ -299,6 +323,9 @@ def main() -> None:
         f"others, {apart[:, 1].mean():.3f} by a resample of them, difference "
         f"{(apart[:, 0] - apart[:, 1]).mean():.3f} +- {error:.3f}"
     )
+    for curve, law in zip(found.curves, found.laws, strict=True):
+        left, length = rounded(curve, law)
+        print(f"{curve.told.name:26}  a rounded pad {1e6 * length:6.2f} um  left {left:.3f}")
     ridges = ridge_fits(found)
     print("films solved over single ridges:")
     for curve, (length, left) in zip(found.curves, ridges.people, strict=True):
