@@ -143,7 +143,7 @@ NOT_CALLED = {
     plate.solid.modes.label_of plate.elements.nodal_lines.profiles plate.solid.modes.surface_shapes
     plate.elements.nodal_lines.zero_crossings plate.solid.symmetry.mirror_map
     plate.solid.reduced.ReducedClass
-    plate.solid.reduced.harmonic_solution
+    plate.solid.reduced.harmonic_solution plate.elements.krylov.orthonormal
     plate.solid.reduced.reduced_class plate.solid.reduced.resolved_frequency
     plate.solid.reduced.reduced_model plate.solid.solve.solve_for_response
     plate.solid.reduced.surface_values plate.solid.refined_modes.RefinedModes
