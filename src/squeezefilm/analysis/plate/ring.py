@@ -15,6 +15,7 @@ from squeezefilm.display import Display
 from squeezefilm.errors import InputError, OutOfTimeError
 from squeezefilm.hard_limits import RING_MODES, require_within
 from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.plate.elements.box_model import require_half_wave
 from squeezefilm.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.plate.ring.body import (
     Direction,
@@ -261,10 +262,11 @@ def modes_in_band(
     `degree` is that of the elements: one less is quicker, and less exact (`frequency_error`).
 
     Harmonics are tried until the lowest mode of one lies above the band, beyond the working one.
-    Raises `InputError` where there is none.
+    Raises `InputError` where there is none, `OutOfRangeError` for a band of waves across a layer.
     """
     tell = progress or (lambda _: None)
     low, high = band
+    require_half_wave(high, body.section.shear_times, "a band up to")
     found: list[AnnularMode] = []
     for m in range(_MOST_HARMONICS):
         tell(f"all modes in the band, {m} nodal diameters")

@@ -16,6 +16,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.plate.elements.box_model import require_half_wave
 from squeezefilm.plate.elements.sparse_modes import nearest_modes, shifted_inverse
 from squeezefilm.plate.ring.elements import HarmonicSystem, harmonic_system, ring_mesh
 from squeezefilm.plate.ring.section import AnnularSection, SectorDrive
@@ -100,10 +101,12 @@ def annular_modes(
     degree less and presumes the slowest convergence that the corners allow, 1/degree².
     Range: linear, perfectly bonded, ceramics all round (see `harmonic_system` for sectors).
     Raises `InputError` for a harmonic or degree that cannot be, or if no Q can be found;
-    `ConvergenceError` if the eigenvalues do not converge.
+    `OutOfRangeError` for a frequency of waves across a layer; `ConvergenceError` if the eigenvalues
+    do not converge.
     """
     if quality_factor is not None:
         si.require("quality_factor", quality_factor, above=0.5)
+    require_half_wave(near, section.shear_times, "near =")
     mesh = ring_mesh(section)
     fine = harmonic_system(section, harmonic, degree, mesh)
     coarse = harmonic_system(section, harmonic, degree - 1, mesh)

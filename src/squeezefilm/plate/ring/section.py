@@ -97,6 +97,18 @@ class AnnularSection:
         )
 
     @property
+    def shear_times(self) -> dict[str, si.Second]:
+        """How long shear takes through each layer (s), by the name of its medium; the thickest of
+        several of a name."""
+        times: dict[str, si.Second] = {}
+        for layer in self.layers:
+            solid = layer.solid
+            stiffness = max(solid.stiffness[3, 3], solid.stiffness[4, 4])
+            time = layer.thickness * math.sqrt(solid.density / stiffness)
+            times[solid.name] = max(time, times.get(solid.name, 0.0))
+        return times
+
+    @property
     def surface_height(self) -> si.Metre:
         """The z of the surface that is touched: the highest one."""
         return max(layer.top for layer in self.layers)

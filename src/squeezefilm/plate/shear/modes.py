@@ -15,6 +15,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import FREQUENCY, SHEAR_UNKNOWNS, require_within
+from squeezefilm.plate.elements.box_model import require_half_wave
 from squeezefilm.plate.elements.lobatto import lagrange
 from squeezefilm.plate.elements.nodal_lines import line_counts
 from squeezefilm.plate.elements.sparse_modes import nearest_modes
@@ -103,10 +104,13 @@ def shear_modes(
     classes, e.g. ((1, 1),) for deflections even in x and y. The error estimate compares with one
     degree less, and is NaN unless asked for. Range: layers thin against the wavelength; ceramics
     on one face, shorted, perfectly bonded. Raises `InputError` for bad numbers or a parity the
-    plate does not have, `ConvergenceError` if the eigenvalues do not converge.
+    plate does not have, `OutOfRangeError` for a frequency of waves across the thickness,
+    `ConvergenceError` if the eigenvalues do not converge.
     """
     si.require("near", near, si.Unit("Hz"), at_least=0, at_most=FREQUENCY.most)
     layout = plate if isinstance(plate, ShearLayout) else shear_layout(plate)
+    times = {"the plate": max(section.shear_time for section in layout.sections)}
+    require_half_wave(near, times, "near =")
     longest = _longest_element(layout, near)
     parts = [
         float(np.ceil(np.diff(edges) / longest).sum()) for edges in (layout.x_edges, layout.y_edges)

@@ -5,6 +5,7 @@ Lengths z are taken from the substrate's mid-plane, positive towards the free (t
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -35,6 +36,12 @@ class ShearSection:
     inertia: si.FloatArray
     stress_coefficient: si.CoulombPerSquareMetre = 0.0
     piezo_arm: si.Metre = 0.0
+
+    @property
+    def shear_time(self) -> si.Second:
+        """Half the period at which the section shears across its thickness, ω² = S/I (s)."""
+        mass, first, second = self.inertia
+        return math.pi * math.sqrt((second - first**2 / mass) / self.shear)
 
     @property
     def stiffness(self) -> si.FloatArray:

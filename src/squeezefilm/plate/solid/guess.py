@@ -16,14 +16,22 @@ from squeezefilm.plate.beam.modes import free_beam_mode, timoshenko_frequency
 from squeezefilm.plate.laminate import plate_laminate, section_with
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.shear.modes import shear_mode
+from squeezefilm.plate.solid.mesh import require_thin
 from squeezefilm.plate.solid.modes import Label
 
 _COVERED = 0.8
 
 
 def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
-    """A first guess of a mode's frequency: a Timoshenko beam with the mode's wave number, or the
-    shear plate where ceramics cover little of it."""
+    """A first guess of a mode's frequency (Hz): a Timoshenko beam with the mode's wave number, or
+    the shear plate where ceramics cover little of it. Raises `InputError` for a mode that does not
+    bend the plate, `OutOfRangeError` for one of waves across the thickness."""
+    frequency = _guess(plate, label)
+    require_thin(plate, frequency, f"mode ({label[0]},{label[1]}) near")
+    return frequency
+
+
+def _guess(plate: RectangularPlate, label: Label) -> float:
     section = plate_laminate(plate, "plane_strain")
     k2 = _wave_number(plate, label) ** 2
     k2 += 2 * (np.pi / plate.length) * (np.pi / plate.width) if label == (1, 1) else 0.0

@@ -23,6 +23,7 @@ from squeezefilm.plate.elements.box_model import (
     Foundation,
     kept_products,
     require_aspect,
+    require_half_wave,
 )
 from squeezefilm.plate.elements.lobatto import MAX_ORDER, LineMesh
 from squeezefilm.plate.elements.slab_count import require_countable, require_memory
@@ -51,9 +52,6 @@ _THINNEST = 2e4
 # 4e-5 of thin-plate theory at 290, within 1e-4 at 230, and off by 1e-3 at 430 and by 22 % at 1400,
 # where bending is lost in the rounding of membrane stiffness.
 _SLENDEREST = 250.0
-# Half waves of shear across a layer of the plate. Each layer is one element or two across: that of
-# order 3 (COARSE) has a standing wave of one half wave 3e-4 too high, and of two 23 %.
-_MOST_ACROSS = 1.0
 
 
 def wave_number(plate: RectangularPlate, frequency: float) -> float:
@@ -152,7 +150,7 @@ def plate_model(
             )
     wave = wave_number(plate, frequency)
     _require_thick(plate, frequency, wave)
-    _require_thin(plate, frequency)
+    require_thin(plate, frequency)
     z, layers, ceramics = through_thickness(plate, resolution)
     ways = [_in_plane(plate, along, wave, resolution, parity) for along in (0, 1)]
     work = [_work(x, y, z, resolution.trunk) for x, y in ways]
@@ -226,25 +224,16 @@ def _require_thick(plate: RectangularPlate, frequency: float, wave: float) -> No
         )
 
 
-def _require_thin(plate: RectangularPlate, frequency: float) -> None:
-    """Refuse a frequency at which waves of shear stand across a layer, unresolved."""
+def require_thin(
+    plate: RectangularPlate, frequency: float, asked: str = "a mesh for modes up to"
+) -> None:
+    """Refuse a frequency (Hz, told as `asked`) of waves across a layer: see `require_half_wave`."""
     substrate, ceramic = plate.substrate, plate.ceramic
     times = {"the plate": plate.thickness / math.sqrt(substrate.shear_modulus / substrate.density)}
     if plate.patches:
         thickest = max(patch.thickness for patch in plate.patches)
         times["a ceramic"] = thickest / math.sqrt(ceramic.shear_modulus / ceramic.density)
-    layer = max(times, key=lambda name: times[name])
-    across = 2 * frequency * times[layer]
-    if across > _MOST_ACROSS:
-        most = _MOST_ACROSS / (2 * times[layer])
-        hertz = si.Unit("Hz")
-        raise OutOfRangeError(
-            f"a mesh for modes up to {si.format_quantity(frequency, hertz)} (somewhat above what "
-            f"is asked for) meets {across:.3g} half waves of shear across {layer}, which its "
-            f"elements do not resolve above {_MOST_ACROSS:g}; ask for what needs a mesh up to "
-            f"{si.format_quantity(most, hertz)} at most, or for a thinner plate",
-            quantity="frequency",
-        )
+    require_half_wave(frequency, times, asked)
 
 
 @dataclass(frozen=True, eq=False)

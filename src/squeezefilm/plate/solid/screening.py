@@ -17,7 +17,7 @@ from squeezefilm.errors import InputError
 from squeezefilm.hard_limits import BAND_MODES, require_within
 from squeezefilm.plate.layout import RectangularPlate
 from squeezefilm.plate.solid.layers import SCREENING
-from squeezefilm.plate.solid.mesh import wave_number
+from squeezefilm.plate.solid.mesh import require_thin, wave_number
 from squeezefilm.plate.solid.modes import Label, check_band
 from squeezefilm.plate.solid.reduced import reduced_class
 from squeezefilm.plate.solid.resonances import DrivenMode, driven_modes
@@ -59,6 +59,7 @@ def screened_modes(
             quantity="patches",
         )
     wide = band[0], band[1] * (1 + SCREENING_ERROR)
+    require_thin(plate, wide[1])
     steps, loads = _space(plate, wide)
     found: list[DrivenMode] = []
     with one_blas_thread():

@@ -48,7 +48,8 @@ def mode(frequency: float = 40e3, harmonic: int = 2, **changes: Any) -> AnnularM
 def body(working: AnnularMode | None = None, **changes: Any) -> Any:
     own = working or mode()
     parts: dict[str, Any] = {
-        "section": SimpleNamespace(surface_radii=(10e-3, 30e-3)), "label": (1, own.harmonic),
+        "section": SimpleNamespace(surface_radii=(10e-3, 30e-3), shear_times={"brass": 1e-6}),
+        "label": (1, own.harmonic),
         "drive": TURNS if own.harmonic else ALL_ROUND, "quality_factor": 100.0, "fit": None,
         "mode": lambda label: {(1, own.harmonic): own, (0, 3): mode(50e3, 3)}[label],
     }  # fmt: skip

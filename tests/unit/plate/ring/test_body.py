@@ -156,3 +156,24 @@ def test_impossible_discs_are_refused(disc: DiscPlate) -> None:
         working_mode(thin)
     with pytest.raises(InputError, match="no disc and no stator"):
         analyze_ring(load_display("biet2008-plate"))
+
+
+@pytest.mark.parametrize(
+    ("display", "said"),
+    [
+        ("winfield2007-tpad", r"up to 7 MHz.*across PZT-5A.* kHz at most"),
+        pytest.param(
+            "biet2008-stator", r"up to 7 MHz.*across phosphor bronze.* kHz at most",
+            marks=pytest.mark.slow,
+        ),
+    ],
+)  # fmt: skip
+def test_a_band_of_waves_across_a_layer_is_refused(
+    display: str, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    body = ring_body(load_display(display).actuator)
+    monkeypatch.setattr("squeezefilm.plate.ring.modes.harmonic_system", None)  # Nothing is meshed.
+    with pytest.raises(OutOfRangeError, match=said):
+        modes_in_band(body, (6.9e6, 7e6))
+    with pytest.raises(OutOfRangeError, match=r"near = 7 MHz.* kHz at most"):
+        annular_modes(body.section, 0, near=7e6)
