@@ -21,7 +21,7 @@ from scipy.special import ndtr
 
 from squeezefilm import presets
 from squeezefilm import quantities as si
-from squeezefilm.measure.fits.friction.detection import METHOD, detection_medians
+from squeezefilm.measure.fits.friction.detection import METHOD_RATIO, detection_medians
 from squeezefilm.measure.recordings.kinds import DetectionThresholds
 from squeezefilm.measure.recordings.read import read_recording
 from squeezefilm.perception.observer import Observer, load_observer
@@ -90,7 +90,9 @@ def fitted(
 def main() -> None:
     """Print all of it."""
     ratio, spread = method_ratio()
-    print(f"published method over d' = 1: {ratio:.3f} (taken: {METHOD}); of one ±{spread:.2f}")
+    print(
+        f"published method over d' = 1: {ratio:.3f} (taken: {METHOD_RATIO}); of one ±{spread:.2f}"
+    )
     for words, rule in (
         ("30 trials", dataclasses.replace(RULE, most_trials=30)),
         ("steps of 25 %", dataclasses.replace(RULE, smallest_step=math.log(1.25))),

@@ -75,6 +75,7 @@ class SensoryChannel:
         return np.asarray(falling * rising / np.sqrt(1.0 + rising**2))
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class FingerClass:
     """A finger and how it moves: what differs between people before the senses."""

@@ -70,8 +70,8 @@ def perceived_anew(
     random: np.random.Generator,
     drawn: int,
 ) -> Perceived:
-    """`perceived` with noise of its own; `surface` has shape (people, …, candidates), and the noise
-    of `drawn` people is drawn, so that nobody depends on how many there are."""
+    """What is perceived, with noise drawn anew; `surface` has shape (people, …, candidates). The
+    noise of `drawn` people is drawn, so that nobody depends on how many there are."""
     count, *shape = surface.period.shape
     noise = random.standard_normal((drawn, *shape))[:count]
     blur = random.standard_normal((drawn, *shape[:-1]))[:count]

@@ -105,12 +105,8 @@ def percept(
     speed = np.gradient(force.bone_position, force.time_step)
     speeds = along_way(force.bone_position, speed, observer, (1.0, -1.0))
     mean = abs(float(np.mean(passes)))
-    found = evidence(
-        observer,
-        line_amplitudes(passes),
-        channel_gains(observer, np.maximum(speeds, 0.0)),
-        mean,
-    )
+    gains = channel_gains(observer, np.maximum(speeds, 0.0))
+    found = evidence(observer, line_amplitudes(passes), gains, mean)
     return Percept(found, candidates(observer, found), mean), played
 
 

@@ -137,7 +137,7 @@ def channel_gains(observer: Observer, speed: si.MetrePerSecondArray) -> si.Dimen
     """
     # Speeds enter by their histogram: a stroke has thousands, all alike to a few per cent.
     shares = np.quantile(speed, (np.arange(24) + 0.5) / 24)
-    gains = np.array([one.gain(line_periods(), shares[:, None]) for one in observer.channels])
+    gains = np.array([c.gain(line_periods(), shares[:, None]) for c in observer.channels])
     return np.asarray(np.sqrt(np.mean(gains**2, axis=1)))
 
 
@@ -175,7 +175,7 @@ def _harmonics(observer: Observer, power: si.DimensionlessArray) -> si.Dimension
     """d′² (1) of the harmonics of every period, shape (harmonics, n)."""
     log_period = np.log(line_periods())
     shifts = np.log(np.arange(1, observer.harmonics + 1))
-    return np.array([np.interp(log_period - one, log_period, power, left=0.0) for one in shifts])
+    return np.array([np.interp(log_period - s, log_period, power, left=0.0) for s in shifts])
 
 
 def _line_width(stroke_length: si.Metre) -> si.PerMetre:

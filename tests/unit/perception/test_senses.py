@@ -10,7 +10,7 @@ import pytest
 from scipy.special import ndtr
 
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.perception.observer import TUNED_AT, SensoryChannel, load_observer
+from squeezefilm.perception.observer import TUNED_AT, FingerClass, SensoryChannel, load_observer
 from squeezefilm.perception.percepts import grating_percept, indentation
 from squeezefilm.perception.senses import (
     D_PRIME_OF_75,
@@ -224,3 +224,10 @@ def test_a_real_grating_is_refused_below_nothing() -> None:
     assert spatial_sensitivity(0.7001e-3) == pytest.approx(4.25 * 0.1501)
     assert spatial_sensitivity(3e-3) == pytest.approx(4.25 * 2.45)
     assert spatial_sensitivity(2.9e-3) < spatial_sensitivity(3e-3)
+
+
+@pytest.mark.parametrize("name", ["contact_length", "ridge_angle", "normal_force", "speed"])
+def test_a_finger_of_nan_is_none(name: str) -> None:
+    finger = FingerClass(1e-2, 0.0, "normal", 0.5, 0.08)
+    with pytest.raises(InputError, match=f"{name} = nan"):
+        dataclasses.replace(finger, **{name: math.nan})  # type: ignore[arg-type]

@@ -20,8 +20,9 @@ from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 from squeezefilm.plate.solid.solve import solve_modes
 from squeezefilm.plate.solid.working import solid_mode
 
-# The module of `measure.fits` and its function; imported when a recording of the kind is fitted.
 OF_MANY_PEOPLE = kinds.FrictionDecays | kinds.FingertipImpedances | kinds.DetectionThresholds
+"""What is compared, and not fitted."""
+# The module of `measure.fits` and its function; imported when a recording of the kind is fitted.
 FITS: dict[type, tuple[str, str]] = {
     kinds.ImpedanceSweep: ("circuit.impedance", "fit_impedance"),
     kinds.FrequencyResponse: ("vibration.frequency_response", "fit_frequency_response"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from squeezefilm import quantities as si
 
@@ -37,6 +38,7 @@ class Adequacy:
     sentence: str
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class Observation:
     """One number that a calibration may use: an `answer` of the display by its name in the
@@ -46,6 +48,10 @@ class Observation:
 
     answer: str
     value: float
-    standard_error: float
+    standard_error: Annotated[float, si.AtLeast(0.0)]
     conditions: Mapping[str, float] = field(default_factory=dict)
     recording: str = ""
+
+    def __post_init__(self) -> None:
+        for name, value in self.conditions.items():
+            si.require(name, value)

@@ -42,7 +42,8 @@ figure {{ margin: 0; }}
 figcaption {{ font-size: .92rem; margin-top: .5rem; max-width: 52rem; }}
 .scroll {{ overflow-x: auto; }}
 .scroll:focus-visible, summary:focus-visible {{ outline: 3px solid var(--blue); }}
-svg {{ display: block; width: 100%; min-width: 36rem; height: auto; }}
+svg {{ display: block; width: 100%; height: auto; }}
+svg, .scroll img {{ min-width: 36rem; }}
 ul.verdict {{ list-style: none; margin: 0; padding: 0; }}
 ul.verdict li {{ display: flex; gap: .9rem; padding: .55rem .8rem; margin: .5rem 0;
   border-left: .4rem solid; }}
@@ -69,7 +70,7 @@ footer {{ font-size: .9rem; padding-bottom: 2rem; }}
   section {{ border: 0; padding: 0; margin: 0 0 1.2rem; }}
   section.figure, ul.verdict li, tr {{ break-inside: avoid; }}
   .part:not(:first-child) {{ break-before: page; }}
-  svg {{ min-width: 0; }}
+  svg, .scroll img {{ min-width: 0; }}
 }}
 """
 
@@ -218,7 +219,7 @@ def picture_sections(figures: Mapping[str, tuple[str, Titled]]) -> str:
     return "".join(
         section(
             escape(heading),
-            f'<figure><img src="{name}.png" '
+            f'<figure class="scroll" tabindex="0"><img src="{name}.png" '
             f'alt="{escape(" ".join(figure.get_suptitle().split()))}"></figure>',
         )
         for name, (heading, figure) in figures.items()

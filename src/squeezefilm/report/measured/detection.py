@@ -61,8 +61,10 @@ def detection_figure(compared: DetectionComparison) -> Figure:
     m, observer = compared.measured, load_observer()
     figure = style.new_figure(
         "Modulation of friction that is detected",
-        f"{m.people} people, {m.normal_force:g} N; mean friction {MEAN_FRICTION:g} assumed", 5,
-    )  # fmt: skip
+        f"rival senses, mean friction {MEAN_FRICTION:g} assumed; {m.people} people, "
+        f"{m.normal_force:g} N",
+        5,
+    )
     period = np.geomspace(m.period.min(), m.period.max(), 81)
     cells = figure.subplots(1, 2, sharey=True)
     looks = dict(zip(RIVALS, style.LINES, strict=False))

@@ -1,5 +1,8 @@
 """Questions to a blind prediction, read from text."""
 
+import math
+from typing import Any
+
 import pytest
 
 from squeezefilm.errors import InputError
@@ -21,3 +24,18 @@ def test_an_answer_is_read_with_its_conditions() -> None:
 def test_a_condition_that_cannot_be_read_is_refused(text: str) -> None:
     with pytest.raises(InputError):
         question(text)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"value": math.nan}, "value = nan"),
+        ({"standard_error": math.inf}, "standard_error = inf"),
+        ({"standard_error": -1.0}, "at least 0"),
+        ({"conditions": {"voltage": math.nan}}, "voltage = nan"),
+    ],
+)
+def test_what_was_observed_is_finite(changed: dict[str, Any], said: str) -> None:
+    observed = {"answer": "resonance_frequency", "value": 34e3, "standard_error": 17.0}
+    with pytest.raises(InputError, match=said):
+        Observation(**{**observed, **changed})

@@ -12,7 +12,7 @@ from squeezefilm import presets
 from squeezefilm.contact.finger.fingerpad import FingerpadDynamics, skin_displacement_per_friction
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.friction.detection import (
-    METHOD,
+    METHOD_RATIO,
     RIVALS,
     compare_detection,
     detection_medians,
@@ -95,7 +95,7 @@ def test_rivals_are_alike_at_one_speed_and_part_at_another(measured: DetectionTh
     skin = through_skin(PERIODS, math.sqrt(2) * TUNED_AT, 0.68) / through_skin(
         PERIODS, 2 * TUNED_AT, 0.68
     )
-    assert twice["mixed"] == pytest.approx(METHOD * half * skin)
+    assert twice["mixed"] == pytest.approx(METHOD_RATIO * half * skin)
 
 
 def test_what_is_no_rival_and_no_threshold_is_refused(measured: DetectionThresholds) -> None:

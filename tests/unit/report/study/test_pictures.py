@@ -8,7 +8,7 @@ import pytest
 
 from squeezefilm import second_process
 from squeezefilm.report.kit import style
-from squeezefilm.report.kit.page_style import FigureOf, picture_sections
+from squeezefilm.report.kit.page_style import STYLE, FigureOf, picture_sections
 from squeezefilm.report.study.pictures import load_drawing, pictures, png_files
 
 if TYPE_CHECKING:
@@ -42,6 +42,9 @@ def test_a_result_has_its_pictures_by_the_names_of_their_files() -> None:
     assert picture.png.startswith(b"\x89PNG")
     assert list(png_files(found)) == ["study-first.png", "study-other.png"]
     assert 'alt="first is 4"' in picture_sections(found)
+    # On a narrow screen a picture is scrolled sideways rather than too small to read.
+    assert picture_sections(found).count('<figure class="scroll" tabindex="0"><img ') == 2
+    assert ".scroll img { min-width: 36rem; }" in STYLE
     assert list(pictures(drawing, FIGURES, 6.0)) == ["first", "other", "third"]
 
 

@@ -29,7 +29,7 @@ RIVALS: Mapping[Rival, si.Dimensionless] = {"temporal": 1.0, "mixed": 0.5, "spat
 """Rival senses by the speed's exponent in their channels; at `TUNED_AT` all are alike."""
 MEAN_FRICTION: si.Dimensionless = 0.5
 """Mean friction coefficient of the stimuli: assumed."""
-METHOD: si.Dimensionless = 1.45
+METHOD_RATIO: si.Dimensionless = 1.45
 """What two intervals, three down and one up, the mean of the last six trials and the larger of two
 directions give, over the amplitude with d′ = 1: simulated by `tools/threshold_fit.py`, 1.4 to 1.6
 by what of the method is not published."""
@@ -100,7 +100,7 @@ def detection_medians(
 ) -> si.DimensionlessArray:
     """What the published method would give of this observer (1), shape (periods,): where thresholds
     were measured, or at another speed (m/s) and other periods (m)."""
-    return METHOD * detection_threshold(
+    return METHOD_RATIO * detection_threshold(
         observer,
         measured.period if period is None else period,
         measured.speed if speed is None else speed,
