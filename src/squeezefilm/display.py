@@ -24,6 +24,9 @@ from squeezefilm.plate.heat.thermal import Thermal
 from squeezefilm.plate.layout import Actuator
 from squeezefilm.results import Result, write_whole
 
+DECAY_LENGTH = "finger.contact_decay_length"
+"""The dotted path of the length by which fingers differ."""
+
 
 @si.checked_numbers
 @dataclass(frozen=True)
@@ -218,6 +221,13 @@ class Display(Result):
                 f"surfaces have the same name twice ({', '.join(names)}); name each differently",
                 quantity="surfaces",
             )
+
+    @property
+    def whose_finger(self) -> str:
+        """Whose finger the display is described for, in words: a new person's, unless the decay
+        length has a source."""
+        stated = self.provenance.get(DECAY_LENGTH)
+        return (stated.source if stated else "") or "a new person's, as described"
 
     def surface(self, name: str | None = None) -> Surface:
         """The surface of that name, the first without one. Raises `InputError` if unknown."""

@@ -18,11 +18,10 @@ from squeezefilm import quantities as si
 from squeezefilm.analysis.drawn import KeptDraws
 from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, mixture_of
 from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, ends
-from squeezefilm.analysis.parameters import DECAY_LENGTH
 from squeezefilm.analysis.uncertainty import sobol_points
 from squeezefilm.chain.prediction import Prediction
 from squeezefilm.contact.finger.people import rest_friction_factor
-from squeezefilm.display import Display
+from squeezefilm.display import DECAY_LENGTH, Display
 from squeezefilm.errors import SqueezefilmError
 from squeezefilm.perception.felt import (
     Rubbed,

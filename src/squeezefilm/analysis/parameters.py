@@ -13,7 +13,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.contact.finger.people import DECAY_LENGTH_SPREAD
-from squeezefilm.display import Display, NamedDisplay
+from squeezefilm.display import DECAY_LENGTH, Display, NamedDisplay
 from squeezefilm.distributions import Distribution, LogNormal, Uniform
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
@@ -28,7 +28,6 @@ Knowledge = Literal["measurable", "unknown"]
 SKIN_COMPLIANCE = "skin_compliance"
 """Where the pad lies between all ridges at one mean gap (0) and each at its own balance (1)."""
 FORCE = "finger.normal_force"
-DECAY_LENGTH = "finger.contact_decay_length"
 
 
 @dataclass(frozen=True)

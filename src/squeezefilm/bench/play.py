@@ -79,7 +79,7 @@ class PlayResult(Result):
 class PlayRequest:
     """What `play_texture` is asked for."""
 
-    target: str | Path
+    target: str | Path | Display
     texture: NamedTexture
     _: KW_ONLY
     drive: str = "twin"
@@ -106,7 +106,7 @@ def play_texture(asked: PlayRequest) -> PlayResult:
     """Play a texture on a device or on a twin of the display, in real time, and judge the record.
 
     Args:
-        target: the display, a preset's name or a file.
+        target: the display, or its preset's name or file.
         texture: what is to be felt.
         drive: "twin", or a device's stream such as "serial:/dev/ttyACM0".
         sensor: "device" for the device's own, "replay:FILE" for a recorded motion, or a sensor's
@@ -133,7 +133,9 @@ def play_texture(asked: PlayRequest) -> PlayResult:
     tell = asked.progress or (lambda _: None)
     texture = TextureFile.of(asked.texture)
     si.require("duration", asked.duration, si.Unit("s"), above=0.0, at_most=86_400.0)
-    display = load_display(asked.target)
+    display = asked.target
+    if not isinstance(display, Display):
+        display = load_display(display)
     eyes, pickup = _eyes(asked.sensor), PickupModel(kind="sensing_patch")
     settings = TwinSettings(seed=asked.seed, sensor=eyes, pickup=pickup)
     device = KnownDevice(eyes, asked.amplitude_per_pickup)
@@ -242,7 +244,7 @@ def check_drive(
 @contextlib.contextmanager
 def device_stream(
     drive: str,
-    target: str | Path,
+    target: str | Path | Display,
     settings: TwinSettings,
     stroke: str,
     truth: Path | None,
@@ -266,6 +268,10 @@ def device_stream(
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "twin.toml"
         file.write_text(text_of(settings), encoding="utf-8")
+        if isinstance(target, Display):
+            described = Path(folder) / f"{target.name}.toml"
+            described.write_text(text_of(target), encoding="utf-8")
+            target = described
         with running_twin(target, file, stroke=stroke, truth=truth, strict=strict) as port:
             yield f"serial:{port}"
 

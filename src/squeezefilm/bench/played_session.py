@@ -108,6 +108,7 @@ class PlayedSession(Result):
             "texture": self.setup.name,
             "display": self.setup.display.name,
             "surface": p.surface.name,
+            "finger": self.setup.display.whose_finger,
             "mode": plan.mode,
             "tile": tile_summary(plan),
             "voltage_V": p.voltage,

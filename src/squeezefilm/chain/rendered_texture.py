@@ -167,6 +167,7 @@ class RenderAnalysis(Result):
             "surface": p.surface.name,
             "voltage_V": p.voltage,
             "normal_force_N": p.normal_force,
+            "finger": self.display.whose_finger,
             "place": p.place_summary(),
             "largest_amplitude_m": stroke.envelope.amplitude_limit,
             "least_relative_friction": self.least_friction,

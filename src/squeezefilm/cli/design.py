@@ -9,6 +9,7 @@ import typer
 from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     AsJson,
+    Finger,
     Jobs,
     Scheduler,
     answer,
@@ -44,6 +45,7 @@ class DesignOptions:
         int, typer.Option(help="Plates that are solved in three dimensions, at most.")
     ] = 120
     seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 1
+    finger: Finger = "new"
     jobs: Jobs = None
     scheduler: Scheduler = None
     member: Annotated[
@@ -73,6 +75,7 @@ def design(asked: DesignOptions) -> None:
     command goes on from there. Exit code 1 where no plate was found.
     """
     import os
+    from dataclasses import replace
 
     from squeezefilm import presets
     from squeezefilm.cli.fabrication import written_for
@@ -93,7 +96,7 @@ def design(asked: DesignOptions) -> None:
         require_folder(asked.out)
     with working(asked.as_json) as step:
         request = SearchRequest(
-            load_requirements(asked.requirements),
+            replace(load_requirements(asked.requirements), finger=asked.finger),
             screened=asked.screened,
             solved=asked.solved,
             seed=asked.seed,

@@ -10,6 +10,7 @@ import typer
 from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     AsJson,
+    Finger,
     In,
     Pickup,
     answer,
@@ -128,6 +129,7 @@ def simulate(
     ] = None,
     observer: Observer = "fingertip",
     display: Display = None,
+    finger: Finger = "new",
     as_json: AsJson = False,
 ) -> None:
     """Let simulated participants do a study; every number is simulated."""
@@ -143,7 +145,7 @@ def simulate(
 
         planned = on_one_display(planned, display)
     with drawing_by_two(out), working(as_json) as step:
-        tables = chain_tables(planned, people, progress=step)
+        tables = chain_tables(planned, people, finger=finger, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables, step)
         written = None
         if out is not None:
@@ -183,6 +185,7 @@ class PowerOptions:
     )
     studies: Annotated[int, typer.Option(help="Simulated per number of people.")] = 400
     observer: Observer = "fingertip"
+    finger: Finger = "new"
     seed: Annotated[int, typer.Option(help="Seed of people, answers and studies.")] = 0
     out: Annotated[Path | None, written_to("A PNG of the curve to write.")] = None
     as_json: AsJson = False

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from squeezefilm.arguments import called_with
-from squeezefilm.cli.app import AsJson, Jobs, Scheduler, answer, app, working, written_to
+from squeezefilm.cli.app import AsJson, Finger, Jobs, Scheduler, answer, app, working, written_to
 from squeezefilm.errors import InputError
 
 
@@ -51,6 +51,7 @@ class SweepOptions:
         ),
     ] = None
     seed: Annotated[int, typer.Option(help="Seed of the random samples.")] = 0
+    finger: Finger = "new"
     jobs: Jobs = None
     scheduler: Scheduler = None
     out: Annotated[
@@ -82,6 +83,8 @@ def sweep(asked: SweepOptions) -> None:
     """
     import os
 
+    from squeezefilm.display import load_display
+    from squeezefilm.measure.fits.friction.person import with_finger
     from squeezefilm.report.sweep.compared import compared_rows, show_comparison
     from squeezefilm.report.sweep.files import require_kind, write_sweep
     from squeezefilm.report.sweep.page import wishes
@@ -103,7 +106,7 @@ def sweep(asked: SweepOptions) -> None:
         wishes(wanted, asked.less or (), asked.more or ())
     with working(asked.as_json) as step:
         request = SweepRequest(
-            asked.targets,
+            [with_finger(load_display(target), asked.finger) for target in asked.targets],
             vary=asked.vary or (),
             ask=asked.ask or (),
             over=asked.over,

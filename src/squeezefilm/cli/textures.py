@@ -9,6 +9,7 @@ import typer
 from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     AsJson,
+    Finger,
     Force,
     In,
     LargestVoltage,
@@ -62,6 +63,7 @@ class RenderOptions:
     surface: OnSurface = None
     model: Model = None
     place: OnPlace = None
+    finger: Finger = "new"
     table: Annotated[str, typer.Option(help="The trace as csv or parquet.")] = "csv"
     drive: Annotated[
         bool, typer.Option("--drive", help="Write the carrier as drive.wav, 192 kHz.")
@@ -79,6 +81,7 @@ def render(asked: RenderOptions) -> None:
     from squeezefilm.chain.rendered_texture import render_texture
     from squeezefilm.display import load_display
     from squeezefilm.formats.trajectories import motion_from
+    from squeezefilm.measure.fits.friction.person import with_finger
     from squeezefilm.report.textures.terminal import show_lost, show_render
     from squeezefilm.texture_file import load_texture
 
@@ -86,8 +89,8 @@ def render(asked: RenderOptions) -> None:
     if out is None and (drive or hjif or table != "csv"):
         raise InputError("--drive, --hjif and --table write files; say where with --out DIR")
     what, motion = load_texture(asked.texture), motion_from(asked.stroke)
-    where = load_display(asked.display)
-    options = given(asked, leave="texture display stroke out as_json table drive hjif")
+    where = with_finger(load_display(asked.display), asked.finger)
+    options = given(asked, leave="texture display finger stroke out as_json table drive hjif")
     with working(asked.as_json) as step:
         result = render_texture(where, what, motion, **options, progress=step)
         written = None
@@ -155,6 +158,7 @@ class PlayOptions:
     rate: Annotated[str, In("Hz"), typer.Option(help='Rate of the loop, like "5 kHz".')] = "5 kHz"
     voltage: LargestVoltage = None
     surface: OnSurface = None
+    finger: Finger = "new"
     compensation: Annotated[
         str,
         typer.Option(
@@ -182,6 +186,8 @@ def play(asked: PlayOptions) -> None:
     what was played cannot be used: too few ticks, too long a gap, too many late commands.
     """
     from squeezefilm.bench.play import play_texture
+    from squeezefilm.display import load_display
+    from squeezefilm.measure.fits.friction.person import with_finger
     from squeezefilm.report.played.terminal import live_view, show_play
     from squeezefilm.texture_file import load_texture
 
@@ -194,9 +200,9 @@ def play(asked: PlayOptions) -> None:
 
     with live_view(not asked.as_json) as show:
         result = play_texture(
-            asked.display,
+            with_finger(load_display(asked.display), asked.finger),
             what,
-            **given(asked, leave="texture display as_json"),
+            **given(asked, leave="texture display finger as_json"),
             show=show,
             progress=step,
         )

@@ -139,7 +139,11 @@ class Run:
         for one in plan.asked:
             columns += self._columns(one, follows)
         hashed = [config_hash(display) for display in plan.displays]
-        origin = stamp(None) | {"config_sha256": hashed[0] if len(hashed) == 1 else hashed}
+        fingers = "; ".join(dict.fromkeys(display.whose_finger for display in plan.displays))
+        origin = stamp(None) | {
+            "config_sha256": hashed[0] if len(hashed) == 1 else hashed,
+            "finger": fingers,
+        }
         return Sweep(
             ", ".join(told_apart(plan.displays)),
             plan.verbs,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,6 +14,7 @@ import pytest
 
 from squeezefilm.bench import play as module
 from squeezefilm.bench.play import JUDGING, PlayResult, device_stream, play_texture
+from squeezefilm.display import load_display
 from squeezefilm.errors import InputError
 from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ
 from squeezefilm.render.program.made_for import MadeForSpeed
@@ -204,6 +206,21 @@ def test_a_twins_process_gets_its_settings_by_file(monkeypatch: pytest.MonkeyPat
             assert stream == "serial:/dev/pts/7"
         told = (DISPLAY, 11, {"stroke": "s", "truth": None, "strict": strict})
         assert asked[-1] == told
+
+
+def test_a_twin_gets_the_display_under_another_finger(monkeypatch: pytest.MonkeyPatch) -> None:
+    described = load_display(DISPLAY)
+    finger = dataclasses.replace(described.finger, contact_decay_length=3e-6)
+    mine = dataclasses.replace(described, finger=finger)
+
+    @contextlib.contextmanager
+    def twin(target: Path, _file: Path, **_: Any) -> Iterator[str]:
+        assert load_display(target) == mine
+        yield "/dev/pts/7"
+
+    monkeypatch.setattr(module, "running_twin", twin)
+    with device_stream("twin", mine, TwinSettings(), "s", None) as stream:
+        assert stream == "serial:/dev/pts/7"
 
 
 def test_a_folder_that_cannot_be_made_is_said(bench: Bench, tmp_path: Path) -> None:

@@ -368,13 +368,15 @@ def test_a_summary_says_what_was_to_be_played_and_what_became_of_it(
         mode="stream", frequency=40e3, loop=setup.plan.loop, limits={"voltage_V": 20.0}, tile=None
     )
     said = SimpleNamespace(
-        name="a grating", display=SimpleNamespace(name="one"), prediction=prediction, plan=plan,
+        name="a grating", display=SimpleNamespace(name="one", whose_finger="mine"),
+        prediction=prediction, plan=plan,
         assumed_limits=("slew",), sensor={"name": "LVDT"},
     )  # fmt: skip
     object.__setattr__(session, "setup", said)
     found = session.summary()
     expected = {
-        "texture": "a grating", "display": "one", "surface": "bare", "mode": "stream",
+        "texture": "a grating", "display": "one", "finger": "mine", "surface": "bare",
+        "mode": "stream",
         "voltage_V": 15.0, "frequency_Hz": 40e3, "rate_Hz": 1e3, "compensation": "none",
         "output_delay_s": 0.0, "largest_amplitude_m": pytest.approx(1e-6),
         "envelope_time_constant_s": 0.5e-3, "limits": {"voltage_V": 20.0},

@@ -64,6 +64,12 @@ def test_an_unknown_preset_is_told_with_those_there_are() -> None:
 
 
 @pytest.mark.usefixtures("nothing_computed")
+def test_what_is_no_finger_is_told() -> None:
+    with pytest.raises(InputError, match="allowed are new, mean, and a file"):
+        invoked(PRESET, "--finger", "nobody")
+
+
+@pytest.mark.usefixtures("nothing_computed")
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

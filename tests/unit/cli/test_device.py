@@ -13,6 +13,7 @@ from tests.e2e.program import run
 
 from squeezefilm.bench.check import CheckResult, DeviceCheck
 from squeezefilm.cli.textures import device_app
+from squeezefilm.display import load_display
 from squeezefilm.session.record.trace import TraceExport
 from squeezefilm.texture_file import load_texture
 
@@ -45,7 +46,7 @@ def test_a_texture_is_played_on_the_twin_for_four_seconds(play: SimpleNamespace)
     done = run("play", TEXTURE, "--display", DISPLAY)
     assert done.returncode == 0, done.stderr
     display, texture = play.asked.given
-    assert (display, texture.title) == (DISPLAY, load_texture(TEXTURE).title)
+    assert (display, texture.title) == (load_display(DISPLAY), load_texture(TEXTURE).title)
     named = dict(play.asked.named)
     assert callable(named.pop("show"))
     assert named == {
@@ -63,6 +64,7 @@ def test_a_texture_is_played_on_the_twin_for_four_seconds(play: SimpleNamespace)
 def test_every_option_of_a_session_arrives(play: SimpleNamespace, tmp_path: Path) -> None:
     done = run(
         "play", TEXTURE, "--display", DISPLAY, "--drive", "serial:/dev/null", "--sensor", "x",
+        "--finger", "mean",
         "--mode", "tile", "--stroke", "50 mm/s over 2 cm", "--duration", "10 s", "--rate", "2 kHz",
         "--voltage", "15 V", "--surface", "copper", "--compensate", "inverse", "--pickup",
         "2 um/V", "--bench-only", "--out", tmp_path, "--seed", "3", "--json",
@@ -75,6 +77,7 @@ def test_every_option_of_a_session_arrives(play: SimpleNamespace, tmp_path: Path
         "compensation": "inverse", "amplitude_per_pickup": pytest.approx(2e-6),
         "bench_only": True, "out": tmp_path, "seed": 3,
     }  # fmt: skip
+    assert "mean of people" in play.asked.given[0].whose_finger
     assert play.page.given == (play.asked.answer, tmp_path)
     assert json.loads(done.stdout) == {"ending": "faulted"}
     assert (done.returncode, done.stderr) == (0, "")

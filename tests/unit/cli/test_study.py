@@ -87,14 +87,16 @@ def test_simulated_people_are_shown_and_written_where_asked(
     assert done.returncode == 0, done.stderr
     design, observer = load_design(PRESET), load_observer("fingertip")
     assert tables.given == (design, observer)
+    assert tables.named["finger"] == "new"
     assert people.given[:5] == (design, observer, 12, 0, "the tables")
     assert shown.given == (ANSWER,)
     assert done.stdout == ""
     assert "  a step …" in done.stderr
     assert written.calls == []
 
-    asked = ("--participants", "2", "--seed", "3", "--out", tmp_path)
+    asked = ("--participants", "2", "--seed", "3", "--out", tmp_path, "--finger", "mean")
     done = run("simulate", PRESET, *asked)
+    assert tables.named["finger"] == "mean"
     assert people.calls[-1][0][2:4] == (2, 3)
     assert written.given[:2] == (ANSWER, tmp_path)
     assert done.stdout == f"page: {tmp_path / 'index.html'}\n"
@@ -125,7 +127,13 @@ def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path
     stands_in("report.kit.style:png", b"a picture")
     done = run("power", PRESET, "8 mm", "10 mm")
     assert asked.given == (load_design(PRESET), load_observer("fingertip"), "8 mm", "10 mm")
-    assert asked.named == {"display": None, "target": 0.8, "studies": 400, "seed": 0}
+    assert asked.named == {
+        "display": None,
+        "target": 0.8,
+        "studies": 400,
+        "seed": 0,
+        "finger": "new",
+    }
     assert shown.given == (ANSWER,)
     assert "  a step …" in done.stderr
     assert drawn.calls == []
@@ -133,10 +141,11 @@ def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path
     picture = tmp_path / "power.png"
     done = run(
         "power", PRESET, "8 mm", "10 mm", "--display", "biet2008-stator", "--target", "0.9",
-        "--studies", "50", "--seed", "4", "--out", picture, "--json",
+        "--studies", "50", "--seed", "4", "--finger", "mean", "--out", picture, "--json",
     )  # fmt: skip
     assert asked.calls[-1][1] == {
         "display": "biet2008-stator", "target": 0.9, "studies": 50, "seed": 4,
+        "finger": "mean",
     }  # fmt: skip
     assert picture.read_bytes() == b"a picture"
     assert drawn.given == (ANSWER,)
@@ -152,7 +161,7 @@ def test_power_compares_two_displays(stands_in: StandsIn) -> None:
     design = load_design(PRESET)
     people = load_observer("fingertip")
     assert asked.given == (design, people, design.displays[0], "biet2008-plate")
-    assert asked.named == {"target": 0.8, "studies": 50, "seed": 0}
+    assert asked.named == {"target": 0.8, "studies": 50, "seed": 0, "finger": "new"}
     run("power", PRESET, "--against", "biet2008-plate", "--display", "winfield2007-tpad")
     assert asked.calls[-1][0][2:] == ("winfield2007-tpad", "biet2008-plate")
 

@@ -30,6 +30,13 @@ def test_a_sweep_is_shown_and_written_where_asked(tmp_path: Path) -> None:
     assert [row["voltage_V"] for row in again["rows"]] == [50.0, 75.0, 100.0]
 
 
+def test_a_sweep_is_under_the_finger_asked_for(tmp_path: Path) -> None:
+    one = ["sweep", STATOR, "--vary", "voltage=50 V", "--ask", "relative_friction", "--jobs", "1"]
+    found = json.loads(run(*one, "--finger", "mean", "--json"))
+    assert found["provenance"]["finger"].startswith("the mean of people")
+    assert "Finger: a new person's, as described" in run(*one)
+
+
 def test_all_answers_are_listed_without_a_display() -> None:
     assert "relative_friction" in run("sweep", "--answers")
 

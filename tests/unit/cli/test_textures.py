@@ -56,7 +56,8 @@ def test_every_option_of_a_rendering_arrives(rendered: SimpleNamespace, tmp_path
         "render", TEXTURE, "--display", DISPLAY, "--stroke", "60 mm/s over 4 cm", "--sensor",
         "touch-panel-120-hz", "--compensate", "inverse", "--braking", "--wave", "felt",
         "--voltage", "15 V", "--force", "0.3 N", "--surface", "copper", "--model",
-        "levitation-2016", "--seed", "5", "--out", tmp_path, "--table", "parquet",
+        "levitation-2016", "--seed", "5", "--finger", "mean", "--out", tmp_path,
+        "--table", "parquet",
         "--drive", "--hjif",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -65,6 +66,7 @@ def test_every_option_of_a_rendering_arrives(rendered: SimpleNamespace, tmp_path
         "sensor": "touch-panel-120-hz", "compensation": "inverse", "braking": True, "wave": "felt",
         "seed": 5, "place": None,
     }  # fmt: skip
+    assert "mean of people" in rendered.asked.given[0].whose_finger
     assert rendered.written.given == (ANSWER, tmp_path)
     assert rendered.written.named == {"table": "parquet", "drive": True, "hjif": True}
     assert rendered.hjif.given == (ANSWER,)

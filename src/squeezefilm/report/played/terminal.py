@@ -168,6 +168,7 @@ def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
             f"{plan.loop.compensation}, up to {shown(volts, V, 3)} at {shown(plan.frequency, HZ)}",
         ),
     ]
+    rows.append(("Finger", "", session.setup.display.whose_finger))
     if plan.tile is not None and plan.tile.made_for is not None:
         rows.append(("Tile", f"{plan.tile.amplitude.size} places", plan.tile.made_for.sentence()))
     rows += _judged_rows("Record", session.by_record)

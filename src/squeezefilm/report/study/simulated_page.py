@@ -154,7 +154,8 @@ def _write_answers(study: SimulatedAnswers, folder: Path, tell: Callable[[str], 
         ),
     }
     below = (
-        more
+        f"<p>Finger: {escape(printable(study.tables.whose_finger))}.</p>"
+        + more
         + picture_sections(figures)
         + section("Files", f"<p>{links(['simulated.json', 'trials.csv'])}</p>")
     )
@@ -263,7 +264,8 @@ def _page(
         title,
         title,
         f"{study.participants} <b>simulated</b> participants, observer\n"
-        f"{escape(printable(study.tables.observer.name))}, seed {study.seed}; no person answered",
+        f"{escape(printable(study.tables.observer.name))}, seed {study.seed},\n"
+        f"finger: {escape(printable(study.tables.whose_finger))}; no person answered",
         section(
             "What can be compared" if design.alternatives else "What the simulated answers assume",
             bullets(remarks(design)),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from squeezefilm.report.kit.numbers import printable
 from squeezefilm.report.kit.terminal import heading, plain_console, table
 from squeezefilm.report.study.simulated_page import (
     LEGEND,
@@ -97,7 +98,8 @@ def show_power(found: PlannedPower) -> None:
     console.print(
         f"{sides} test over people at {curve.alpha:g}; the pool's own {own} is "
         f"{found.difference:.3g} (0 for nothing); {curve.studies} studies a size, of "
-        f"simulated participants '{found.observer}': what they assume, this assumes.",
+        f"simulated participants '{found.observer}': what they assume, this assumes. "
+        f"Finger: {printable(found.finger)}.",
         highlight=False,
     )
 
@@ -154,7 +156,8 @@ def show_precision(found: PlannedPrecision) -> None:
     )
     console.print(
         f"{found.studies} studies a size, of simulated participants '{found.observer}', whose own "
-        f"value is {found.truth:.3g}: what they assume, this assumes.",
+        f"value is {found.truth:.3g}: what they assume, this assumes. "
+        f"Finger: {printable(found.finger)}.",
         highlight=False,
     )
 
@@ -164,6 +167,7 @@ def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
     from squeezefilm.study.simulated.answers import SimulatedAnswers
 
     console = plain_console()
+    finger = f"Finger: {printable(study.tables.whose_finger)}."
     if isinstance(study, SimulatedAnswers):
         from squeezefilm.study.simulated.assumptions import assumed
 
@@ -174,6 +178,7 @@ def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
         for display, rows in ((d, reason_rows(study, i)) for i, d in enumerate(study.analyses)):
             heading(console, f"{display}: what the model sees of each stimulus")
             table(console, REASONS, rows)
+        console.print(finger, highlight=False)
         console.print(LEGEND)
         return
     for index, name in enumerate(study.tables.design.displays):
@@ -186,6 +191,7 @@ def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
         table(console, head, rows)
         console.print("Per cent of each column; rows are what was answered, columns simulated.")
         table(console, REASONS, reason_rows(study, index))
+    console.print(finger, highlight=False)
     console.print(LEGEND)
     for said in remarks(study.tables.design):
         console.print(said, highlight=False)

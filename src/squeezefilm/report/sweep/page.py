@@ -91,7 +91,8 @@ def sweep_page(
         "index.html": page(
             f"{title}: a sweep",
             f"{title}: a sweep of {len(found.reasons)} points",
-            "asked of " + escape(", ".join(found.verbs)) + ", by squeezefilm",
+            f"asked of {escape(', '.join(found.verbs))}, by squeezefilm; "
+            f"finger: {escape(printable(found.provenance['finger']))}",
             picture_sections(figures)
             + _decisive(effects, varied)
             + _best(found, better)

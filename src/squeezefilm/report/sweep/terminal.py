@@ -95,6 +95,7 @@ def show_sweep(found: Sweep) -> None:
         )
     if len(found.warnings) > _TOLD:
         console.print(f"! {len(found.warnings) - _TOLD} more warnings stand in sweep.json")
+    console.print(f"Finger: {printable(found.provenance['finger'])}")
     console.print(f"{found.computed} answers computed, {found.kept} taken from before")
 
 

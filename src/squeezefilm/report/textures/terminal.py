@@ -34,6 +34,7 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
             f"{p.model}, {shown(p.normal_force, N)} on {p.surface.name}, "
             f"{shown(result.mean_speed, _SPEED)}",
         ),
+        ("Finger", "", result.display.whose_finger),
         ("Time constant", shown(result.time_constant, S, 3), "of the envelope, finger on it"),
         ("Loop", shown(stroke.control_rate, HZ, 3), f"{eyes}; compensation: {stroke.compensation}"),
         (

@@ -4,7 +4,7 @@ be built from."""
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -16,6 +16,7 @@ from squeezefilm.device.wire.safety import HIGHEST_VOLTAGE
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.from_text import ReadBy
+from squeezefilm.measure.fits.friction.person import with_finger
 from squeezefilm.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.search.design.shape import Body, Room
 from squeezefilm.search.design.shapes import AnyShape, shape_called
@@ -165,6 +166,7 @@ class Requirements:
             place, "finest_period" the finest square grating felt at the finger's speed.
         quality_factor: of the whole assembly (None: that of the display which it starts from);
             nothing a plate's drawing says tells it, so that it is assumed until measured.
+        finger: whose finger it is for, see `with_finger`; asked for beside the file.
     """
 
     name: str
@@ -180,6 +182,7 @@ class Requirements:
     compare_with: str = ""
     quality_factor: Annotated[si.Dimensionless, hard.QUALITY] | None = None
     note: str = ""
+    finger: str = field(default="new", metadata={"loader": True})
 
     def __post_init__(self) -> None:
         if not self.shapes:
@@ -222,8 +225,8 @@ class Requirements:
 
     @functools.cached_property
     def started_from(self) -> Display:
-        """The display of `start_from`, as its file has it."""
-        return load_display(self.start_from)
+        """The display of `start_from`, as its file has it, under the finger."""
+        return with_finger(load_display(self.start_from), self.finger)
 
     @functools.cached_property
     def base(self) -> Display:
@@ -279,6 +282,7 @@ class Requirements:
             f"a quality factor of {self.assembly_quality:g} for every assembly, whatever it is "
             "made of: only a measurement says it",
             f"finger, surface and cooling of {self.start_from}; {own}",
+            f"finger: {self.base.whose_finger}",
             "the contact's constants (asperities and plateaus), which decide the friction",
             "tolerances as the file has them, normal and independent",
             *(

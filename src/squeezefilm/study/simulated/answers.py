@@ -65,6 +65,7 @@ class SimulatedAnswers(Result):
             "task": design.task,
             "origin": self.answers.origin,
             "observer": tables.observer.name,
+            "finger": tables.whose_finger,
             "participants": self.participants,
             "seed": self.seed,
             "displays": {name: one.summary() for name, one in self.analyses.items()},

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
+from squeezefilm.measure.fits.friction.person import with_finger
 from squeezefilm.perception.observer import FingerClass, Observer
 from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.perception.senses import Candidates
@@ -80,6 +82,11 @@ class ChainTables:
             ]
         )
 
+    @property
+    def whose_finger(self) -> str:
+        """Whose finger the displays are under, in words."""
+        return "; ".join(dict.fromkeys(plate.whose_finger for plate in self.plates))
+
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
         """Candidates of a surface that is not among the design's stimuli, such as a comparison
         that an adaptive method chose, shape (candidates,); of free exploration (2, candidates),
@@ -122,6 +129,7 @@ def chain_tables(
     observer: Observer,
     apparatus: Apparatus | tuple[Apparatus, ...] | None = None,
     displays: tuple[Display, ...] | None = None,
+    finger: str | Path = "new",
     progress: SayProgress | None = None,
 ) -> ChainTables:
     """The chain for every display, finger class and surface.
@@ -133,13 +141,16 @@ def chain_tables(
         observer: whose senses and fingers.
         apparatus: how displays are run: one for all, or one for each.
         displays: in place of those the design names, in its order.
+        finger: whose finger those that the design names are under, see `with_finger`.
         progress: is told each step.
 
     Raises:
         InputError: as many displays or apparatus as the design has not.
     """
     tell = progress or (lambda _: None)
-    plates = tuple(load_display(one) for one in design.displays) if displays is None else displays
+    plates = displays
+    if plates is None:
+        plates = tuple(with_finger(load_display(name), finger) for name in design.displays)
     runs = apparatus if isinstance(apparatus, tuple) else (apparatus or Apparatus(),) * len(plates)
     if len(plates) != len(design.displays) or len(runs) != len(plates):
         raise InputError(

@@ -113,6 +113,7 @@ class SimulatedStudy(Result):
             "study": design.name,
             "origin": self.origin,
             "observer": tables.observer.name,
+            "finger": tables.whose_finger,
             "participants": self.participants,
             "seed": self.seed,
             "layout": "rows: gratings answered; columns: periods simulated; counts",

@@ -11,6 +11,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -54,6 +55,7 @@ def planned_contrast(
     target: si.Dimensionless = 0.8,
     people: int = PEOPLE,
     seed: int = 0,
+    finger: str | Path = "new",
     progress: Callable[[str], None] | None = None,
 ) -> PlannedPower:
     """The power of a design to show that people do otherwise on one display than on another.
@@ -65,6 +67,7 @@ def planned_contrast(
         participants, studies, alpha, target: as in `power_curve`.
         people: simulated, that studies are drawn from, at least 20.
         seed: of people, answers and studies.
+        finger: whose finger a display is under, see `with_finger`.
         progress: is told each step.
 
     The test is Student's over people, two-sided. `difference` is the mean over all people of the
@@ -81,7 +84,7 @@ def planned_contrast(
             load_display(one)
     tell = progress or (lambda _: None)
     both = dataclasses.replace(design, displays=(display, other))
-    tables = chain_tables(both, observer, progress=tell)
+    tables = chain_tables(both, observer, finger=finger, progress=tell)
 
     def simulated() -> tuple[str, si.FloatArray]:
         answers = simulated_answers(tables, people, seed, tell)
@@ -101,7 +104,16 @@ def planned_contrast(
     )
     mean = float(differences.mean())
     return PlannedPower(
-        design.name, "", display, other, observer.name, curve, mean, seed, measure=measure
+        design.name,
+        "",
+        display,
+        other,
+        observer.name,
+        curve,
+        mean,
+        seed,
+        measure=measure,
+        finger=tables.whose_finger,
     )
 
 

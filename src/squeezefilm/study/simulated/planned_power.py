@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -54,6 +55,7 @@ class PlannedPower:
     difference: si.Dimensionless
     seed: int
     origin: str = "simulated"
+    finger: str = ""
     measure: str = "score"
 
     def summary(self) -> dict[str, Any]:
@@ -73,6 +75,7 @@ def planned_power(
     alpha: si.Dimensionless = 0.05,
     target: si.Dimensionless = 0.8,
     seed: int = 0,
+    finger: str | Path = "new",
     progress: Callable[[str], None] | None = None,
 ) -> PlannedPower:
     """The power of a design to tell two of its stimuli apart, against the number of people.
@@ -88,6 +91,7 @@ def planned_power(
         display: one of the design's (the first without it), or another's name or file.
         participants, studies, alpha, target: as in `power_curve`.
         seed: of people, their answers and the studies.
+        finger: whose finger a display is under, see `with_finger`.
         progress: is told each step.
 
     Raises:
@@ -103,7 +107,7 @@ def planned_power(
         _require_own_answers(alone)
     else:
         require_pair(alone, first, second)
-    tables = chain_tables(alone, observer, progress=tell)
+    tables = chain_tables(alone, observer, finger=finger, progress=tell)
 
     def simulated() -> si.FloatArray:
         tell(f"{POOL} simulated participants")
@@ -126,7 +130,17 @@ def planned_power(
     )
     where = alone.displays[0]
     whole = float(scores.mean())
-    return PlannedPower(design.name, where, first, second, observer.name, curve, whole, seed)
+    return PlannedPower(
+        design.name,
+        where,
+        first,
+        second,
+        observer.name,
+        curve,
+        whole,
+        seed,
+        finger=tables.whose_finger,
+    )
 
 
 def require_pair(design: StudyDesign, first: str, second: str) -> None:

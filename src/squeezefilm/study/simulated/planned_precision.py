@@ -13,6 +13,7 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -114,6 +115,7 @@ class PlannedPrecision:
     sequential: SequentialStudies
     seed: int
     origin: str = "simulated"
+    finger: str = ""
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints."""
@@ -131,6 +133,7 @@ def planned_precision(
     target: si.Dimensionless = 0.8,
     people: int = PEOPLE,
     seed: int = 0,
+    finger: str | Path = "new",
     progress: Callable[[str], None] | None = None,
 ) -> PlannedPrecision:
     """How many people make the answer of a design as precise as asked, by simulation.
@@ -146,6 +149,7 @@ def planned_precision(
         target: share of studies that are to be that precise.
         people: simulated, that studies are drawn from, at least 20.
         seed: of people, answers and studies.
+        finger: whose finger a display is under, see `with_finger`.
         progress: is told each step.
 
     What was found until it was stopped is kept on disk, and not computed again.
@@ -162,7 +166,7 @@ def planned_precision(
         raise InputError(f"participants = {sizes}; give numbers of at least 2")
     tell = progress or (lambda _: None)
     alone = on_one_display(design, display)
-    tables = chain_tables(alone, observer, progress=tell)
+    tables = chain_tables(alone, observer, finger=finger, progress=tell)
 
     @functools.cache
     def fitted() -> tuple[str, Interval]:
@@ -221,6 +225,7 @@ def planned_precision(
         studies=studies,
         sequential=sequential,
         seed=seed,
+        finger=tables.whose_finger,
     )
 
 

@@ -238,7 +238,7 @@ def played(**changes: Any) -> Any:
     values: dict[str, Any] = {
         "setup": SimpleNamespace(
             plan=plan, name="grating", assumed_limits=(),
-            display=SimpleNamespace(title="A plate", name="plate"),
+            display=SimpleNamespace(title="A plate", name="plate", whose_finger="person 3's"),
             prediction=SimpleNamespace(warnings=()),
         ),
         "trace": SimpleNamespace(rows=rows, damage=SimpleNamespace(sentences=())),
@@ -284,6 +284,7 @@ def test_a_session_is_told_line_by_line() -> None:
         ("Ended", "completed", "all was played"),
         ("Usable", "yes", "99.5 % of 2000 ticks made, longest gap 12 ms, 0.1 % too late"),
         ("Played", "2 s", "mode stream, 1 kHz, compensation inverse, up to 16 V at 40 kHz"),
+        ("Finger", "", "person 3's"),
         # Nothing is said of a period that the texture has nothing at.
         ("Record: contrast at 2 mm", "81 %", "in its place; 92 % of that wave anywhere"),
         ("Record: friction error", "0.031", "RMS of µ′/µ, swing wanted 0.40; by the pickup"),
@@ -307,19 +308,19 @@ def test_what_a_session_does_not_know_is_a_dash() -> None:
     empty = SimpleNamespace(rows=np.zeros((0, 4)))
     found = play_rows(result(by_record=by_record, trace=empty, loop=dict, link=lambda: {"sent": 9}))
     assert [row[:2] for row in found] == [
-        ("Ended", "completed"), ("Usable", "yes"), ("Played", "0 s"),
+        ("Ended", "completed"), ("Usable", "yes"), ("Played", "0 s"), ("Finger", ""),
         ("Record: contrast, lag", "–"), ("Loop", "–"), ("Link", "0 lost"),
     ]  # fmt: skip
-    assert found[3][2] == "it stood still"
-    assert found[4][2] == "it could not say how late it was"
-    assert found[5][2] == ("of 9 frames; 0 damaged, 0 refused; round trip – on average, – at most")
+    assert found[4][2] == "it stood still"
+    assert found[5][2] == "it could not say how late it was"
+    assert found[6][2] == ("of 9 frames; 0 damaged, 0 refused; round trip – on average, – at most")
     found = play_rows(result(end=lambda: {"state": "idle"}, by_record=judged(math.nan)))
     assert found[-1] == (
         "Device", "0 readings", "0 commands too late to send, 0 late ticks of its own",
     )  # fmt: skip
     assert not any(name == "Record: lag" for name, *_ in found)
     by_record.unjudged = None
-    assert play_rows(result(by_record=by_record))[3] == ("Record: contrast, lag", "–", "")
+    assert play_rows(result(by_record=by_record))[4] == ("Record: contrast, lag", "–", "")
 
 
 def test_no_lag_is_behind_and_nothing_due_is_nothing_lost() -> None:
@@ -367,5 +368,5 @@ def test_a_session_is_shown_under_its_names() -> None:
     found = result(flags={"it was late": 4})
     lines = printed(lambda: show_play(found))
     assert lines[0] == "grating on A plate [plate]"
-    assert lines[1:-1] == [" ".join(row) for row in play_rows(found)]
+    assert lines[1:-1] == [" ".join(filter(None, row)) for row in play_rows(found)]
     assert lines[-1] == "! 4 ticks: it was late"

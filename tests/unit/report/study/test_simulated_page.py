@@ -164,8 +164,8 @@ def test_the_page_says_that_nobody_answered_and_shows_names_as_text(
     assert "<title>two-gratings: simulated participants</title>" in page
     said = page.replace("\n", " ")
     assert (
-        "2 <b>simulated</b> participants, observer &lt;i&gt;made up&lt;/i&gt;, seed 5; no person "
-        "answered" in said
+        "2 <b>simulated</b> participants, observer &lt;i&gt;made up&lt;/i&gt;, seed 5, "
+        "finger: ; no person answered" in said
     )
     assert REMARK in page
     assert "<h2>biet2008-stator, simulated: 75.0 % right</h2>" in page

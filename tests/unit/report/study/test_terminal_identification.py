@@ -59,7 +59,9 @@ def power(needed: int | None) -> PlannedPower:
         np.array([4, 6, 8]), np.array([0.125, 0.816, 0.95]), np.array([0.08, 0.76, 0.9]),
         np.array([0.2, 0.87, 0.98]), 400, 0.05, 0.8, needed, 8,
     )  # fmt: skip
-    return PlannedPower("small", "plate", "8 mm", "10 mm", "fingertip", curve, 0.3, 0)
+    return PlannedPower(
+        "small", "plate", "8 mm", "10 mm", "fingertip", curve, 0.3, 0, finger="mine"
+    )
 
 
 def test_power_is_said_by_size_with_how_many_are_needed() -> None:
@@ -72,7 +74,8 @@ def test_power_is_said_by_size_with_how_many_are_needed() -> None:
         "8 95 % 90 to 98 %",
         "6 people reach 80 % power.",
         "One-sided test over people at 0.05; the pool's own score is 0.3 (0 for nothing); 400 "
-        "studies a size, of simulated participants 'fingertip': what they assume, this assumes.",
+        "studies a size, of simulated participants 'fingertip': what they assume, this assumes. "
+        "Finger: mine.",
     ]
 
 

@@ -32,7 +32,10 @@ def made(points: int = 40) -> Sweep:
         Column("amplitude_m", si.Unit("m"), amplitude),
     )
     reasons = tuple("too <wide>" if k == 3 else "" for k in range(points))
-    return Sweep("made", ("predict",), (axis,), columns, reasons, (("careful", 2),), points, 0, {})
+    told = {"finger": "person 3's"}
+    return Sweep(
+        "made", ("predict",), (axis,), columns, reasons, (("careful", 2),), points, 0, told
+    )
 
 
 def test_it_has_every_part_and_its_pictures() -> None:

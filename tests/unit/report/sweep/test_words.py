@@ -35,7 +35,7 @@ def made(axes: tuple[Axis, ...], *columns: Column, **changes: Any) -> Sweep:
     values: dict[str, Any] = {
         "title": "plate", "verbs": ("predict",), "axes": axes, "columns": columns,
         "reasons": ("",) * points, "warnings": (), "computed": points, "kept": 0,
-        "provenance": {"seed": None},
+        "provenance": {"seed": None, "finger": "person 3's"},
     }  # fmt: skip
     return Sweep(**{**values, **changes})
 

@@ -69,7 +69,7 @@ def result(**changes: Any) -> Any:
         "force": SimpleNamespace(friction_force=np.array([-0.1, 0.02468]), stuck_share=0.0123),
         "wave": "felt",
         "factor": np.array([0.72345, 0.9, 0.98765]),
-        "display": SimpleNamespace(title="A plate", name="plate"),
+        "display": SimpleNamespace(title="A plate", name="plate", whose_finger="person 3's"),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -88,6 +88,7 @@ def test_a_rendered_texture_is_said_with_all_that_there_is() -> None:
     assert render_rows(result()) == [
         ("Largest amplitude", "1.23 µm", "at 15 V, the limit"),
         ("Least friction µ′/µ", "0.432", "a-model, 0.5 N on copper, 60.1 mm/s"),
+        ("Finger", "", "person 3's"),
         ("Time constant", "1.23 ms", "of the envelope, finger on it"),
         ("Loop", "19.2 kHz", "the finger's place is known; compensation: inverse"),
         ("Friction asked for", "0.700 ± 0.200", "mean and RMS swing of µ′/µ"),

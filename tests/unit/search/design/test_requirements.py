@@ -1,14 +1,18 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import pytest
 from tests.unit.search.design.made_up import requirements
 
 from squeezefilm import presets
+from squeezefilm.display import DECAY_LENGTH
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.search.design.requirements import load_requirements
+from squeezefilm.search.design.sources import shared_sources
 from squeezefilm.search.design.stock import ceramic_named, substrate_named
+from squeezefilm.search.design.store import asked_hash
 
 
 @pytest.mark.parametrize("name", presets.requirement_names())
@@ -52,6 +56,15 @@ def test_materials_are_those_of_the_library_or_of_the_display() -> None:
     assert substrate_named("as described", own) is own.substrate
     assert substrate_named("aluminium 6061", own).density == pytest.approx(2700)
     assert ceramic_named("PZT-5A", own).density == pytest.approx(7750)
+
+
+def test_a_search_may_be_for_the_mean_of_people() -> None:
+    mean = dataclasses.replace(requirements(), finger="mean")
+    assert mean.base.whose_finger.startswith("the mean of people")
+    assert any("finger: the mean of people" in said for said in mean.assumed)
+    # What was kept for a new person is not taken for the mean.
+    assert asked_hash(mean, "solved") != asked_hash(requirements(), "solved")
+    assert shared_sources(mean)[DECAY_LENGTH].source == mean.base.whose_finger
 
 
 def test_the_finger_of_the_requirements_is_that_of_the_display() -> None:

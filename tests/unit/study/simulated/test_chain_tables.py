@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from squeezefilm import second_process
+from squeezefilm.errors import InputError
 from squeezefilm.kept.folder import CACHE_VARIABLE
 from squeezefilm.perception.observer import Observer, load_observer
 from squeezefilm.perception.senses import line_amplitudes, line_periods
@@ -122,3 +123,17 @@ def test_what_was_felt_before_needs_no_plate_no_loop_and_no_statistics(
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_the_displays_are_under_the_finger_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    fingers: list[str] = []
+
+    def asked(pieces: list[Any], _tell: Any) -> Any:
+        fingers.extend(piece.rest[0].whose_finger for piece in pieces if len(piece.rest) == 4)
+        raise InputError("nothing more is asked")
+
+    monkeypatch.setattr("squeezefilm.study.simulated.chain_tables.felt_surfaces", asked)
+    with pytest.raises(InputError, match="nothing more"):
+        chain_tables(load_design("biet2008-gratings"), load_observer(), finger="mean")
+    assert fingers
+    assert all(finger.startswith("the mean of people") for finger in fingers)

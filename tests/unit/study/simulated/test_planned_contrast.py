@@ -23,7 +23,7 @@ HERE, THERE = "biet2008-plate", "biet2008-stator"
 def by_hand(monkeypatch: pytest.MonkeyPatch) -> None:
     """On the second display all periods are felt nearer to their mean."""
 
-    def made(design: Any, _observer: Any, progress: Any = None) -> ChainTables:
+    def made(design: Any, _observer: Any, **_: Any) -> ChainTables:
         one = tables(design, 6.0)
         logs = np.log(one.virtual.period)
         narrow = np.exp(logs.mean() + 0.3 * (logs - logs.mean()))

@@ -36,7 +36,7 @@ def displays(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, ...]]:
     """The displays that were computed: beyond doubt on the stator, nothing felt on the plate."""
     asked: list[tuple[str, ...]] = []
 
-    def chain_tables(design: StudyDesign, observer: Any, progress: Any) -> ChainTables:
+    def chain_tables(design: StudyDesign, observer: Any, finger: str, progress: Any) -> ChainTables:
         asked.append(design.displays)
         progress("a finger")
         period = PERIODS[None, :, None]

@@ -26,7 +26,7 @@ from .test_judgements import ALIKE, DEPTHS, EXACT, NUMBERS, tables
 
 @pytest.fixture(autouse=True)
 def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
-    def made(design: Any, _observer: Any, progress: Any = None) -> Any:
+    def made(design: Any, _observer: Any, **_: Any) -> Any:
         return tables(design, 3.0)
 
     monkeypatch.setattr(module, "chain_tables", made)

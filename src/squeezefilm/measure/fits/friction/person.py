@@ -11,13 +11,12 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.analysis.parameters import DECAY_LENGTH
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.prediction import predict
 from squeezefilm.config.provenance import Provenance
 from squeezefilm.contact.finger.fingertip import FASTEST, SLOWEST
 from squeezefilm.contact.finger.people import MEAN_SPREAD
-from squeezefilm.display import Display, NamedDisplay, load_display
+from squeezefilm.display import DECAY_LENGTH, Display, NamedDisplay, load_display
 from squeezefilm.distributions import LogNormal
 from squeezefilm.errors import InputError
 from squeezefilm.from_text import reads_text
