@@ -172,7 +172,8 @@ def _labelled(section: AnnularSection, modes: Sequence[AnnularMode], label: str)
             return mode
     raise InputError(
         f"no mode {label} among the lowest {len(modes)} with {modes[0].harmonic} nodal diameters "
-        f"({', '.join(mode.label for mode in modes)}); ask annular_modes near its frequency"
+        f"({', '.join(dict.fromkeys(mode.label for mode in modes))}); ask annular_modes near its "
+        "frequency"
     )
 
 
@@ -208,10 +209,12 @@ def annular_admittance(
     remainder; harmonics left out take their (small, capacitive) share away. Near a resonance its
     own harmonic suffices; a channel of a few sectors also drives the harmonics beside it.
     Damping is structural; the ceramic's dielectric loss is left out.
-    Raises `InputError` for an empty list of harmonics or frequencies that are not positive.
+    Raises `InputError` for an empty list of harmonics or frequencies that are not positive,
+    `OutOfRangeError` for a frequency of waves across a layer.
     """
     if not len(harmonics):
         raise InputError("harmonics is empty; name at least the one of the mode wanted")
+    require_half_wave(float(frequency.max()), section.shear_times, "an admittance at")
     omega = 2 * np.pi * frequency
     charge = np.full(frequency.shape, clamped_capacitance(section, drive), dtype=complex)
     middle = float(frequency.mean())

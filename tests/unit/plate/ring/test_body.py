@@ -21,7 +21,7 @@ from squeezefilm.plate.ring.body import (
     ring_body,
     stator_assumptions,
 )
-from squeezefilm.plate.ring.modes import annular_modes, clamped_capacitance
+from squeezefilm.plate.ring.modes import annular_admittance, annular_modes, clamped_capacitance
 from squeezefilm.plate.ring.response import ring_circuit, ring_response
 from squeezefilm.plate.solid.layers import media
 from squeezefilm.plate.working_mode import working_mode
@@ -177,3 +177,5 @@ def test_a_band_of_waves_across_a_layer_is_refused(
         modes_in_band(body, (6.9e6, 7e6))
     with pytest.raises(OutOfRangeError, match=r"near = 7 MHz.* kHz at most"):
         annular_modes(body.section, 0, near=7e6)
+    with pytest.raises(OutOfRangeError, match=r"an admittance at 7 MHz.* kHz at most"):
+        annular_admittance(body.section, body.drive, np.array([30e3, 7e6]), harmonics=(0,))
