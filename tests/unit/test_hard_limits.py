@@ -128,7 +128,7 @@ def test_a_motion_too_short_is_told_to_be_longer() -> None:
 def test_a_solve_that_fits_no_memory_is_refused_before_it_begins() -> None:
     wide = dataclasses.replace(PLATE, length=1.0, width=1.0, patches=(PLATE.patches[0],))
     with pytest.raises(InputError, match="bytes of a three-dimensional solve") as caught:
-        plate_model(wide, 1e6)
+        plate_model(wide, 500e3)
     assert "slices of" in str(caught.value)
 
 
