@@ -6,8 +6,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from contextlib import AbstractContextManager
-    from numpy.typing import ArrayLike
     from pathlib import Path
+    from typing import Any, Literal
+
+    from numpy.typing import ArrayLike
+
     from squeezefilm.analysis.analyze import Analysis
     from squeezefilm.analysis.film.command import FilmAnswer
     from squeezefilm.analysis.friction.command import FrictionAnalysis
@@ -21,7 +24,8 @@ if TYPE_CHECKING:
     from squeezefilm.chain.prediction import Prediction
     from squeezefilm.chain.rendered_texture import RenderAnalysis
     from squeezefilm.chain.wanted_voltage import WantedFriction
-    from squeezefilm.display import Display, NamedDisplay, load_display as load_display
+    from squeezefilm.display import Display, NamedDisplay
+    from squeezefilm.display import load_display as load_display
     from squeezefilm.distributions import Distribution
     from squeezefilm.errors import SqueezefilmError as SqueezefilmError
     from squeezefilm.film.periodic.profile import GapFunction, GapProfile
@@ -30,120 +34,476 @@ if TYPE_CHECKING:
     from squeezefilm.measure.calibration.folder import FolderCalibration
     from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
     from squeezefilm.measure.planned.fabricate import Fabrication
-    from squeezefilm.measure.recordings.read import check_recording as check_recording, read_recording as read_recording
+    from squeezefilm.measure.recordings.read import check_recording as check_recording
+    from squeezefilm.measure.recordings.read import read_recording as read_recording
     from squeezefilm.perception.observer import NamedObserver
     from squeezefilm.plate.working_mode import PlateTheory
-    from squeezefilm.presets import display_names as display_names, study_names as study_names, texture_names as texture_names
+    from squeezefilm.presets import display_names as display_names
+    from squeezefilm.presets import study_names as study_names
+    from squeezefilm.presets import texture_names as texture_names
     from squeezefilm.progress import Pace, SayProgress
-    from squeezefilm.quantities import Dimensionless, FloatArray, Hertz, Metre, MetrePerSecond, MetrePerVolt, Newton, Pascal, Radian, Second, Volt
+    from squeezefilm.quantities import (
+        Dimensionless,
+        FloatArray,
+        Hertz,
+        Metre,
+        MetrePerSecond,
+        MetrePerVolt,
+        Newton,
+        Pascal,
+        Radian,
+        Second,
+        Volt,
+    )
     from squeezefilm.render.motion.sensor import SensorModel
     from squeezefilm.render.motion.stroke import Stroke as _Stroke
     from squeezefilm.render.texture.coordinate import Coordinate, Length, Place
     from squeezefilm.render.texture.gates import speed as speed
-    from squeezefilm.render.texture.image import Image as _Image, Share
-    from squeezefilm.render.texture.levels import Amplitude as _Amplitude, FrictionShare, RelativeFriction as _RelativeFriction, VibrationAmplitude
-    from squeezefilm.render.texture.noise import Noise as _Noise, Octaves, Persistence, Seed, Spacing
+    from squeezefilm.render.texture.image import Image as _Image
+    from squeezefilm.render.texture.image import Share
+    from squeezefilm.render.texture.levels import Amplitude as _Amplitude
+    from squeezefilm.render.texture.levels import FrictionShare, VibrationAmplitude
+    from squeezefilm.render.texture.levels import RelativeFriction as _RelativeFriction
+    from squeezefilm.render.texture.noise import Noise as _Noise
+    from squeezefilm.render.texture.noise import Octaves, Persistence, Seed, Spacing
     from squeezefilm.render.texture.pattern import Pattern
-    from squeezefilm.render.texture.shapes import Band as _Band, Bump as _Bump, SineWave as _SineWave, SquareWave as _SquareWave
-    from squeezefilm.report.subjects import plot as plot, write_mode as write_mode, write_report as write_report
+    from squeezefilm.render.texture.shapes import Band as _Band
+    from squeezefilm.render.texture.shapes import Bump as _Bump
+    from squeezefilm.render.texture.shapes import SineWave as _SineWave
+    from squeezefilm.render.texture.shapes import SquareWave as _SquareWave
+    from squeezefilm.report.subjects import plot as plot
+    from squeezefilm.report.subjects import write_mode as write_mode
+    from squeezefilm.report.subjects import write_report as write_report
     from squeezefilm.search.design.found import DesignSearch
     from squeezefilm.search.design.requirements import NamedRequirements
     from squeezefilm.search.design.run import Glimpse
     from squeezefilm.search.swept import Sweep
     from squeezefilm.session.play.plan import PlayView
     from squeezefilm.session.record.trace import read_trace as read_trace
-    from squeezefilm.study.adaptive.bayesian import AdaptiveDesign as _AdaptiveDesign, BayesianAdaptive as BayesianAdaptive, Interest
+    from squeezefilm.study.adaptive.bayesian import AdaptiveDesign as _AdaptiveDesign
+    from squeezefilm.study.adaptive.bayesian import BayesianAdaptive as BayesianAdaptive
+    from squeezefilm.study.adaptive.bayesian import Interest
     from squeezefilm.study.conduct.playback import Playable, Playback
     from squeezefilm.study.conduct.trial_by_trial import Examiner
     from squeezefilm.study.design.plan import StudyPlan
     from squeezefilm.study.design.study_design import NamedDesign
     from squeezefilm.study.psychometric.fit import PsychometricFit
-    from squeezefilm.study.psychometric.function import Axis, PsychometricFunction as _PsychometricFunction, Shape
+    from squeezefilm.study.psychometric.function import Axis, Shape
+    from squeezefilm.study.psychometric.function import (
+        PsychometricFunction as _PsychometricFunction,
+    )
     from squeezefilm.study.psychometric.prior import PsychometricPrior as PsychometricPrior
     from squeezefilm.study.record.store import StudyStore
     from squeezefilm.study.simulated.answers import SimulatedAnswers
     from squeezefilm.study.simulated.chain_tables import ChainTables
     from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.study.tasks.analyze import StudyAnalysis, Tell
-    from squeezefilm.texture_file import NamedTexture, load_texture as load_texture, save_texture as save_texture
-    from typing import Any, Literal
+    from squeezefilm.texture_file import NamedTexture
+    from squeezefilm.texture_file import load_texture as load_texture
+    from squeezefilm.texture_file import save_texture as save_texture
     def replaced(display: NamedDisplay | str | Path, values: Mapping[str, float | str]) -> Display:
         """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``."""
     def with_finger(display: NamedDisplay | str | Path, finger: str | Path = ...) -> Display:
         """The display under another finger, which whatever draws a finger takes up."""
-    def predict(display: NamedDisplay | str | Path, *, voltage: Volt | str | None = ..., frequency: Hertz | str | None = ..., normal_force: Newton | str | None = ..., surface: str | None = ..., vibration_amplitude: Metre | str | None = ..., position: Metre | str | None = ..., theory: PlateTheory | None = ..., model: FrictionModel | None = ..., speed: MetrePerSecond | str | None = ..., place: FacePlace | str | Path | None = ..., strict: bool = ..., pace: Pace = ...) -> Prediction:
+    def predict(
+        display: NamedDisplay | str | Path,
+        *,
+        voltage: Volt | str | None = ...,
+        frequency: Hertz | str | None = ...,
+        normal_force: Newton | str | None = ...,
+        surface: str | None = ...,
+        vibration_amplitude: Metre | str | None = ...,
+        position: Metre | str | None = ...,
+        theory: PlateTheory | None = ...,
+        model: FrictionModel | None = ...,
+        speed: MetrePerSecond | str | None = ...,
+        place: FacePlace | str | Path | None = ...,
+        strict: bool = ...,
+        pace: Pace = ...,
+    ) -> Prediction:
         """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz)."""
-    def voltage_for_friction(display: NamedDisplay | str | Path, relative_friction: WantedFriction | str, *, frequency: Hertz | str | None = ..., normal_force: Newton | str | None = ..., surface: str | None = ..., theory: PlateTheory | None = ..., model: FrictionModel | None = ..., speed: MetrePerSecond | str | None = ..., place: FacePlace | str | Path | None = ..., position: Metre | str | None = ...) -> tuple[Volt, Metre]:
+    def voltage_for_friction(
+        display: NamedDisplay | str | Path,
+        relative_friction: WantedFriction | str,
+        *,
+        frequency: Hertz | str | None = ...,
+        normal_force: Newton | str | None = ...,
+        surface: str | None = ...,
+        theory: PlateTheory | None = ...,
+        model: FrictionModel | None = ...,
+        speed: MetrePerSecond | str | None = ...,
+        place: FacePlace | str | Path | None = ...,
+        position: Metre | str | None = ...,
+    ) -> tuple[Volt, Metre]:
         """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m)."""
-    def analyze(display: NamedDisplay | str | Path, *, voltage: Volt | str | None = ..., frequency: Hertz | str | None = ..., vibration_amplitude: Metre | str | None = ..., normal_force: Newton | str | None = ..., surface: str | None = ..., theory: PlateTheory | None = ..., model: FrictionModel | None = ..., speed: MetrePerSecond | str | None = ..., place: FacePlace | str | Path | None = ..., strict: bool = ..., samples: int = ..., wanted_friction: WantedFriction | str | None = ..., sensitivities: Effort | None = ..., whole: bool = ..., progress: SayProgress | None = ..., budget: Second | str | None = ...) -> Analysis:
+    def analyze(
+        display: NamedDisplay | str | Path,
+        *,
+        voltage: Volt | str | None = ...,
+        frequency: Hertz | str | None = ...,
+        vibration_amplitude: Metre | str | None = ...,
+        normal_force: Newton | str | None = ...,
+        surface: str | None = ...,
+        theory: PlateTheory | None = ...,
+        model: FrictionModel | None = ...,
+        speed: MetrePerSecond | str | None = ...,
+        place: FacePlace | str | Path | None = ...,
+        strict: bool = ...,
+        samples: int = ...,
+        wanted_friction: WantedFriction | str | None = ...,
+        sensitivities: Effort | None = ...,
+        whole: bool = ...,
+        progress: SayProgress | None = ...,
+        budget: Second | str | None = ...,
+    ) -> Analysis:
         """The whole analysis of a display at one working point."""
-    def analyze_friction(display: NamedDisplay | str | Path, *, voltage: Volt | str | None = ..., frequency: Hertz | str | None = ..., vibration_amplitude: Metre | str | None = ..., normal_force: Newton | str | None = ..., surface: str | None = ..., model: FrictionModel | None = ..., position: Metre | str | None = ..., speed: MetrePerSecond | str | None = ..., place: FacePlace | str | Path | None = ..., ambient_pressure: Pascal | str | None = ..., wanted_friction: WantedFriction | str | None = ..., samples: int = ..., seed: int = ..., points: int = ..., progress: SayProgress | None = ...) -> FrictionAnalysis:
+    def analyze_friction(
+        display: NamedDisplay | str | Path,
+        *,
+        voltage: Volt | str | None = ...,
+        frequency: Hertz | str | None = ...,
+        vibration_amplitude: Metre | str | None = ...,
+        normal_force: Newton | str | None = ...,
+        surface: str | None = ...,
+        model: FrictionModel | None = ...,
+        position: Metre | str | None = ...,
+        speed: MetrePerSecond | str | None = ...,
+        place: FacePlace | str | Path | None = ...,
+        ambient_pressure: Pascal | str | None = ...,
+        wanted_friction: WantedFriction | str | None = ...,
+        samples: int = ...,
+        seed: int = ...,
+        points: int = ...,
+        progress: SayProgress | None = ...,
+    ) -> FrictionAnalysis:
         """The friction of a display at a working point, with everything around it."""
-    def solve_plate(display: NamedDisplay | str | Path, *, mode: tuple[int, int] | None = ..., band: tuple[Hertz, Hertz] | tuple[str, str] | None = ..., points: int = ..., progress: SayProgress | None = ..., budget: Second | str | None = ...) -> PlateAnalysis | RingAnalysis:
+    def solve_plate(
+        display: NamedDisplay | str | Path,
+        *,
+        mode: tuple[int, int] | None = ...,
+        band: tuple[Hertz, Hertz] | tuple[str, str] | None = ...,
+        points: int = ...,
+        progress: SayProgress | None = ...,
+        budget: Second | str | None = ...,
+    ) -> PlateAnalysis | RingAnalysis:
         """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's"""
-    def solve_film(squeeze_number: Dimensionless | str, gap: Dimensionless | GapProfile | GapFunction | str, *, shape: str = ..., aspect_ratio: Dimensionless | str = ..., polytropic_exponent: Dimensionless | str = ..., knudsen_number: Dimensionless | str = ..., slip: str = ..., tolerance: Dimensionless | str = ...) -> FilmAnswer:
+    def solve_film(
+        squeeze_number: Dimensionless | str,
+        gap: Dimensionless | GapProfile | GapFunction | str,
+        *,
+        shape: str = ...,
+        aspect_ratio: Dimensionless | str = ...,
+        polytropic_exponent: Dimensionless | str = ...,
+        knudsen_number: Dimensionless | str = ...,
+        slip: str = ...,
+        tolerance: Dimensionless | str = ...,
+    ) -> FilmAnswer:
         """One film. σ is on the width of a strip, the radius of a disc, the X side of a rectangle or"""
-    def sweep(display: NamedDisplay | Sequence[Display | str | Path] | str | Path, *, vary: Mapping[str, Any] | Sequence[str] = ..., ask: Sequence[str] | str = ..., over: str | Path | None = ..., sample: int | None = ..., seed: int = ..., jobs: int = ..., scheduler: str | None = ..., out: str | Path | None = ..., fresh: bool = ..., progress: SayProgress | None = ...) -> Sweep:
+    def sweep(
+        display: NamedDisplay | Sequence[Display | str | Path] | str | Path,
+        *,
+        vary: Mapping[str, Any] | Sequence[str] = ...,
+        ask: Sequence[str] | str = ...,
+        over: str | Path | None = ...,
+        sample: int | None = ...,
+        seed: int = ...,
+        jobs: int = ...,
+        scheduler: str | None = ...,
+        out: str | Path | None = ...,
+        fresh: bool = ...,
+        progress: SayProgress | None = ...,
+    ) -> Sweep:
         """The numbers that verbs say of a display, at every point of a grid or of a file."""
-    def search_designs(requirements: NamedRequirements | str | Path, *, screened: int = ..., solved: int = ..., seed: int = ..., jobs: int = ..., scheduler: str | None = ..., out: str | Path | None = ..., member: int = ..., progress: SayProgress | None = ..., watch: Callable[[Glimpse], None] | None = ...) -> DesignSearch:
+    def search_designs(
+        requirements: NamedRequirements | str | Path,
+        *,
+        screened: int = ...,
+        solved: int = ...,
+        seed: int = ...,
+        jobs: int = ...,
+        scheduler: str | None = ...,
+        out: str | Path | None = ...,
+        member: int = ...,
+        progress: SayProgress | None = ...,
+        watch: Callable[[Glimpse], None] | None = ...,
+    ) -> DesignSearch:
         """The plates that meet requirements and that none other beats, solved in three dimensions."""
     class Amplitude(_Amplitude):
         """A vibration amplitude: `low` (m, zero-to-peak) where the pattern is 0, `high` where it is 1."""
-        def __init__(self, pattern: Pattern, low: VibrationAmplitude | str, high: VibrationAmplitude | str, type: Literal['amplitude'] = ...) -> None: ...
+        def __init__(
+            self,
+            pattern: Pattern,
+            low: VibrationAmplitude | str,
+            high: VibrationAmplitude | str,
+            type: Literal["amplitude"] = ...,
+        ) -> None: ...
+
     class RelativeFriction(_RelativeFriction):
         """Friction over that of the surface at rest (1): `low` where the pattern is 0, else `high`."""
-        def __init__(self, pattern: Pattern, low: FrictionShare | str, high: FrictionShare | str, type: Literal['relative_friction'] = ...) -> None: ...
+        def __init__(
+            self,
+            pattern: Pattern,
+            low: FrictionShare | str,
+            high: FrictionShare | str,
+            type: Literal["relative_friction"] = ...,
+        ) -> None: ...
+
     class Band(_Band):
         """1 from `start` to `end`, 0 outside, with edges linear over `fade`: a mask in space."""
-        def __init__(self, start: Place | str, end: Place | str, fade: Metre | str = ..., along: Coordinate = ..., type: Literal['band'] = ...) -> None: ...
+        def __init__(
+            self,
+            start: Place | str,
+            end: Place | str,
+            fade: Metre | str = ...,
+            along: Coordinate = ...,
+            type: Literal["band"] = ...,
+        ) -> None: ...
+
     class Bump(_Bump):
         """The slope of a Gaussian bump or hole, felt as its shape: ½ far away, 1 and 0 on its flanks."""
-        def __init__(self, centre: Place | str, width: Length | str, kind: Literal['bump', 'hole'] = ..., along: Coordinate = ..., type: Literal['bump'] = ...) -> None: ...
+        def __init__(
+            self,
+            centre: Place | str,
+            width: Length | str,
+            kind: Literal["bump", "hole"] = ...,
+            along: Coordinate = ...,
+            type: Literal["bump"] = ...,
+        ) -> None: ...
+
     class SineWave(_SineWave):
         """½ + ½ sin(2πs/spatial_period + phase), s being the coordinate `along`."""
-        def __init__(self, spatial_period: Length | str, phase: Radian | str = ..., along: Coordinate = ..., type: Literal['sine_wave'] = ...) -> None: ...
+        def __init__(
+            self,
+            spatial_period: Length | str,
+            phase: Radian | str = ...,
+            along: Coordinate = ...,
+            type: Literal["sine_wave"] = ...,
+        ) -> None: ...
+
     class SquareWave(_SquareWave):
         """1 over the first `duty` of every period, 0 over the rest."""
-        def __init__(self, spatial_period: Length | str, duty: Dimensionless | str = ..., phase: Radian | str = ..., along: Coordinate = ..., type: Literal['square_wave'] = ...) -> None: ...
+        def __init__(
+            self,
+            spatial_period: Length | str,
+            duty: Dimensionless | str = ...,
+            phase: Radian | str = ...,
+            along: Coordinate = ...,
+            type: Literal["square_wave"] = ...,
+        ) -> None: ...
+
     class Noise(_Noise):
         """Seeded noise along one coordinate, with nothing finer than `finest_period`."""
-        def __init__(self, finest_period: Spacing | str, seed: Seed, octaves: Octaves = ..., persistence: Persistence | str = ..., along: Coordinate = ..., type: Literal['noise'] = ...) -> None: ...
+        def __init__(
+            self,
+            finest_period: Spacing | str,
+            seed: Seed,
+            octaves: Octaves = ...,
+            persistence: Persistence | str = ...,
+            along: Coordinate = ...,
+            type: Literal["noise"] = ...,
+        ) -> None: ...
+
     class Image(_Image):
         """Values from 0 to 1 on a grid of square pixels, bilinear between their centres."""
-        def __init__(self, values: tuple[tuple[Share, ...], ...] | str, pixel: Metre | str, left: Place | str = ..., bottom: Place | str = ..., outside: Literal['hold', 'repeat', 'zero'] = ..., type: Literal['image'] = ...) -> None: ...
+        def __init__(
+            self,
+            values: tuple[tuple[Share, ...], ...] | str,
+            pixel: Metre | str,
+            left: Place | str = ...,
+            bottom: Place | str = ...,
+            outside: Literal["hold", "repeat", "zero"] = ...,
+            type: Literal["image"] = ...,
+        ) -> None: ...
+
     class Stroke(_Stroke):
         """A finger's motion along x: `passes` passes of `length` at constant `speed`, turning at once."""
-        def __init__(self, speed: MetrePerSecond | str, length: Metre | str = ..., passes: int = ..., start: Metre | str = ...) -> None: ...
-    def render_texture(display: NamedDisplay | str | Path, texture: NamedTexture | str | Path, motion: NamedMotion | str | Path, *, voltage: Volt | str | None = ..., normal_force: Newton | str | None = ..., surface: str | None = ..., model: FrictionModel | None = ..., place: FacePlace | str | Path | None = ..., sensor: str | SensorModel | None = ..., compensation: str = ..., braking: bool = ..., wave: str = ..., control_rate: Hertz | str = ..., seed: int = ..., progress: SayProgress | None = ...) -> RenderAnalysis:
+        def __init__(
+            self,
+            speed: MetrePerSecond | str,
+            length: Metre | str = ...,
+            passes: int = ...,
+            start: Metre | str = ...,
+        ) -> None: ...
+
+    def render_texture(
+        display: NamedDisplay | str | Path,
+        texture: NamedTexture | str | Path,
+        motion: NamedMotion | str | Path,
+        *,
+        voltage: Volt | str | None = ...,
+        normal_force: Newton | str | None = ...,
+        surface: str | None = ...,
+        model: FrictionModel | None = ...,
+        place: FacePlace | str | Path | None = ...,
+        sensor: str | SensorModel | None = ...,
+        compensation: str = ...,
+        braking: bool = ...,
+        wave: str = ...,
+        control_rate: Hertz | str = ...,
+        seed: int = ...,
+        progress: SayProgress | None = ...,
+    ) -> RenderAnalysis:
         """Render a texture on a display under a finger."""
-    def play_texture(target: str | Path | Display, texture: NamedTexture | str | Path, *, drive: str = ..., sensor: str = ..., mode: str = ..., stroke: str = ..., duration: Second | str = ..., rate: Hertz | str = ..., voltage: Volt | str | None = ..., surface: str | None = ..., compensation: str = ..., amplitude_per_pickup: MetrePerVolt | str | None = ..., bench_only: bool = ..., out: str | Path | None = ..., seed: int = ..., show: Callable[[PlayView], None] | None = ..., tap: Callable[[FloatArray], None] | None = ..., progress: SayProgress | None = ...) -> PlayResult:
+    def play_texture(
+        target: str | Path | Display,
+        texture: NamedTexture | str | Path,
+        *,
+        drive: str = ...,
+        sensor: str = ...,
+        mode: str = ...,
+        stroke: str = ...,
+        duration: Second | str = ...,
+        rate: Hertz | str = ...,
+        voltage: Volt | str | None = ...,
+        surface: str | None = ...,
+        compensation: str = ...,
+        amplitude_per_pickup: MetrePerVolt | str | None = ...,
+        bench_only: bool = ...,
+        out: str | Path | None = ...,
+        seed: int = ...,
+        show: Callable[[PlayView], None] | None = ...,
+        tap: Callable[[FloatArray], None] | None = ...,
+        progress: SayProgress | None = ...,
+    ) -> PlayResult:
         """Play a texture on a device or on a twin of the display, in real time, and judge the record."""
-    def play(display: str | Path, surface: Playable | str | Path, *, drive: str = ..., amplitude_per_pickup: MetrePerVolt | str | None = ..., stroke: str = ..., rate: Hertz | str = ..., out: str | Path | None = ..., lsl: bool | str = ...) -> Playback:
+    def play(
+        display: str | Path,
+        surface: Playable | str | Path,
+        *,
+        drive: str = ...,
+        amplitude_per_pickup: MetrePerVolt | str | None = ...,
+        stroke: str = ...,
+        rate: Hertz | str = ...,
+        out: str | Path | None = ...,
+        lsl: bool | str = ...,
+    ) -> Playback:
         """A handle on a surface that is started and stopped while a program goes on."""
-    def fit_recording(recording: NamedRecording | str | Path, display: NamedDisplay | str | Path | None = ...) -> Fit:
+    def fit_recording(
+        recording: NamedRecording | str | Path, display: NamedDisplay | str | Path | None = ...
+    ) -> Fit:
         """What goes with the kind of a recording: a circuit with an impedance (constants of the"""
-    def calibrate_display(display: NamedDisplay | str | Path, folder: str | Path, out: str | Path | None = ..., *, parameters: Mapping[str, Distribution | None] | None = ..., seed: int = ..., progress: SayProgress | None = ...) -> FolderCalibration:
+    def calibrate_display(
+        display: NamedDisplay | str | Path,
+        folder: str | Path,
+        out: str | Path | None = ...,
+        *,
+        parameters: Mapping[str, Distribution | None] | None = ...,
+        seed: int = ...,
+        progress: SayProgress | None = ...,
+    ) -> FolderCalibration:
         """A display's uncertain values learned from all recordings of a folder."""
-    def predict_measurement(display: NamedDisplay | str | Path, ask: str | Sequence[str], out: str | Path, *, seed: int = ..., progress: SayProgress | None = ...) -> BlindPrediction:
+    def predict_measurement(
+        display: NamedDisplay | str | Path,
+        ask: str | Sequence[str],
+        out: str | Path,
+        *,
+        seed: int = ...,
+        progress: SayProgress | None = ...,
+    ) -> BlindPrediction:
         """Write what will be measured of a display, with its interval and a SHA-256, before it is."""
-    def score_prediction(prediction: str | Path, folder: str | Path, display: NamedDisplay | str | Path, *, progress: SayProgress | None = ...) -> tuple[tuple[Score, ...], tuple[str, ...]]:
+    def score_prediction(
+        prediction: str | Path,
+        folder: str | Path,
+        display: NamedDisplay | str | Path,
+        *,
+        progress: SayProgress | None = ...,
+    ) -> tuple[tuple[Score, ...], tuple[str, ...]]:
         """A prediction's file compared with a folder of recordings made since: error, inside its"""
-    def fabricate(display: NamedDisplay | str | Path, *, prediction: Prediction | None = ..., uncertainty: UncertainFriction | None = ..., samples: int = ..., intervals: bool = ..., blind: BlindPrediction | None = ..., seed: int = ..., progress: SayProgress | None = ...) -> Fabrication:
+    def fabricate(
+        display: NamedDisplay | str | Path,
+        *,
+        prediction: Prediction | None = ...,
+        uncertainty: UncertainFriction | None = ...,
+        samples: int = ...,
+        intervals: bool = ...,
+        blind: BlindPrediction | None = ...,
+        seed: int = ...,
+        progress: SayProgress | None = ...,
+    ) -> Fabrication:
         """What it takes to build a display and to measure it, with what is expected."""
-    def plan_study(design: NamedDesign | str | Path, participants: int = ..., seed: int = ...) -> StudyPlan:
+    def plan_study(
+        design: NamedDesign | str | Path, participants: int = ..., seed: int = ...
+    ) -> StudyPlan:
         """The plan of a design for a number of participants."""
-    def run_study(design: str | Path, store: str | Path, participant: str | None = ..., *, examiner: Examiner | None = ..., drive: str = ..., amplitude_per_pickup: MetrePerVolt | str | None = ..., conditions: Path | None = ..., consent: bool = ..., acknowledge: Callable[[str], bool] = ..., seed: int | None = ..., station: int | None = ..., stations: int | None = ..., tell: Callable[[str], None] = ..., progress: Callable[[], AbstractContextManager[Callable[[str], None]]] | None = ..., by_hand: str = ..., lsl: bool | str = ...) -> str:
+    def run_study(
+        design: str | Path,
+        store: str | Path,
+        participant: str | None = ...,
+        *,
+        examiner: Examiner | None = ...,
+        drive: str = ...,
+        amplitude_per_pickup: MetrePerVolt | str | None = ...,
+        conditions: Path | None = ...,
+        consent: bool = ...,
+        acknowledge: Callable[[str], bool] = ...,
+        seed: int | None = ...,
+        station: int | None = ...,
+        stations: int | None = ...,
+        tell: Callable[[str], None] = ...,
+        progress: Callable[[], AbstractContextManager[Callable[[str], None]]] | None = ...,
+        by_hand: str = ...,
+        lsl: bool | str = ...,
+    ) -> str:
         """Run a session of a study; stopped by Ctrl-C, it goes on later where it stopped. Returns how"""
-    def simulate_participants(design: NamedDesign | str | Path, observer: NamedObserver | str | Path, participants: int, seed: int, tables: ChainTables | None = ..., progress: Callable[[str], None] | None = ...) -> SimulatedStudy | SimulatedAnswers:
+    def simulate_participants(
+        design: NamedDesign | str | Path,
+        observer: NamedObserver | str | Path,
+        participants: int,
+        seed: int,
+        tables: ChainTables | None = ...,
+        progress: Callable[[str], None] | None = ...,
+    ) -> SimulatedStudy | SimulatedAnswers:
         """Answers of simulated participants to a design: a `SimulatedStudy` of match-to-sample, else"""
-    def analyze_study(store: StudyStore | str | Path, *, design: NamedDesign | str | Path | None = ..., columns: Mapping[str, str] | None = ..., mixed: bool = ..., resamples: int = ..., reruns: int = ..., seed: int = ..., progress: Tell | None = ...) -> dict[str, StudyAnalysis]:
+    def analyze_study(
+        store: StudyStore | str | Path,
+        *,
+        design: NamedDesign | str | Path | None = ...,
+        columns: Mapping[str, str] | None = ...,
+        mixed: bool = ...,
+        resamples: int = ...,
+        reruns: int = ...,
+        seed: int = ...,
+        progress: Tell | None = ...,
+    ) -> dict[str, StudyAnalysis]:
         """The analysis of a study's answers, by display."""
     class AdaptiveDesign(_AdaptiveDesign):
         """What a Bayesian choice of stimuli starts from."""
-        def __init__(self, stimuli: tuple[float, ...], prior: PsychometricPrior, shape: Shape = ..., axis: Axis = ..., guess_rate: Dimensionless | str = ..., cells: tuple[int, int, int] = ..., interest: Interest = ..., most_trials: int = ...) -> None: ...
-    def fit_psychometric(intensity: ArrayLike, positive: ArrayLike, trials: ArrayLike | None = ..., *, shape: Shape = ..., axis: Axis = ..., guess_rate: Dimensionless | str | None = ..., prior: PsychometricPrior | None = ..., level: Dimensionless | str = ..., replicates: int = ..., seed: int = ...) -> PsychometricFit:
+        def __init__(
+            self,
+            stimuli: tuple[float, ...],
+            prior: PsychometricPrior,
+            shape: Shape = ...,
+            axis: Axis = ...,
+            guess_rate: Dimensionless | str = ...,
+            cells: tuple[int, int, int] = ...,
+            interest: Interest = ...,
+            most_trials: int = ...,
+        ) -> None: ...
+
+    def fit_psychometric(
+        intensity: ArrayLike,
+        positive: ArrayLike,
+        trials: ArrayLike | None = ...,
+        *,
+        shape: Shape = ...,
+        axis: Axis = ...,
+        guess_rate: Dimensionless | str | None = ...,
+        prior: PsychometricPrior | None = ...,
+        level: Dimensionless | str = ...,
+        replicates: int = ...,
+        seed: int = ...,
+    ) -> PsychometricFit:
         """Fit a psychometric function to answers."""
     class PsychometricFunction(_PsychometricFunction):
         """A psychometric function: ψ(x) = γ + (1 − γ − λ) S((x − threshold)/width)."""
-        def __init__(self, shape: Shape, threshold: float, width: float, guess_rate: Dimensionless | str = ..., lapse_rate: Dimensionless | str = ..., axis: Axis = ...) -> None: ...
+        def __init__(
+            self,
+            shape: Shape,
+            threshold: float,
+            width: float,
+            guess_rate: Dimensionless | str = ...,
+            lapse_rate: Dimensionless | str = ...,
+            axis: Axis = ...,
+        ) -> None: ...
+
 __version__: str
