@@ -12,13 +12,16 @@ MOST_REFUSED: si.Dimensionless = 0.02
 nobody asked for."""
 
 
-def quantiles(friction: si.DimensionlessArray) -> si.DimensionlessArray:
-    """The lower end of the interval, the median and the upper end, of draws along the first axis.
+def quantiles(
+    friction: si.DimensionlessArray, level: si.Dimensionless = LEVEL
+) -> si.DimensionlessArray:
+    """The lower end of the interval that holds `level`, the median and the upper end, of draws
+    along the first axis.
 
     A refused draw (NaN) may be anything: it counts as 0 at the lower end and as 1 at the upper.
     Positions k/(n + 1), with which an interval of independent draws holds its level in the mean.
     """
-    tails = (1 - LEVEL) / 2
+    tails = (1 - level) / 2
     lost = np.isnan(friction)
     ends = [
         np.quantile(np.where(lost, fill, friction), at, axis=0, method="weibull")

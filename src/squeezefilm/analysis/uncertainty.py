@@ -4,7 +4,7 @@ matters."""
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -322,7 +322,7 @@ def _sobol(dimensions: int, count: int, seed: int) -> si.DimensionlessArray:
     return _POINTS.found(repr((dimensions, count, seed)), drawn)
 
 
-_BANDS: KeptDraws[FrictionBand] = KeptDraws("draws-band", FrictionBand)
+_BANDS: KeptDraws[si.DimensionlessArray] = KeptDraws("draws-band", si.DimensionlessArray)
 
 
 @as_drawn()
@@ -341,18 +341,44 @@ def friction_band(
     (a power of two); drive and actuator stand still, since the amplitude is the abscissa.
     `progress` is called with a text and a fraction. Raises `InputError` for amplitudes below 0.
     """
+    bands = friction_bands(
+        display, prediction, amplitude, (LEVEL,), samples=samples, seed=seed, progress=progress
+    )
+    return bands[0]
+
+
+@as_drawn()
+def friction_bands(
+    display: Display,
+    prediction: Prediction,
+    amplitude: si.MetreArray,
+    levels: Sequence[si.Dimensionless],
+    *,
+    samples: int = 64,
+    seed: int = 1,
+    progress: Callable[[str, float], None] | None = None,
+) -> tuple[FrictionBand, ...]:
+    """`friction_band` at each of several levels (1), from the same draws."""
     mixture = Mixture(display, prediction, driven=False)
     points = sobol_points(mixture, samples, seed)
-    make = functools.partial(_band, mixture, points, amplitude, progress)
-    return _BANDS.found(mixture, points, amplitude, make)
+    make = functools.partial(_drawn_curves, mixture, points, amplitude, progress)
+    rows = _BANDS.found(mixture, points, amplitude, make)
+    known = np.isnan(rows).mean(axis=0) <= MOST_REFUSED
+    bands = []
+    for level in levels:
+        edges = np.full((2, amplitude.size), np.nan)
+        edges[:, known] = quantiles(rows[:, known], level)[[0, 2]]
+        bands.append(FrictionBand(amplitude, edges[0], edges[1], level, samples))
+    return tuple(bands)
 
 
-def _band(
+def _drawn_curves(
     mixture: Mixture,
     points: si.DimensionlessArray,
     amplitude: si.MetreArray,
     progress: Callable[[str, float], None] | None,
-) -> FrictionBand:
+) -> si.DimensionlessArray:
+    """µ′/µ of each draw at each amplitude, shape (draws, n); NaN where refused."""
     samples = len(points)
     rows = np.full((samples, amplitude.size), np.nan)
     for number, draw in enumerate(mixture.draws(points)):
@@ -367,7 +393,4 @@ def _band(
                     rows[number, column] = between_limits(law, draw, np.array([one]))[0]
                 except SqueezefilmError:
                     continue
-    edges = np.full((2, amplitude.size), np.nan)
-    known = np.isnan(rows).mean(axis=0) <= MOST_REFUSED
-    edges[:, known] = quantiles(rows[:, known])[[0, 2]]
-    return FrictionBand(amplitude, edges[0], edges[1], LEVEL, samples)
+    return rows

@@ -10,7 +10,7 @@ import numpy as np
 
 from squeezefilm import quantities as si
 from squeezefilm.chain.friction_models import DEFAULT_MODEL
-from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
+from squeezefilm.measure.fits.friction.friction_curve import LEVELS, CurveComparison
 from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
 from squeezefilm.measure.fits.friction.friction_scores import NO_PHYSICS
 from squeezefilm.measure.fits.friction.populations import PopulationComparison
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 MODELS_HEAD = ("model", "off by", "in spreads", "answered", "fitted")
 TOTALS_HEAD = ("model", "off by", "log score, mean ± s.e.", "fitted")
+COVERAGE_HEAD = ("finger or paper", "points", "in the 50 % interval", "in the 90 % interval")
 PEOPLE_HEAD = ("model", "value", "share of measured below")
 FITTED = (
     "'Off by' is the root mean square of measured less computed friction, over one friction at "
@@ -133,6 +134,20 @@ def covered_words(compared: FolderComparison) -> str:
     )
 
 
+def coverage_rows(compared: FolderComparison) -> list[tuple[str, ...]]:
+    """By finger or paper, the share of points in two central intervals of the default."""
+    at = [LEVELS.index(level) for level in (0.5, 0.9)]
+    return [
+        (_unit_name(compared, unit), str(points), *(si.percent(inside[k] / points) for k in at))
+        for unit, (inside, points) in compared.coverage.items()
+    ]
+
+
+def _unit_name(compared: FolderComparison, unit: str) -> str:
+    """What the first curve of a finger or paper is called."""
+    return next(printable(one.curve.told.name) for one in compared.curves if one.curve.unit == unit)
+
+
 def people_words(compared: PopulationComparison) -> str:
     """How a number is distributed over people."""
     low, median, high = (
@@ -214,6 +229,36 @@ def all_curves_figure(compared: FolderComparison) -> Figure:
 
 
 @style.drawn
+def coverage_figure(compared: FolderComparison) -> Figure:
+    """The share of each unit's points in central intervals of the default, over their level."""
+    from scipy.stats import binomtest
+
+    figure = style.new_figure(
+        "How many published points the intervals of the default hold, by finger or paper",
+        "the default, its friction at rest fitted; bars: 95 % binomial intervals, as if the points "
+        "of a curve were independent, which they are not", 5,
+    )  # fmt: skip
+    axes = figure.subplots()
+    colours = (style.BLUE, style.ORANGE, style.GREEN, style.INK)
+    for number, (unit, (inside, points)) in enumerate(compared.coverage.items()):
+        share = inside / points
+        found = [binomtest(int(k), points).proportion_ci(0.95) for k in inside]
+        away = np.abs([[one.low, one.high] for one in found] - share[:, None]).T
+        axes.errorbar(
+            100 * np.array(LEVELS) + 0.6 * (number - 1), 100 * share, 100 * away, fmt="o-", ms=4,
+            lw=1.2, elinewidth=0.7, color=colours[number % len(colours)],
+            label=f"{style.plain(_unit_name(compared, unit), 40)} ({points} points)",
+        )  # fmt: skip
+    axes.plot([0, 100], [0, 100], **style.GUIDE, label="as promised")
+    axes.set(
+        xlabel="level of the central interval (%)", ylabel="points inside (%)",
+        xlim=(0, 100), ylim=(0, 102),
+    )  # fmt: skip
+    style.legend_beside(axes)
+    return figure
+
+
+@style.drawn
 def people_figure(compared: PopulationComparison) -> Figure:
     """How many people have less than a value, and where the models are."""
     unit, scale = _SHOWN.get(compared.unit, (compared.unit, 1.0))
@@ -252,6 +297,7 @@ def show_comparisons(compared: FolderComparison) -> None:
     if len(compared.curves) > 1:
         heading(console, "All curves")
         table(console, TOTALS_HEAD, total_rows(compared), fixed=(0,))
+        table(console, COVERAGE_HEAD, coverage_rows(compared), fixed=(0,))
         printed_bullets(console, [("", covered_words(compared), ""), ("", SCORES, "")])
     console.print(f"\n{FITTED}")
 
@@ -267,7 +313,13 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
     body = section("What is compared", f"<p>{FITTED}</p>")
     if len(compared.curves) > 1:
         rows = text_table("All curves", TOTALS_HEAD, total_rows(compared))
-        body += section("All curves", rows + bullets([covered_words(compared), SCORES]))
+        figure = coverage_figure(compared)
+        files["coverage.png"] = style.png(figure)
+        held = text_table(
+            "Points in the default's intervals", COVERAGE_HEAD, coverage_rows(compared)
+        )
+        body += section("All curves", rows + bullets([covered_words(compared), SCORES]) + held)
+        body += picture_sections({"coverage": ("Coverage by finger or paper", figure)})
     parts = [
         (one.curve.told, [conditions(one), inside_words(one), one.adequacy.sentence],
          text_table("How far each model is off", MODELS_HEAD, model_rows(one)),

@@ -8,6 +8,7 @@ from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
 from squeezefilm.report.kit import style
 from squeezefilm.report.kit.docs import checkout, markdown_table
 from squeezefilm.report.measured.curves import (
+    COVERAGE_HEAD,
     FITTED,
     MODELS_HEAD,
     PEOPLE_HEAD,
@@ -15,6 +16,8 @@ from squeezefilm.report.measured.curves import (
     TOTALS_HEAD,
     all_curves_figure,
     conditions,
+    coverage_figure,
+    coverage_rows,
     covered_words,
     inside_words,
     model_rows,
@@ -56,6 +59,7 @@ def write_friction_docs(compared: FolderComparison, root: Path | None = None) ->
     write_whole(
         docs / "pictures" / "published-friction.png", style.png(all_curves_figure(compared))
     )
+    write_whole(docs / "pictures" / "published-coverage.png", style.png(coverage_figure(compared)))
     for detected in compared.detections:
         write_whole(
             docs / "pictures" / "published-thresholds.png", style.png(detection_figure(detected))
@@ -70,6 +74,8 @@ def friction_markdown(compared: FolderComparison) -> str:
     lines = [_HEAD, "## All curves", ""]
     lines += markdown_table((TOTALS_HEAD, total_rows(compared)))
     lines += ["", f"{covered_words(compared)}. {SCORES}", ""]
+    lines += markdown_table((COVERAGE_HEAD, coverage_rows(compared)))
+    lines += ["", "![Predicted and observed coverage](../pictures/published-coverage.png)", ""]
     for one in compared.curves:
         told = one.curve.told
         lines += [f"## {told.name.capitalize()}", "", f"{told.source}. {conditions(one)}.", ""]

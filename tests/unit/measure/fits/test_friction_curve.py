@@ -64,6 +64,10 @@ def test_the_default_is_said_to_miss_it_and_points_are_counted_in_our_interval(
     # Where nothing vibrates no model can be wrong, and no point is judged.
     assert list(compared.inside) == [None, *expected[1:]]
     assert compared.points_inside == (sum(expected[1:]), 8)
+    # A wider interval holds what a narrower one does, and the widest is the band.
+    levels = compared.inside_levels
+    assert np.all(levels[1:] >= levels[:-1])
+    assert levels[-1].tolist() == [bool(x) for x in (low <= friction) & (friction <= high)]
     # What a level between them fits is not far off.
     assert sum(expected[1:]) >= 5
     json.dumps(compared.summary(), allow_nan=False)

@@ -22,7 +22,12 @@ from squeezefilm.measure.fits.friction.populations import PopulationComparison
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck, Refused
 from squeezefilm.report.kit import style
-from squeezefilm.report.measured.curves import show_comparisons, write_comparisons
+from squeezefilm.report.measured.curves import (
+    coverage_figure,
+    coverage_rows,
+    show_comparisons,
+    write_comparisons,
+)
 from squeezefilm.report.measured.figures import recording_figure
 from squeezefilm.report.measured.fit_figures import fit_figure, modelled
 from squeezefilm.report.measured.page import fit_summary, write_checks, write_fit
@@ -232,6 +237,7 @@ def compared() -> CurveComparison:
         band=band,
         inside=(None, True, True),
         adequacy=replace(GOOD, adequate=False, sentence="The default is off."),
+        inside_levels=np.array([[False, k > 3, k > 5] for k in range(9)]),
     )
 
 
@@ -261,7 +267,7 @@ def test_curves_are_shown_beside_all_models(tmp_path: Path) -> None:
     assert "licence: none needed" in text
     names = {one.name for one in tmp_path.iterdir()}
     pictures = {f"curve-{number}.png" for number in (1, 2, 3)}
-    assert names == {"curves.json", "measured-curves.html"} | pictures
+    assert names == {"coverage.png", "curves.json", "measured-curves.html"} | pictures
     summary = json.loads((tmp_path / "curves.json").read_text(encoding="utf-8"))
     assert summary["curves"][0]["interval"]["points_inside"] == 2
     assert summary["curves"][0]["models"][2]["rms_difference"] is None
@@ -270,3 +276,16 @@ def test_curves_are_shown_beside_all_models(tmp_path: Path) -> None:
     assert fit_figure(checked("friction curve"), compared()) is not None
     lines = printed(lambda: show_fit(checked("friction curve"), compared()))
     assert "partial-levitation 0.008 0.2 3 of 3 1" in lines
+
+
+def test_coverage_is_counted_by_unit_at_each_level() -> None:
+    found = folder()
+    ((unit, (inside, points)),) = found.coverage.items()
+    assert unit == CURVE.unit
+    # Two curves of one finger, each with two points that vibrate.
+    assert points == 4
+    assert inside.tolist() == [0, 0, 0, 0, 2, 2, 4, 4, 4]
+    assert coverage_rows(found) == [(CURVE.told.name, "4", "50 %", "100 %")]
+    (axes,) = coverage_figure(found).axes
+    assert axes.get_xlabel() == "level of the central interval (%)"
+    assert axes.containers[0].lines[0].get_ydata().tolist() == [0, 0, 0, 0, 50, 50, 100, 100, 100]

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.analysis.intervals import LEVEL
-from squeezefilm.analysis.uncertainty import FrictionBand, friction_band
+from squeezefilm.analysis.uncertainty import FrictionBand, friction_bands
 from squeezefilm.chain.friction import FrictionLaw
 from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.chain.prediction import predict
@@ -29,6 +30,8 @@ from squeezefilm.progress import SayProgress
 from squeezefilm.results import to_json
 
 _SAMPLES = 64
+LEVELS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, LEVEL)
+"""Of the central intervals of which the coverage is counted, that of `FrictionBand` last."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +43,8 @@ class CurveComparison:
     curve's unit, and `fitted_at_rest` that of our default's fit, by which `band`, the interval in
     which the default expects µ′/µ with everything but the amplitude uncertain, is compared:
     `inside` says of each measured point whether it lies there (where the band is not known it does
-    not; None where nothing vibrates). `adequacy` is the default model's. `normal_force` and `speed`
+    not; None where nothing vibrates), and `inside_levels` in each central interval of `LEVELS`,
+    shape (levels, points). `adequacy` is the default model's. `normal_force` and `speed`
     are those that were computed with, `assumed` names the ones that the recording does not tell.
     """
 
@@ -55,6 +59,7 @@ class CurveComparison:
     band: FrictionBand
     inside: tuple[bool | None, ...]
     adequacy: Adequacy
+    inside_levels: NDArray[np.bool_]
 
     @property
     def nearest(self) -> ModelScore:
@@ -172,7 +177,7 @@ def compare_friction_curve(
     speed = finger.speed if curve.speed is None else curve.speed
     amplitude, count = curve.vibration_amplitude, curve.friction.size
     friction = {model: np.full(count, np.nan) for model in MODEL_KINDS}
-    low, high = np.full(count, np.nan), np.full(count, np.nan)
+    edges = np.full((len(LEVELS), 2, count), np.nan)
     at = np.stack([np.broadcast_to(of, count) for of in (curve.frequency, force, speed)])
     for condition in np.unique(at, axis=1).T:
         here = np.flatnonzero((at == condition[:, None]).all(axis=0))
@@ -189,8 +194,8 @@ def compare_friction_curve(
             tell(f"{curve.told.name}: {model}")
             friction[model][here] = relative_friction(prediction.law.by(model), amplitude[here])
         tell(f"{curve.told.name}: the interval")
-        band = friction_band(display, prediction, amplitude[here], samples=_SAMPLES)
-        low[here], high[here] = band.low, band.high
+        bands = friction_bands(display, prediction, amplitude[here], LEVELS, samples=_SAMPLES)
+        edges[:, :, here] = [(band.low, band.high) for band in bands]
     scores = [scored(model, friction[model], curve) for model in MODEL_KINDS]
     scores += shape_scores(curve)
     scores.sort(key=lambda score: (score.answered < count, score.difference or 0.0))
@@ -198,8 +203,9 @@ def compare_friction_curve(
     # Where the default falls steeply from rest on, a line through its first points starts too low.
     fitted = float(np.nanmean(default.friction / friction[DEFAULT_MODEL]))
     relative = curve.friction / fitted
+    inside_levels = (edges[:, 0] <= relative) & (relative <= edges[:, 1])
     inside = tuple(
-        None if a == 0 else bool(low[k] <= relative[k] <= high[k]) for k, a in enumerate(amplitude)
+        None if a == 0 else bool(here) for a, here in zip(amplitude, inside_levels[-1], strict=True)
     )
     return CurveComparison(
         curve=curve,
@@ -210,9 +216,10 @@ def compare_friction_curve(
         normal_force=force,
         speed=speed,
         assumed=assumed,
-        band=FrictionBand(amplitude, low, high, LEVEL, _SAMPLES),
+        band=FrictionBand(amplitude, edges[-1, 0], edges[-1, 1], LEVEL, _SAMPLES),
         inside=inside,
         adequacy=_adequacy(curve, default, at_rest),
+        inside_levels=inside_levels,
     )
 
 

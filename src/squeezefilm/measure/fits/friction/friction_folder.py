@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.friction.detection import DetectionComparison, compare_detection
 from squeezefilm.measure.fits.friction.friction_curve import (
+    LEVELS,
     CurveComparison,
     compare_friction_curve,
     display_of,
@@ -60,6 +62,18 @@ class FolderComparison:
         ends = binomtest(sum(covered.values()), len(covered)).proportion_ci(0.95)
         return sum(covered.values()), len(covered), (float(ends.low), float(ends.high))
 
+    @property
+    def coverage(self) -> dict[str, tuple[si.IntArray, int]]:
+        """By unit (finger or paper): how many of its points that vibrate lie in the default's
+        central interval of each of `LEVELS`, shape (levels,), and how many do vibrate."""
+        counts: dict[str, tuple[si.IntArray, int]] = {}
+        for compared in self.curves:
+            moves = compared.curve.vibration_amplitude > 0
+            inside = compared.inside_levels[:, moves].sum(axis=1)
+            before, points = counts.get(compared.curve.unit, (0, 0))
+            counts[compared.curve.unit] = before + inside, points + int(moves.sum())
+        return counts
+
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
         within, units, ends = self.units_covered
@@ -67,6 +81,13 @@ class FolderComparison:
             "curves": [compared.summary() for compared in self.curves],
             "totals": to_json(self.totals),
             "units_covered": {"covered": within, "units": units, "share_interval": list(ends)},
+            "coverage": {
+                "levels": list(LEVELS),
+                "units": {
+                    unit: {"points": points, "inside": inside.tolist()}
+                    for unit, (inside, points) in self.coverage.items()
+                },
+            },
             "populations": [compared.summary() for compared in self.populations],
             "detections": [compared.summary() for compared in self.detections],
         }
