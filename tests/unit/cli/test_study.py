@@ -96,7 +96,7 @@ def test_simulated_people_are_shown_and_written_where_asked(
 
     asked = ("--participants", "2", "--seed", "3", "--out", tmp_path, "--finger", "mean")
     done = run("simulate", PRESET, *asked)
-    assert tables.named["finger"] == "mean"
+    assert tables.calls[-1][1]["finger"] == "mean"
     assert people.calls[-1][0][2:4] == (2, 3)
     assert written.given[:2] == (ANSWER, tmp_path)
     assert done.stdout == f"page: {tmp_path / 'index.html'}\n"
