@@ -17,7 +17,6 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.display import Display, load_display
 from squeezefilm.errors import InputError
-from squeezefilm.measure.fits.friction.person import with_finger
 from squeezefilm.perception.observer import FingerClass, Observer
 from squeezefilm.perception.percepts import Apparatus
 from squeezefilm.perception.senses import Candidates
@@ -150,7 +149,12 @@ def chain_tables(
     tell = progress or (lambda _: None)
     plates = displays
     if plates is None:
-        plates = tuple(with_finger(load_display(name), finger) for name in design.displays)
+        plates = tuple(load_display(name) for name in design.displays)
+        if finger != "new":
+            # Recordings are read, which what was felt before needs no code for.
+            from squeezefilm.measure.fits.friction.person import with_finger
+
+            plates = tuple(with_finger(plate, finger) for plate in plates)
     runs = apparatus if isinstance(apparatus, tuple) else (apparatus or Apparatus(),) * len(plates)
     if len(plates) != len(design.displays) or len(runs) != len(plates):
         raise InputError(
