@@ -144,6 +144,7 @@ NOT_CALLED = {
     plate.elements.nodal_lines.zero_crossings plate.solid.symmetry.mirror_map
     plate.solid.reduced.ReducedClass
     plate.solid.reduced.harmonic_solution plate.elements.krylov.orthonormal
+    plate.elements.box_model.require_half_wave
     plate.solid.reduced.reduced_class plate.solid.reduced.resolved_frequency
     plate.solid.reduced.reduced_model plate.solid.solve.solve_for_response
     plate.solid.reduced.surface_values plate.solid.refined_modes.RefinedModes
