@@ -29,7 +29,7 @@ from squeezefilm.contact.rough_contact import RoughContact
 from squeezefilm.contact.sharing.levitation import levitation_friction, levitation_scale
 from squeezefilm.display import load_display
 from squeezefilm.errors import ConvergenceError, OutOfRangeError
-from squeezefilm.measure.fits.friction.friction_scores import rest_friction
+from squeezefilm.measure.fits.friction.friction_scores import nearest_scale, rest_friction, scored
 from squeezefilm.measure.fits.friction.person import PersonFit, fitted_person, with_decay_length
 from squeezefilm.measure.recordings.kinds import FrictionCurve, FrictionDecays
 from squeezefilm.measure.recordings.read import check_folder
@@ -199,12 +199,15 @@ def rounded(curve: FrictionCurve, law: FrictionLaw) -> tuple[float, float]:
     radius = law.contact_side / math.sqrt(math.pi)
     met = np.abs(np.cos(np.pi * radius * x / law.half_wavelength))
     even = levitation_scale(1.0, law.contact_pressure, law.gas.ambient_pressure)
-    tried = []
-    for length in np.geomspace(1e-6, 40e-6, 160):
-        scale = length * even * np.sqrt(share)
-        each = levitation_friction(np.outer(curve.vibration_amplitude, met / scale))
-        tried.append((_left_of(curve, each @ share / share.size), float(length)))
-    return min(tried)
+
+    def curve_of(length: float) -> si.DimensionlessArray:
+        over = met / (length * even * np.sqrt(share))
+        each = levitation_friction(np.outer(curve.vibration_amplitude, over))
+        return np.asarray(each @ share / share.size)
+
+    known = [curve_of(length) for length in _LENGTHS]
+    length = nearest_scale(curve_of, _LENGTHS, known, curve.friction)
+    return _left(curve, curve_of(length)), length
 
 
 class Balances(NamedTuple):
@@ -225,7 +228,9 @@ def balances(found: Fits) -> Balances:
     laws = [law.by("partial-levitation") for law in found.laws]
     fitted = []
     for curve, law in zip(found.curves, laws, strict=True):
-        tried = [(_left(curve, _rough(law, r, 3.2e6)), r) for r in np.geomspace(0.2e-6, 8e-6, 60)]
+        tried = [
+            (_left_by(curve, _rough(law, r, 3.2e6)), r) for r in np.geomspace(0.2e-6, 8e-6, 60)
+        ]
         fitted.append(min(tried))
     middle = float(np.median([roughness for _, roughness in fitted]))
     skins, vacuum = [], []
@@ -242,7 +247,8 @@ def balances(found: Fits) -> Balances:
                 inside = _yielding(thin, 1.6e-6, skin)
                 vacuum.append((1 - inside) / (1 - _yielding(law, 1.6e-6, skin)))
     as_read = [
-        _left(curve, _rough(law, 5e-6, 20e6)) for curve, law in zip(found.curves, laws, strict=True)
+        _left_by(curve, _rough(law, 5e-6, 20e6))
+        for curve, law in zip(found.curves, laws, strict=True)
     ]
     return Balances(
         as_read,
@@ -261,20 +267,19 @@ def _rough(law: FrictionLaw, roughness: float, modulus: float) -> FrictionLaw:
     return dataclasses.replace(law, finger=finger)
 
 
-def _left(curve: FrictionCurve, law: FrictionLaw) -> float:
-    """The root mean square that a law leaves of a curve over its friction at rest, which is fitted;
-    infinite where the law ends."""
+def _left(curve: FrictionCurve, relative: si.DimensionlessArray) -> float:
+    """The root mean square that a relative friction at a curve's amplitudes leaves of it, over its
+    friction at rest, which is fitted."""
+    difference = scored("tried", relative, curve).difference
+    return math.inf if difference is None else difference
+
+
+def _left_by(curve: FrictionCurve, law: FrictionLaw) -> float:
+    """The same of a law; infinite where it ends."""
     try:
-        return _left_of(curve, law.curve(curve.vibration_amplitude))
+        return _left(curve, law.curve(curve.vibration_amplitude))
     except OutOfRangeError:
         return math.inf
-
-
-def _left_of(curve: FrictionCurve, relative: si.DimensionlessArray) -> float:
-    """The same of a relative friction at the curve's amplitudes."""
-    rest = float(curve.friction @ relative / (relative @ relative))
-    missed = float(np.sqrt(np.mean((curve.friction - rest * relative) ** 2)))
-    return missed / rest_friction(curve)
 
 
 def _yielding(law: FrictionLaw, amplitude: float, skin: Skin) -> float:

@@ -137,12 +137,6 @@ class Tally:
         self.heights[draw_of] += 1
         self.example = self.example or words
 
-    def take(self, other: Tally) -> None:
-        """Count what another tally counted after this one."""
-        self.reasons += other.reasons
-        self.heights += other.heights
-        self.example = self.example or other.example
-
     def found(self, evaluations: int) -> Refusals:
         """What was counted, of so many."""
         count = sum(self.reasons.values())
@@ -168,9 +162,7 @@ class Mixture:
     def __init__(self, display: Display, prediction: Prediction, *, driven: bool) -> None:
         self.display, self.prediction = display, prediction
         law = prediction.law
-        kind = law.kind
-        own = kind.shares_load and (kind.friction != "lift" or law.model == DEFAULT_MODEL)
-        self.model: FrictionModel = law.model if own else DEFAULT_MODEL
+        self.model: FrictionModel = law.model if law.kind.friction == "load" else DEFAULT_MODEL
         parameters = uncertain_parameters(
             display,
             prediction.surface.name,

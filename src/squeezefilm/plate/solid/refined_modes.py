@@ -168,7 +168,7 @@ def with_label(piece: RefinedModes, label: Label) -> RefinedModes:
     )
 
 
-def with_neighbours(piece: RefinedModes) -> si.FloatArray:
+def with_coarse_modes(piece: RefinedModes) -> si.FloatArray:
     """The refined modes of a class, and beside them the others that the coarse mesh has, brought
     onto the finer one by a step of inverse iteration; of unit mass, orthogonal to each other, shape
     (unknowns, modes). The piece must have its factor."""

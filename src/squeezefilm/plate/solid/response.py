@@ -33,7 +33,7 @@ from squeezefilm.plate.solid.refined_modes import (
     UNREFINED,
     RefinedModes,
     extrapolated_class,
-    with_neighbours,
+    with_coarse_modes,
 )
 from squeezefilm.plate.solid.resonances import DrivenMode, Moving, driven_modes
 from squeezefilm.plate.solid.symmetry import all_classes, drive_classes, drive_signs, told_of
@@ -323,7 +323,7 @@ def _reduced(
             part = reduced_class(plate, parity, band, steps, pressures, resolution)
         else:
             mesh = COARSE if known.level == UNREFINED else LEVELS[known.level]
-            modes = with_neighbours(known)
+            modes = with_coarse_modes(known)
             part = reduced_model(known.solved, known.factor, mesh, steps, pressures, modes)
         if not part.basis.shape[1]:
             raise InputError(

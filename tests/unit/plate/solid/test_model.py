@@ -17,7 +17,7 @@ from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.plate.solid.layers import COARSE
 from squeezefilm.plate.solid.mesh import plate_model
 from squeezefilm.plate.solid.model import PlateModel
-from squeezefilm.plate.solid.refined_modes import with_neighbours
+from squeezefilm.plate.solid.refined_modes import with_coarse_modes
 from squeezefilm.plate.solid.response import harmonic_response
 from squeezefilm.plate.solid.screening import screened_modes
 from squeezefilm.plate.solid.solve import solve_for_response, solve_modes
@@ -77,7 +77,7 @@ def test_one_element_across_resolves_half_a_wave_and_not_two() -> None:
 @pytest.mark.slow
 def test_a_response_that_knows_the_modes_about_it_is_that_of_a_long_space() -> None:
     modes, (piece,) = solve_for_response(PLATE, (2, 0), 3e-3)
-    known = with_neighbours(piece)
+    known = with_coarse_modes(piece)
     assert known.shape[1] == piece.found.values.size
     gram = known.T @ piece.solved.slabs.mass_times(known)
     assert gram == pytest.approx(np.eye(known.shape[1]), abs=1e-9)

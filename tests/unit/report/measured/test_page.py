@@ -235,7 +235,6 @@ def compared() -> CurveComparison:
         speed=0.02,
         assumed=("speed",),
         band=band,
-        inside=(None, True, True),
         adequacy=replace(GOOD, adequate=False, sentence="The default is off."),
         inside_levels=np.array([[False, k > 3, k > 5] for k in range(9)]),
     )

@@ -42,10 +42,10 @@ class CurveComparison:
     `models` have the nearest first; `at_rest` is the friction at rest that knows no model, in the
     curve's unit, and `fitted_at_rest` that of our default's fit, by which `band`, the interval in
     which the default expects µ′/µ with everything but the amplitude uncertain, is compared:
-    `inside` says of each measured point whether it lies there (where the band is not known it does
-    not; None where nothing vibrates), and `inside_levels` in each central interval of `LEVELS`,
-    shape (levels, points). `adequacy` is the default model's. `normal_force` and `speed`
-    are those that were computed with, `assumed` names the ones that the recording does not tell.
+    `inside_levels` says of each measured point whether it lies in each central interval of
+    `LEVELS`, shape (levels, points), the last of which is the band. `adequacy` is the default
+    model's. `normal_force` and `speed` are those that were computed with, `assumed` names the ones
+    that the recording does not tell.
     """
 
     curve: FrictionCurve
@@ -57,9 +57,17 @@ class CurveComparison:
     speed: si.MetrePerSecondLike
     assumed: tuple[str, ...]
     band: FrictionBand
-    inside: tuple[bool | None, ...]
     adequacy: Adequacy
     inside_levels: NDArray[np.bool_]
+
+    @property
+    def inside(self) -> tuple[bool | None, ...]:
+        """Whether each point lies in `band`; where the band is not known it does not, None where
+        nothing vibrates."""
+        return tuple(
+            None if a == 0 else bool(here)
+            for a, here in zip(self.curve.vibration_amplitude, self.inside_levels[-1], strict=True)
+        )
 
     @property
     def nearest(self) -> ModelScore:
@@ -204,9 +212,6 @@ def compare_friction_curve(
     fitted = float(np.nanmean(default.friction / friction[DEFAULT_MODEL]))
     relative = curve.friction / fitted
     inside_levels = (edges[:, 0] <= relative) & (relative <= edges[:, 1])
-    inside = tuple(
-        None if a == 0 else bool(here) for a, here in zip(amplitude, inside_levels[-1], strict=True)
-    )
     return CurveComparison(
         curve=curve,
         display=display.name,
@@ -217,7 +222,6 @@ def compare_friction_curve(
         speed=speed,
         assumed=assumed,
         band=FrictionBand(amplitude, edges[-1, 0], edges[-1, 1], LEVEL, _SAMPLES),
-        inside=inside,
         adequacy=_adequacy(curve, default, at_rest),
         inside_levels=inside_levels,
     )
