@@ -24,8 +24,9 @@ from squeezefilm.contact.sharing.film_panels import (
     EDGES,
     FIRST_COLUMN,
     ROWS,
-    SMOOTH_LAWS,
+    START,
     Panel,
+    default_tolerance,
 )
 from squeezefilm.errors import ConvergenceError
 from squeezefilm.film.gas import slip_law
@@ -34,14 +35,7 @@ from squeezefilm.materials import Gas
 if TYPE_CHECKING:
     from squeezefilm.contact.sharing.kernel import CompiledFilms
 
-START = (8, 8)
 _MOST = (41, 38)
-
-
-def default_tolerance(slip: str) -> float:
-    """The relative tolerance of a table where none is asked: 5e-4, and 1e-2 with a slip law that
-    has joints ("fukui-kaneko"), along which no smooth interpolant converges fast."""
-    return 5e-4 if slip in SMOOTH_LAWS else 1e-2
 
 
 @si.checked_numbers

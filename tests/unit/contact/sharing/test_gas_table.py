@@ -13,9 +13,11 @@ from squeezefilm.contact.sharing import film_panels
 from squeezefilm.contact.sharing.film_panels import (
     SHIPPED_OCTAVES,
     SHIPPED_PANELS,
+    START,
     Panel,
+    default_tolerance,
 )
-from squeezefilm.contact.sharing.gas_table import START, FilmTable, default_tolerance
+from squeezefilm.contact.sharing.gas_table import FilmTable
 from squeezefilm.kept.folder import CACHE_VARIABLE
 from squeezefilm.materials import Gas
 
@@ -78,11 +80,18 @@ def test_no_film_is_solved_in_the_range_that_people_use(monkeypatch: pytest.Monk
 def test_panels_that_come_with_the_package_are_what_the_solver_gives(slip: str, share: int) -> None:
     """Run `tools/film_panels.py` where this fails: the solver or the table's nodes have changed."""
     # Another processor may refine a film elsewhere: it is then another by the error of films.
-    error = 8e-5
+    tolerance = default_tolerance(slip)
+    error = tolerance / (6 if slip in film_panels.SMOOTH_LAWS else 10)
     for number in SHIPPED_PANELS[slip][share > 1 :: share]:
-        panel = Panel(slip, default_tolerance(slip), START, number)
+        panel = Panel(slip, tolerance, START, number)
         for octave in SHIPPED_OCTAVES if share == 1 else SHIPPED_OCTAVES[number % 5 :][:1]:
-            solved, shipped = panel.octave_solved(octave), film_panels._shipped()[octave, panel]
+            solved, shipped = (
+                panel.octave_solved(octave),
+                film_panels._shipped().get((octave, panel)),
+            )
+            if shipped is None:
+                assert solved[-1] > 0.8 * tolerance
+                continue
             np.testing.assert_allclose(shipped[:-1], solved[:-1], rtol=0, atol=error)
             assert shipped[-1] == pytest.approx(solved[-1], rel=0.2)
 
