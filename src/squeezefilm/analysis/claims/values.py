@@ -36,9 +36,9 @@ from squeezefilm.film.gap import (
     squeeze_number_printed,
 )
 from squeezefilm.film.validity import asymptotic_fraction
-from squeezefilm.plate.beam.modes import euler_bernoulli_half_wavelength
+from squeezefilm.plate.beam.modes import euler_bernoulli_half_wavelength, timoshenko_frequency
 from squeezefilm.plate.beam.response import beam_response
-from squeezefilm.plate.laminate import Laminate, plate_laminate
+from squeezefilm.plate.laminate import Laminate, Layer, laminate, plate_laminate
 from squeezefilm.plate.layout import AnnularStator
 
 PRINTED_HALF_WAVELENGTH: si.Metre = 10.37e-3
@@ -55,6 +55,11 @@ class ClaimValue:
     alternative: tuple[float, ...] | None = None
     note: str = ""
 
+
+GLASS_MODULUS: si.Pascal = 74e9
+GLASS_DENSITY: si.KilogramPerCubicMetre = 2500.0
+GLASS_PLATES = ((67e-3, 5e-3, 29.08e3), (105e-3, 3.3e-3, 34.917e3), (135e-3, 3.2e-3, 30e3))
+"""Length and thickness (m) and measured resonance (Hz) of glass plates of one laboratory."""
 
 CLAIM_VALUES: dict[str, Callable[[], ClaimValue]] = {}
 
@@ -193,6 +198,32 @@ def _() -> ClaimValue:
 def _() -> ClaimValue:
     beam = beam_response(paper_plate(), "euler_bernoulli", "paper")
     return ClaimValue((beam.mode.half_wavelength,), (paper_plate().length / 8,))
+
+
+def _bare_glass(thickness: si.Metre) -> Laminate:
+    """A plate of the glass of Wiertlewski's laboratory, wider than its waves, without ceramics."""
+    poisson_ratio = 0.22
+    modulus = GLASS_MODULUS / (1 - poisson_ratio**2)
+    shear_modulus = GLASS_MODULUS / (2 * (1 + poisson_ratio))
+    return laminate([Layer(thickness, modulus, shear_modulus, GLASS_DENSITY)])
+
+
+@value_of("glass-half-wavelength")
+def _() -> ClaimValue:
+    half = timoshenko_half_wavelength(29.08e3, _bare_glass(5e-3))
+    return ClaimValue((half,), note="bare glass as a Timoshenko beam, Poisson's ratio 0.22 assumed")
+
+
+@value_of("glass-resonances")
+def _() -> ClaimValue:
+    nearest = []
+    for length, thickness, measured in GLASS_PLATES:
+        halves = length / (np.arange(2, 20) - 0.5)
+        modes = np.asarray(timoshenko_frequency(halves, _bare_glass(thickness)))
+        nearest.append(float(modes[np.argmin(np.abs(np.log(modes / measured)))]))
+    return ClaimValue(
+        tuple(nearest), note="the nearest (n,0) mode of bare glass; modes are 20 % apart and more"
+    )
 
 
 @value_of("prototype-is-enough")
