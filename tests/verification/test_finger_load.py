@@ -156,6 +156,7 @@ def test_it_grows_with_the_force_and_falls_with_the_amplitude_as_published() -> 
     assert np.all(Z[1:].imag > 0)
     exponent = np.polyfit(np.log(FORCES), np.log(np.abs(Z)), 1)[0]
     assert exponent == pytest.approx(0.3, abs=0.15)
+    assert np.max(np.abs(np.log(np.abs(Z) / (24 * FORCES**0.3)))) < np.log(1.55)
     assert abs(pressed(0.5, 1e-7)) / abs(pressed(0.5, 1.1e-6)) == pytest.approx(7, rel=0.4)
 
 

@@ -218,7 +218,7 @@ def _() -> ClaimValue:
 def _() -> ClaimValue:
     nearest = []
     for length, thickness, measured in GLASS_PLATES:
-        halves = length / (np.arange(2, 20) - 0.5)
+        halves = length / (np.arange(2.0, 20.0) - 0.5)
         modes = np.asarray(timoshenko_frequency(halves, _bare_glass(thickness)))
         nearest.append(float(modes[np.argmin(np.abs(np.log(modes / measured)))]))
     return ClaimValue(
