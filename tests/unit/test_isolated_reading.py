@@ -18,7 +18,7 @@ from tests.pictures import picture_bytes
 from squeezefilm.errors import ConfigError, InputError
 from squeezefilm.formats.pictures import picture_from
 from squeezefilm.isolated_reading import IsolatedReader, Read
-from squeezefilm.measure.recordings.matlab import read_matlab
+from squeezefilm.measure.recordings.files.matlab import read_matlab
 from squeezefilm.measure.recordings.read import check_folder
 
 DESCRIPTION = """\

@@ -43,21 +43,33 @@ def check(
         ),
     ],
     described: DescribedBy = None,
+    write: Annotated[
+        bool,
+        typer.Option("--write", help="Write the proposed TOML file beside the data first."),
+    ] = False,
     out: Annotated[Path | None, written_to("Folder for pictures, numbers and a page.")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Say how a recording is read, with a picture, before anything is fitted: kind, columns, units,
-    amplitudes, and what is doubtful. Exit code 1 if a file of a folder could not be read.
+    amplitudes, and what is doubtful. Exit code 1 if a file of a folder could not be read. Exports
+    of known instruments need no TOML file; --write keeps the one that is proposed.
     """
-    from squeezefilm.measure.recordings.read import FolderCheck, check_folder, check_recording
+    from squeezefilm.measure.recordings.read import (
+        FolderCheck,
+        check_folder,
+        check_recording,
+        write_description,
+    )
     from squeezefilm.report.measured.page import write_checks
     from squeezefilm.report.measured.terminal import show_folder
 
     if file.is_dir():
-        if described is not None:
-            raise InputError("--described goes with one file; leave it out for a folder")
+        if described is not None or write:
+            raise InputError("--described and --write go with one file; not with a folder")
         found = check_folder(file)
     else:
+        if write:
+            typer.echo(f"written: {write_description(file)}", err=True)
         found = FolderCheck((check_recording(file, described),), ())
     written = None if out is None else write_checks(found, out)
     answer(as_json, found, show_folder, page=written)

@@ -11,21 +11,18 @@ import numpy as np
 from squeezefilm import quantities as si
 from squeezefilm.measure.recordings import assembled_friction, kinds
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
+from squeezefilm.measure.recordings.circuits_read import IMPEDANCES, Fixture
 from squeezefilm.measure.recordings.described import Column
 from squeezefilm.measure.recordings.description import Description, ImpedanceColumns
+from squeezefilm.measure.recordings.files.raw_table import RawTable
 from squeezefilm.measure.recordings.motions import moment_by_moment, motion_of, motion_per_volt
 from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity
-from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.measure.recordings.rows import both_rows, require_rising, rising_order
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
 
 _HZ, _S = si.Unit("Hz"), si.Unit("s")
-_PAIRS = (
-    ("magnitude", "phase"),
-    ("admittance_magnitude", "phase"),
-    ("resistance", "reactance"),
-    ("conductance", "susceptance"),
-)
+_PAIRS = tuple(IMPEDANCES)
+_REFLECTED = ("reflection", "transmission")
 # Times are printed with few digits; half a sample off is another sample's time.
 _UNEVEN = 0.5
 
@@ -66,18 +63,71 @@ def _own_columns(description: Description, table: RawTable) -> ImpedanceColumns:
 
 
 def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
-    pair = _one_of(reading, _PAIRS)
     frequency = reading.take("frequency")
-    first, second = (reading.take(name) for name in pair)
-    value = first * np.exp(1j * second) if pair[1] == "phase" else first + 1j * second
-    if pair[0] in ("magnitude", "resistance"):
-        zero = np.flatnonzero(np.abs(value) < QUANTITIES["magnitude"].least)
-        if zero.size:
-            raise reading.refuse(pair[0], "an impedance of zero cannot be", int(zero[0]))
-        value = 1 / value
-    value = _corrected(reading, value)
+    pair, first, second = _first_and_second(reading)
+    fixture = _fixture(reading, pair[0], frequency)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value = IMPEDANCES[pair](first, second, fixture)
+    zero = np.flatnonzero(~(np.abs(value) >= QUANTITIES["magnitude"].least))
+    if zero.size:
+        raise reading.refuse(pair[0], "an impedance of zero cannot be", int(zero[0]))
+    endless = np.flatnonzero(~np.isfinite(value))
+    if endless.size:
+        raise reading.refuse(pair[0], "this makes no finite impedance", int(endless[0]))
+    value = _corrected(reading, 1 / value)
     frequency, value = _rising(reading, "frequency", frequency, value)
+    kept = _in_band(reading, frequency)
+    frequency, value = frequency[kept], value[kept]
+    outside = reading.table.outside(frequency)
+    reading.doubts += [] if outside is None else [outside]
     return kinds.ImpedanceSweep(frequency, value, reading.told(), _ceramic(reading))
+
+
+def _first_and_second(
+    reading: Reading,
+) -> tuple[tuple[str, ...], si.FloatArray, si.FloatArray]:
+    """The pair that is named and its values; two voltages are the pair of their quotient."""
+    if reading.has("shunt_voltage"):
+        over, whole = (reading.take(name, amplitude=True) for name in ("shunt_voltage", "voltage"))
+        still = np.flatnonzero(np.abs(whole) < np.finfo(float).tiny)
+        if still.size:
+            raise reading.refuse("voltage", "nothing was driven here", int(still[0]))
+        return ("gain", "phase"), over / whole, reading.take("phase")
+    pair = _one_of(reading, _PAIRS)
+    first, second = (reading.take(name) for name in pair)
+    return pair, first, second
+
+
+def _fixture(reading: Reading, first: str, frequency: si.HertzArray) -> Fixture:
+    """What stands beside the pair, with a fact that says so."""
+    said: Any = reading.description.said
+    reference = said.reference or reading.table.reference
+    if first in _REFLECTED:
+        where = "at the port" if first == "reflection" else "in series between the ports"
+        reading.facts.append(("assumed", f"the device is {where}, of {reference:g} ohm"))
+    if first == "gain" and said.shunt is None:
+        raise reading.description.error(
+            "a gain makes an impedance with the resistor that it was taken over: the device "
+            "between drive and resistor, the other channel across the resistor; write shunt = "
+            '"100 ohm"',
+            ["shunt"],
+        )
+    return Fixture(2 * np.pi * frequency, reference, said.shunt or 1.0)
+
+
+def _in_band(reading: Reading, frequency: si.HertzArray) -> slice:
+    """The rows of the band that is told, with a fact that says how many are left."""
+    band = getattr(reading.description.said, "band", None)
+    if band is None:
+        return slice(None)
+    first, last = np.searchsorted(frequency, band.low), np.searchsorted(
+        frequency, band.high, side="right"
+    )  # fmt: skip
+    ends = f"{quantity(band.low, _HZ)} to {quantity(band.high, _HZ)}"
+    if last - first < 3:
+        raise reading.description.error(f"the band {ends} holds {last - first} rows", ["band"])
+    reading.facts.append(("band", f"{ends}, as the description asks: {last - first} rows"))
+    return slice(int(first), int(last))
 
 
 def _ceramic(reading: Reading) -> CeramicBar | CeramicDisc | None:
@@ -114,11 +164,12 @@ def _response(reading: Reading) -> kinds.FrequencyResponse:
     motion = _corrected(reading, motion)
     volts = None if voltage is None else float(np.median(np.abs(voltage)))
     order = rising_order(reading, "frequency", frequency)
+    kept = _in_band(reading, frequency[order])
     return kinds.FrequencyResponse(
-        frequency[order],
-        motion[order],
+        frequency[order][kept],
+        motion[order][kept],
         volts,
-        None if coherence is None else coherence[order],
+        None if coherence is None else coherence[order][kept],
         reading.told(),
         _place(reading),
     )
@@ -169,9 +220,13 @@ def _grid(reading: Reading) -> kinds.GridScan:
 
 def _ring_down(reading: Reading) -> kinds.RingDown:
     time = reading.take("time")
-    motion = moment_by_moment(reading, time)
+    unit = "m"
+    if reading.has("signal"):
+        motion, unit = reading.take_any("signal")
+    else:
+        motion = moment_by_moment(reading, time)
     _, motion = _rising(reading, "time", time, motion)
-    return kinds.RingDown(time, motion, reading.told())
+    return kinds.RingDown(time, motion, reading.told(), unit)
 
 
 def _signals(reading: Reading) -> kinds.RawSignals:
@@ -251,7 +306,7 @@ def _runs(frequency: si.HertzArray, voltage: si.VoltArray) -> list[tuple[int, in
     return list(zip(starts, [*starts[1:], frequency.size], strict=True))
 
 
-def _one_of(reading: Reading, pairs: tuple[tuple[str, str], ...]) -> tuple[str, str]:
+def _one_of(reading: Reading, pairs: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:
     """The pair of quantities that are both named, and no other is."""
     named = {name for pair in pairs for name in pair if reading.has(name)}
     for pair in pairs:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from squeezefilm import quantities as si
+from squeezefilm.hard_limits import FREQUENCY
 from squeezefilm.measure.recordings.kinds import Told
 
 MOST_VOLTAGE: si.Volt = 1e4
@@ -45,6 +46,15 @@ class Given:
 
     amplitude: Annotated[si.Volt, si.Above(0.0), si.AtMost(MOST_VOLTAGE)]
     given_as: Convention
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class Band:
+    """The frequencies of a sweep that are kept, the ends among them."""
+
+    low: Annotated[si.Hertz, FREQUENCY]
+    high: Annotated[si.Hertz, FREQUENCY]
 
 
 @si.checked_numbers

@@ -15,9 +15,9 @@ from squeezefilm.config import load_text
 from squeezefilm.config.lines import locate
 from squeezefilm.config.scan import require_quick_toml
 from squeezefilm.errors import ConfigError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES, FREQUENCY, PLACE
+from squeezefilm.hard_limits import DESCRIPTION_BYTES, FREQUENCY, PLACE, RESISTANCE
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
-from squeezefilm.measure.recordings.described import Column, Described, Given
+from squeezefilm.measure.recordings.described import Band, Column, Described, Given
 from squeezefilm.measure.recordings.described_friction import (
     DescribedBench,
     DescribedCurve,
@@ -31,7 +31,8 @@ from squeezefilm.regular_file import read_regular_text
 
 @dataclass(frozen=True)
 class ImpedanceColumns:
-    """Frequency, and one pair: |Z| with its phase, |Y| with its phase, R with X, or G with B."""
+    """Frequency, and one of the pairs that make an impedance (`circuits_read.IMPEDANCES`), or the
+    drive's voltage and that over a shunt with the phase between them."""
 
     frequency: Column
     magnitude: Column | None = None
@@ -41,18 +42,39 @@ class ImpedanceColumns:
     reactance: Column | None = None
     conductance: Column | None = None
     susceptance: Column | None = None
+    series_capacitance: Column | None = None
+    parallel_capacitance: Column | None = None
+    series_inductance: Column | None = None
+    parallel_inductance: Column | None = None
+    parallel_resistance: Column | None = None
+    quality_factor: Column | None = None
+    dissipation_factor: Column | None = None
+    reflection: Column | None = None
+    reflection_imaginary: Column | None = None
+    transmission: Column | None = None
+    transmission_imaginary: Column | None = None
+    gain: Column | None = None
+    voltage: Column | None = None
+    shunt_voltage: Column | None = None
 
 
 @si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedImpedance(Described):
-    """An impedance or admittance against frequency; of a bare ceramic where its shape is told."""
+    """An impedance or admittance against frequency; of a bare ceramic where its shape is told.
+
+    `reference` is the impedance that waves are told against, `shunt` the resistor between the
+    device and ground over which a gain was taken, `band` the frequencies that are kept.
+    """
 
     kind: Literal["impedance"]
     columns: ImpedanceColumns | None = None
     bar: CeramicBar | None = None
     disc: CeramicDisc | None = None
     correct: Literal["phase 180 deg", "phase sign"] | None = None
+    reference: Annotated[si.Ohm, RESISTANCE] | None = None
+    shunt: Annotated[si.Ohm, RESISTANCE] | None = None
+    band: Band | None = None
 
 
 @dataclass(frozen=True)
@@ -88,6 +110,7 @@ class DescribedResponse(Described):
     x: Annotated[si.Metre, PLACE] | None = None
     y: Annotated[si.Metre, PLACE] | None = None
     correct: Literal["phase 180 deg", "phase sign"] | None = None
+    band: Band | None = None
 
 
 @dataclass(frozen=True)
@@ -138,13 +161,20 @@ class TimeColumns:
     voltage: Column | None = None
 
 
+@dataclass(frozen=True)
+class DecayColumns(TimeColumns):
+    """Time, and a motion or any `signal` that follows it."""
+
+    signal: Column | None = None
+
+
 @si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedRingDown(Described):
-    """Motion against time after the drive was switched off."""
+    """Motion against time after the drive was switched off, or a signal that follows it."""
 
     kind: Literal["ring-down"]
-    columns: TimeColumns
+    columns: DecayColumns
 
 
 @si.checked_numbers

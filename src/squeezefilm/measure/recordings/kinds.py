@@ -107,11 +107,13 @@ class GridScan:
 
 @dataclass(frozen=True, eq=False)
 class RingDown:
-    """Displacement (m) against `time` (s) after the drive was switched off, both (points,)."""
+    """Displacement (m, or of a signal that follows it in `unit`) against `time` (s) after the drive
+    was switched off, both (points,)."""
 
     time: si.SecondArray
     displacement: si.MetreArray
     told: Told = field(default_factory=Told)
+    unit: str = "m"
 
     def __post_init__(self) -> None:
         si.require("time", self.time, si.Unit("s"))

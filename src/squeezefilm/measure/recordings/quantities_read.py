@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,12 +22,15 @@ from squeezefilm.hard_limits import (
 )
 from squeezefilm.measure.recordings.described import CONVENTIONS, MOST_VOLTAGE, Column, Given
 from squeezefilm.measure.recordings.description import Description
+from squeezefilm.measure.recordings.files.raw_table import RawTable
 from squeezefilm.measure.recordings.kinds import Told
-from squeezefilm.measure.recordings.raw_table import RawTable
 
 _SCALE = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)\s*")
 _DECIBELS = re.compile(r"\s*dB\s+re\s+(\S.*?)\s*")
-_IN_DECIBELS = ("magnitude", "admittance_magnitude", "displacement", "velocity")
+# Of two alike 0 dB stand for 1.
+_RATIOS = ("reflection", "transmission", "gain")
+_IN_DECIBELS = ("magnitude", "admittance_magnitude", "displacement", "velocity", "reflection",
+                "transmission", "gain")  # fmt: skip
 _MOST_DECIBELS = 600.0
 _LEAST_ROWS = 3
 
@@ -42,6 +45,7 @@ class Quantity(NamedTuple):
 
 _M, _HZ, _S, _N, _V = (si.Unit(symbol) for symbol in ("m", "Hz", "s", "N", "V"))
 _KG, _DAMPING = si.Unit("kg"), si.Unit("N*s/m")
+_FARAD, _HENRY = si.Unit("F"), si.Unit("H")
 _OHM, _SIEMENS, _RAD, _ONE = (si.Unit(symbol) for symbol in ("ohm", "S", "rad", "1"))
 _SPEED, _PER_VOLT, _SPEED_PER_VOLT = si.Unit("m/s"), si.Unit("m/V"), si.Unit("m/s/V")
 
@@ -53,6 +57,19 @@ QUANTITIES: dict[str, Quantity] = {
     "reactance": Quantity(_OHM, 1e12),
     "conductance": Quantity(_SIEMENS, 1e6),
     "susceptance": Quantity(_SIEMENS, 1e6),
+    "series_capacitance": Quantity(_FARAD, 1.0),
+    "parallel_capacitance": Quantity(_FARAD, 1.0),
+    "series_inductance": Quantity(_HENRY, 1e6),
+    "parallel_inductance": Quantity(_HENRY, 1e6),
+    "parallel_resistance": Quantity(_OHM, 1e15),
+    "quality_factor": Quantity(_ONE, 1e9),
+    "dissipation_factor": Quantity(_ONE, 1e9),
+    "reflection": Quantity(_ONE, 10.0),
+    "reflection_imaginary": Quantity(_ONE, 10.0),
+    "transmission": Quantity(_ONE, 10.0),
+    "transmission_imaginary": Quantity(_ONE, 10.0),
+    "gain": Quantity(_ONE, 1e6),
+    "shunt_voltage": Quantity(_V, MOST_VOLTAGE),
     "phase": Quantity(_RAD, 1e6),
     "displacement": Quantity(_M, VIBRATION.most),
     "displacement_imaginary": Quantity(_M, VIBRATION.most),
@@ -171,6 +188,13 @@ class Reading:
         self.facts.append((words(name), f"{low} to {high}, from {said}"))
         return np.asarray(values)
 
+    def take_any(self, name: str) -> tuple[si.FloatArray, str]:
+        """The values of a column in the unit that the description names, whichever that is."""
+        column, place = self._column(name), self._place(name)
+        self._require_own_unit(name, column, place)
+        self.facts.append((words(name), f"from column {place + 1} in {column.unit}"))
+        return self.table.values[:, place], column.unit
+
     def given_voltage(self, given: Given) -> si.Volt:
         """The zero-to-peak amplitude (V) of a voltage that was the same throughout."""
         volts = given.amplitude * CONVENTIONS[given.given_as]
@@ -180,6 +204,8 @@ class Reading:
 
     def _column(self, name: str) -> Column:
         found: Column = getattr(self.columns, name)
+        if found.unit.strip() == "dB" and name in _RATIOS:
+            return replace(found, unit="dB re 1 1")
         return found
 
     def _place(self, name: str) -> int:

@@ -7,27 +7,33 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, cast
 
+from squeezefilm.config import load_text
 from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.measure.recordings.analysers import is_4294a, read_4294a
 from squeezefilm.measure.recordings.assembled import assembled, joined_sweeps
 from squeezefilm.measure.recordings.described import Described
 from squeezefilm.measure.recordings.description import (
     KINDS,
-    DescribedImpedance,
     DescribedSweeps,
     Description,
     load_description,
 )
 from squeezefilm.measure.recordings.doubts import doubts_of
+from squeezefilm.measure.recordings.files.analysers import is_4294a, read_4294a
+from squeezefilm.measure.recordings.files.instruments import recognised
+from squeezefilm.measure.recordings.files.matlab import read_matlab
+from squeezefilm.measure.recordings.files.raw_table import RawTable
+from squeezefilm.measure.recordings.files.sound import read_wav
+from squeezefilm.measure.recordings.files.text_table import decoded, read_text_table
+from squeezefilm.measure.recordings.files.touchstone import SUFFIX as TOUCHSTONE
+from squeezefilm.measure.recordings.files.touchstone import read_touchstone
+from squeezefilm.measure.recordings.files.universal import SUFFIXES, read_universal
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, Recording
-from squeezefilm.measure.recordings.matlab import read_matlab
+from squeezefilm.measure.recordings.proposed import Proposal, proposed
 from squeezefilm.measure.recordings.quantities_read import Reading
-from squeezefilm.measure.recordings.raw_table import RawTable
-from squeezefilm.measure.recordings.text_table import read_text_table
-from squeezefilm.measure.recordings.universal import SUFFIXES, read_universal
 from squeezefilm.regular_file import read_toml_text
-from squeezefilm.results import Result, to_json
+from squeezefilm.results import Result, to_json, write_whole
 
+_TEXTS = (".csv", ".txt", ".tsv", ".dat")
 _SCANS = ("line scan", "grid scan")
 
 
@@ -88,9 +94,10 @@ class FolderCheck:
 def read_recording(path: str | Path, described: str | Path | None = None) -> Recording:
     """The recording in a file of a bench, in SI units and zero-to-peak amplitudes.
 
-    `path` is the data's file (text, Universal File, MATLAB up to version 7, an export of the 4294A)
-    or the TOML file that describes it; `described` names that file where it does not stand beside
-    the data under the same name. See ``docs/reference/measured-data.md`` for the keys.
+    `path` is the data's file (text, Touchstone, Universal File, MATLAB up to version 7, WAV) or the
+    TOML file that describes it; `described` names that file where it does not stand beside the data
+    under the same name. An export of a known instrument needs
+    none where its columns' names say all. See ``docs/reference/measured-data.md`` for the keys.
 
     Raises:
         ConfigError: a file or a description that cannot be used, with file, line and column or key;
@@ -155,7 +162,7 @@ def check_folder(folder: str | Path) -> FolderCheck:
         raise InputError(f"{root} is no folder; give one with recordings in it")
     checks, refused, read = [], [], set()
     descriptions = [one for one in sorted(root.glob("*.toml")) if _has_kind(one)]
-    themselves = [one for one in sorted(root.iterdir()) if one.is_file() and is_4294a(one)]
+    themselves = [one for one in sorted(root.iterdir()) if _says_itself(one)]
     for path in [*descriptions, *themselves]:
         if path in read:
             continue
@@ -173,6 +180,21 @@ def check_folder(folder: str | Path) -> FolderCheck:
             "beside each file of data"
         )
     return FolderCheck(tuple(checks), tuple(refused))
+
+
+def _says_itself(path: Path) -> bool:
+    """Whether a file is of an instrument that says what it holds, and needs no description."""
+    if not path.is_file() or path.with_suffix(".toml").exists():
+        return False
+    if is_4294a(path) or TOUCHSTONE.fullmatch(path.suffix.lower()):
+        return True
+    if path.suffix.lower() not in _TEXTS:
+        return False
+    try:
+        text, _ = decoded(path)
+        return recognised(text) is not None and not propose_description(path).to_confirm
+    except ConfigError:
+        return False
 
 
 def _has_kind(path: Path) -> bool:
@@ -193,9 +215,45 @@ def _found(path: Path, described: Path | None) -> tuple[Path, Description]:
         described = path.with_suffix(".toml")
     if described is not None:
         return path, load_description(described)
-    if is_4294a(path):
-        return path, Description("impedance", DescribedImpedance(kind="impedance"))
-    raise _undescribed(path)
+    proposal = propose_description(path)
+    if proposal.to_confirm:
+        columns = _table(path, Description("", Described())).columns_in_words
+        kept = f"`squeezefilm measure check {path.name} --write` writes this"
+        raise _undescribed(
+            path,
+            proposal.text,
+            f"(confirm {proposal.to_confirm}; columns of the file: {columns}; {kept})",
+        )
+    return path, Description(proposal.kind, load_text(KINDS[proposal.kind], proposal.text))
+
+
+def propose_description(path: str | Path) -> Proposal:
+    """The description that a file's instrument and columns propose, filled in.
+
+    Raises `ConfigError` for a file that cannot be read, or of which neither says what it holds.
+    """
+    table = _table(Path(path), Description("", Described()))
+    proposal = proposed(table)
+    if proposal is None:
+        lines = ('kind = "impedance"', "[columns]", 'frequency = { column = 1, unit = "Hz" }',
+                 'magnitude = { column = 2, unit = "ohm" }',
+                 'phase = { column = 3, unit = "deg" }')  # fmt: skip
+        kinds = ", ".join(f'"{one}"' for one in KINDS)
+        besides = f"(kinds: {kinds}; columns of the file: {table.columns_in_words})"
+        raise _undescribed(Path(path), "\n".join(lines), besides)
+    return proposal
+
+
+def write_description(path: str | Path) -> Path:
+    """Write the proposed description beside a file and answer with its path.
+
+    Raises `ConfigError` as `propose_description` does, and `InputError` where one is there.
+    """
+    beside = Path(path).with_suffix(".toml")
+    if beside.exists():
+        raise InputError(f"{beside.name} is there already; delete it to have another proposed")
+    write_whole(beside, propose_description(path).text)
+    return beside
 
 
 def _data_of(path: Path, said: Described) -> Path:
@@ -226,21 +284,20 @@ def _table(file: Path, description: Description) -> RawTable:
         return read_matlab(file)
     if suffix in (".xls", ".xlsx", ".ods"):
         raise ConfigError("is a spreadsheet; save its table as CSV", file=file)
+    if TOUCHSTONE.fullmatch(suffix):
+        return read_touchstone(file)
+    if suffix == ".wav":
+        return read_wav(file)
     if is_4294a(file):
         return read_4294a(file)
     return read_text_table(file, description.said)
 
 
-def _undescribed(path: Path) -> ConfigError:
+def _undescribed(path: Path, text: str, besides: str) -> ConfigError:
     """What to write where nothing says what the columns of a file are."""
-    empty = Description("", Described())
-    columns = _table(path, empty).columns_in_words
-    kinds = ", ".join(f'"{one}"' for one in KINDS)
+    shown = "\n".join(f"  {line}" for line in text.strip().split("\n"))
     return ConfigError(
-        f"nothing says what its columns hold; write {path.with_suffix('.toml').name} beside it, "
-        "for "
-        'instance\n  kind = "impedance"\n  [columns]\n  frequency = { column = 1, unit = "Hz" }\n'
-        '  magnitude = { column = 2, unit = "ohm" }\n  phase = { column = 3, unit = "deg" }\n'
-        f"(kinds: {kinds}; columns of the file: {columns})",
+        f"nothing says for sure what its columns hold; write {path.with_suffix('.toml').name} "
+        f"beside it, for instance\n{shown}\n{besides}",
         file=path,
     )

@@ -111,11 +111,14 @@ def scattered(
 
 def _ring_down(figure: Figure, ring: kinds.RingDown) -> None:
     upper, lower = figure.subplots(2, 1)
-    _signal(upper, ring.time, 1e6 * ring.displacement)
+    name, unit, scale = "displacement", "µm", 1e6
+    if ring.unit != "m":
+        name, unit, scale = "signal", ring.unit, 1.0
+    _signal(upper, ring.time, scale * ring.displacement)
     few = slice(0, min(200, ring.time.size))
-    lower.plot(1e3 * ring.time[few], 1e6 * ring.displacement[few], **_POINTS)
-    upper.set(ylabel="displacement (µm)", xlabel="time (ms)")
-    lower.set(ylabel="its beginning (µm)", xlabel="time (ms)")
+    lower.plot(1e3 * ring.time[few], scale * ring.displacement[few], **_POINTS)
+    upper.set(ylabel=f"{name} ({unit})", xlabel="time (ms)")
+    lower.set(ylabel=f"its beginning ({unit})", xlabel="time (ms)")
 
 
 def _signals(figure: Figure, signals: kinds.RawSignals) -> None:

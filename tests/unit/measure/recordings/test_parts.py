@@ -11,16 +11,16 @@ from tests.unit.measure.recordings.bench_files import export_4294a, impedance_te
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError
 from squeezefilm.measure.recordings import kinds
-from squeezefilm.measure.recordings.analysers import is_4294a, read_4294a
 from squeezefilm.measure.recordings.assembled import assembled
 from squeezefilm.measure.recordings.described import CONVENTIONS
 from squeezefilm.measure.recordings.description import KINDS, load_description
 from squeezefilm.measure.recordings.doubts import doubts_of
+from squeezefilm.measure.recordings.files.analysers import is_4294a, read_4294a
+from squeezefilm.measure.recordings.files.raw_table import RawTable
+from squeezefilm.measure.recordings.files.text_table import decoded, read_text_table
 from squeezefilm.measure.recordings.motions import motion_of, moved_quantity
 from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
-from squeezefilm.measure.recordings.raw_table import RawTable
 from squeezefilm.measure.recordings.rows import both_rows, require_rising, rising_order
-from squeezefilm.measure.recordings.text_table import decoded, read_text_table
 
 LINE = """\
 kind = "line scan"

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from squeezefilm.errors import ConfigError
 from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.files.universal import read_universal
 from squeezefilm.measure.recordings.read import check_recording, read_recording
-from squeezefilm.measure.recordings.universal import read_universal
 
 F = np.linspace(29e3, 31e3, 41)
 H = 1e-7 / (1 - (F / 30e3) ** 2 + 1j * F / 30e3 / 60)

@@ -30,7 +30,7 @@ _KEPT = 2e-3
 @dataclass(frozen=True, eq=False)
 class RingDownFit:
     """A decay: frequency (Hz) and Q of what rings longest, its amplitude (m) when the recording
-    begins.
+    begins (all lengths in the recording's unit, where it holds another signal).
 
     `damping_rise` (1/m) says how the loss 1/Q rises with the amplitude, 1/Q = (1/Q0)(1 + r a), and
     `frequency_rise` (1/m²) how the frequency does, f = f0 (1 + s a²); both None where what was
@@ -309,7 +309,7 @@ class _FittedDecay:
             if bent is not None
             else "",
         )
-        size, level = self.size, self.level
+        size, level, unit = self.size, self.level, self.recording.unit
         return RingDownFit(
             recording=self.recording,
             time=self.decay.t,
@@ -318,8 +318,12 @@ class _FittedDecay:
             frequency=frequency,
             quality_factor=quality,
             amplitude=amplitude,
-            damping_rise=bent.estimate(4, "1/m", 1 / size, level) if bent is not None else None,
-            frequency_rise=bent.estimate(5, "1/m2", size**-2, level) if bent is not None else None,
+            damping_rise=bent.estimate(4, f"1/{unit}", 1 / size, level)
+            if bent is not None
+            else None,
+            frequency_rise=bent.estimate(5, f"1/{unit}2", size**-2, level)
+            if bent is not None
+            else None,
             second=self._straight(1)[:2] if self.two else None,
             envelope_time=self.blocks.time,
             envelope=np.abs(w),
@@ -336,7 +340,7 @@ class _FittedDecay:
             inverse_of(loss),
             fit.estimate(
                 lambda _, weights: self.size * float(np.hypot(*weights[2 * k : 2 * k + 2])),
-                "m",
+                self.recording.unit,
                 positive=True,
                 level=level,
             ),
@@ -344,6 +348,6 @@ class _FittedDecay:
 
     def _slight(self, bent: _Bent) -> tuple[Estimate, Estimate, Estimate]:
         """Frequency, Q and first amplitude, the former two of slight amplitudes."""
-        frequency = bent.estimate(0, "Hz", 1.0, self.level)
+        frequency, unit = bent.estimate(0, "Hz", 1.0, self.level), self.recording.unit
         loss = bent.estimate(1, "1", 1 / (np.pi * frequency.value), self.level)
-        return frequency, inverse_of(loss), bent.estimate(2, "m", self.size, self.level)
+        return frequency, inverse_of(loss), bent.estimate(2, unit, self.size, self.level)

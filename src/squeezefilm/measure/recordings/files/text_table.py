@@ -20,7 +20,13 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError, QuantityError
 from squeezefilm.hard_limits import RECORDING_BYTES
 from squeezefilm.measure.recordings.described import Described
-from squeezefilm.measure.recordings.raw_table import RawTable
+from squeezefilm.measure.recordings.files.instruments import (
+    recognised,
+    table_lines,
+    times_of,
+    with_meaning,
+)
+from squeezefilm.measure.recordings.files.raw_table import RawTable
 from squeezefilm.regular_file import read_regular
 
 DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ",", "blank": None}
@@ -40,9 +46,11 @@ class _Notation:
     cells: int
 
     def split(self, line: str) -> list[str]:
-        """The cells of a line, without quotation marks; a delimiter may end the line."""
+        """The cells of a line, without quotation marks; empty ones may end it."""
         cells = [cell.strip(" \t\"'") for cell in line.split(self.delimiter)]
-        return cells[:-1] if len(cells) > self.cells > 0 and not cells[-1] else cells
+        while len(cells) > self.cells > 0 and not cells[-1]:
+            cells.pop()
+        return cells
 
     def number(self, cell: str) -> float:
         """The number in a cell. Raises `ValueError` for what is none."""
@@ -105,17 +113,31 @@ def read_text_table(path: Path, said: Described | None = None) -> RawTable:
     others, and for a cell that is no finite number.
     """
     text, notes = decoded(path)
-    lines = text.split("\n")
+    instrument = recognised(text)
+    try:
+        lines = table_lines(text.split("\n"), instrument)
+        times = None if instrument is None else times_of(text, instrument)
+    except ConfigError as error:
+        raise ConfigError(str(error), file=path) from None
     numbered = [
         (number, line)
         for number, line in enumerate(lines, 1)
         if line.strip() and not line.lstrip().startswith(_COMMENTS)
     ]
-    notation = _notation(numbered, said, path)
+    single = instrument is not None and instrument.single
+    notation = _notation(numbered, said, path, 1 if single else 2)
     first = next(k for k, (_, line) in enumerate(numbered) if notation.is_row(line))
     rows = numbered[first:]
     values = _values(rows, notation, path)
-    header_line, names = _names(lines, rows[0][0], notation, said, path)
+    if instrument is not None and len(instrument.names) >= notation.cells:
+        header_line, names = None, instrument.names[: notation.cells]
+    else:
+        header_line, names = _names(lines, rows[0][0], notation, said, path)
+    if instrument is not None and times is not None:
+        count = values[:, 0] if instrument.counted else np.arange(values.shape[0])
+        values = values[:, 1:] if instrument.counted else values
+        names = ("Time (s)", *(names[1:] if instrument.counted else names))
+        values = np.column_stack([times[0] + times[1] * count, values])
     before = [number for number, _ in numbered[:first] if number != header_line]
     if before:
         notes.append(f"{len(before)} lines before the table were not read as numbers")
@@ -131,11 +153,14 @@ def read_text_table(path: Path, said: Described | None = None) -> RawTable:
         doubts=() if cut is None else (cut,),
     )
     table.require_finite()
-    return table
+    return with_meaning(table, instrument)
 
 
-def _notation(numbered: Sequence[tuple[int, str]], said: Described | None, path: Path) -> _Notation:
-    """The notation in which most lines are rows of numbers; of equals the first."""
+def _notation(
+    numbered: Sequence[tuple[int, str]], said: Described | None, path: Path, least: int
+) -> _Notation:
+    """The notation in which most lines are rows of at least so many numbers; of equals the
+    first."""
     sample = [line for _, line in numbered[:_SAMPLE]] + [line for _, line in numbered[-20:]]
     delimiter = None if said is None else said.delimiter
     decimal = None if said is None else said.decimal
@@ -151,7 +176,7 @@ def _notation(numbered: Sequence[tuple[int, str]], said: Described | None, path:
                 cells = trial.split(line)
                 while cells and not cells[-1]:
                     cells.pop()
-                if len(cells) > 1 and all(map(trial.is_number, cells)):
+                if len(cells) >= least and all(map(trial.is_number, cells)):
                     counts[len(cells)] += 1
             if counts and (found := counts.most_common(1)[0])[1] > most:
                 best, most = _Notation(one, point, found[0]), found[1]

@@ -13,16 +13,26 @@ import numpy as np
 
 from squeezefilm.errors import ConfigError
 from squeezefilm.hard_limits import RECORDING_BYTES
-from squeezefilm.measure.recordings.raw_table import RawTable
-from squeezefilm.measure.recordings.text_table import decoded
+from squeezefilm.measure.recordings.circuits_read import IMPEDANCES
+from squeezefilm.measure.recordings.files.raw_table import Held, RawTable
+from squeezefilm.measure.recordings.files.text_table import decoded
 from squeezefilm.regular_file import opened
 
 _HEAD = re.compile(r"\s*\"?4294A\b")
 _SAID = re.compile(r'\s*"([^":]+):\s*([^"]*)"\s*$')
-# What the head says was measured, and what traces A and B then hold. Others were never seen here.
-_PARAMETERS: dict[str, tuple[tuple[str, str], tuple[str, str]]] = {
-    "IMPEDANCE MAG PHASE (DEG)": (("magnitude", "ohm"), ("phase", "deg")),
-}
+_COLUMNS = ("real", "imaginary", "memory real", "memory imaginary")
+# What traces A and B hold, by the words of the head's parameter.
+_SYMBOLS = {
+    "LS": ("series_inductance", "H"), "LP": ("parallel_inductance", "H"),
+    "CS": ("series_capacitance", "F"), "CP": ("parallel_capacitance", "F"),
+    "RS": ("resistance", "ohm"), "R": ("resistance", "ohm"), "RP": ("parallel_resistance", "ohm"),
+    "X": ("reactance", "ohm"), "G": ("conductance", "S"), "B": ("susceptance", "S"),
+    "Q": ("quality_factor", "1"), "D": ("dissipation_factor", "1"),
+    "|Z|": ("magnitude", "ohm"), "Z": ("magnitude", "ohm"), "IMPEDANCE": ("magnitude", "ohm"),
+    "|Y|": ("admittance_magnitude", "S"), "Y": ("admittance_magnitude", "S"),
+    "ADMITTANCE": ("admittance_magnitude", "S"),
+}  # fmt: skip
+_PARTS = {"ohm": ("resistance", "reactance"), "S": ("conductance", "susceptance")}
 
 
 def is_4294a(path: Path) -> bool:
@@ -39,7 +49,7 @@ class _Trace:
     """One trace as it stands in the file: its letter, the rows and their lines."""
 
     letter: str
-    rows: list[tuple[float, float, float]]
+    rows: list[tuple[float, ...]]
     lines: list[int]
 
 
@@ -68,7 +78,7 @@ def read_4294a(path: Path) -> RawTable:
     frequency = np.array([row[0] for row in first.rows])
     columns, names = [frequency], ["Frequency"]
     for trace in traces:
-        numbers = np.array(trace.rows).reshape(-1, 3)
+        numbers = np.array(trace.rows).reshape(len(trace.rows), -1)
         other = (
             np.flatnonzero(numbers[:, 0] != frequency)
             if numbers.shape[0] == frequency.size
@@ -82,8 +92,8 @@ def read_4294a(path: Path) -> RawTable:
                 line=trace.lines[int(other[0])],
                 column=1,
             )
-        columns += [numbers[:, 1], numbers[:, 2]]
-        names += [f"{trace.letter} real", f"{trace.letter} imaginary"]
+        columns += list(numbers[:, 1:].T)
+        names += [f"{trace.letter} {part}" for part in _COLUMNS[: numbers.shape[1] - 1]]
     notes += [f"the analyser says {key.lower()}: {value}" for key, value in head.items()
               if key in ("OSC LEVEL", "DC BIAS", "SWEEP TYPE")]  # fmt: skip
     table = RawTable(
@@ -94,22 +104,39 @@ def read_4294a(path: Path) -> RawTable:
         lines=np.array(first.lines),
         notes=tuple(notes),
         described=_described(head, names),
+        sure=True,
+        instrument="4294A",
+        specified=(40.0, 110e6),
     )
     table.require_finite()
     return table
 
 
-def _described(head: dict[str, str], names: Sequence[str]) -> tuple[tuple[str, str, str], ...]:
-    """Which column holds what by the analyser's own words; nothing for a parameter not known."""
-    meant = _PARAMETERS.get(head.get("MEASURE PARAMETER", ""))
-    if meant is None or "A real" not in names or "B real" not in names:
+def _described(head: dict[str, str], names: Sequence[str]) -> tuple[Held, ...]:
+    """Which column holds what by the analyser's own words; nothing for a parameter not known, or
+    one that leaves the sign of the reactance open."""
+    said = head.get("MEASURE PARAMETER", "").upper()
+    words = re.findall(r"\|?[A-Z]+\|?", said)
+    found = [_SYMBOLS[word] for word in words if word in _SYMBOLS]
+    if "A real" not in names or not found:
         return ()
-    (first, first_unit), (second, second_unit) = meant
-    return (
-        ("frequency", "Frequency", "Hz"),
-        (first, "A real", first_unit),
-        (second, "B real", second_unit),
-    )
+    if {"COMPLEX", "COMP"} & set(words):
+        meant = [(part, "ohm") for part in _PARTS["ohm"]]
+        return _held(meant, ("A real", "A imaginary"))
+    if {"REAL", "IMAG"} <= set(words) or {"REAL", "IMAGINARY"} <= set(words):
+        meant = [(part, found[0][1]) for part in _PARTS[found[0][1]]]
+    elif {"PHASE", "THETA"} & set(words) or "Θ" in said:
+        meant = [found[0], ("phase", "rad" if "RAD" in words else "deg")]
+    else:
+        meant = found
+    if tuple(name for name, _ in meant) not in IMPEDANCES or "B real" not in names:
+        return ()
+    return _held(meant, ("A real", "B real"))
+
+
+def _held(meant: Sequence[tuple[str, str]], columns: Sequence[str]) -> tuple[Held, ...]:
+    pairs = zip(meant, columns, strict=True)
+    return (("frequency", "Frequency", "Hz"), *((name, at, unit) for (name, unit), at in pairs))
 
 
 def _read(lines: Sequence[str], path: Path) -> tuple[dict[str, str], list[_Trace]]:
@@ -125,17 +152,18 @@ def _read(lines: Sequence[str], path: Path) -> tuple[dict[str, str], list[_Trace
             elif not traces:
                 head[match[1]] = match[2].strip()
         elif traces and not line.lstrip().startswith('"'):
-            traces[-1].rows.append(_row(line, number, path))
+            rows = traces[-1].rows
+            rows.append(_row(line, number, path, len(rows[0]) if rows else 0))
             traces[-1].lines.append(number)
     return head, traces
 
 
-def _row(line: str, number: int, path: Path) -> tuple[float, float, float]:
+def _row(line: str, number: int, path: Path, cells_before: int) -> tuple[float, ...]:
     cells = line.split()
-    if len(cells) != 3:
+    if len(cells) not in (3, 5) or len(cells) != (cells_before or len(cells)):
         raise ConfigError(
-            f"has {len(cells)} cells, and a row of a trace has three (frequency, real, imaginary); "
-            "export it again",
+            f"has {len(cells)} cells, and a row of a trace has three (frequency, real, imaginary), "
+            "or five with a trace in memory; export it again",
             file=path,
             line=number,
             column=min(len(cells), 3),
@@ -151,4 +179,4 @@ def _row(line: str, number: int, path: Path) -> tuple[float, float, float]:
                 f"'{cell[:40]}' is no finite number", file=path, line=number, column=column
             )
         found.append(value)
-    return found[0], found[1], found[2]
+    return tuple(found)

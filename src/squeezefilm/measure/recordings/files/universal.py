@@ -15,7 +15,7 @@ from squeezefilm import quantities as si
 from squeezefilm.errors import ConfigError
 from squeezefilm.hard_limits import RECORDING_BYTES
 from squeezefilm.isolated_reading import Read, read_isolated
-from squeezefilm.measure.recordings.raw_table import RawTable
+from squeezefilm.measure.recordings.files.raw_table import RawTable
 from squeezefilm.regular_file import read_regular
 
 SUFFIXES = (".uff", ".unv", ".uf")

@@ -13,6 +13,9 @@ from squeezefilm.errors import ConfigError, QuantityError
 
 _UNIT_IN_NAME = re.compile(r"[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*$")
 
+Held = tuple[str, str | int, str]
+"""A quantity, the column that holds it (name, or number from 1), and its unit."""
+
 
 @dataclass(frozen=True, eq=False)
 class RawTable:
@@ -22,7 +25,8 @@ class RawTable:
     `lines` are the rows' lines in the file, counted from 1 (None in a file that has no lines),
     `header_line` that of the names. `format` is what the file was read as; `notes` and `doubts` are
     what a person should know of the reading. `described` are the quantities that the file itself
-    says its columns hold, by name: column and unit.
+    says its columns hold, `sure` where its head names the `instrument`, which is `specified` from
+    and to these frequencies (Hz); `reference` (Ω) is that of its waves.
     """
 
     file: Path
@@ -33,7 +37,11 @@ class RawTable:
     header_line: int | None = None
     notes: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
-    described: tuple[tuple[str, str, str], ...] = ()
+    described: tuple[Held, ...] = ()
+    sure: bool = False
+    reference: si.Ohm = 50.0
+    instrument: str = ""
+    specified: tuple[float, float] | None = None
 
     def error(self, message: str, row: int | None = None, column: int | None = None) -> ConfigError:
         """An error at a row and a column (both from 0), with the line and the column from 1."""
@@ -44,6 +52,20 @@ class RawTable:
             message = f"value {row + 1}: {message}"
         at = None if column is None else column + 1
         return ConfigError(message, file=self.file, line=line, column=at)
+
+    def outside(self, frequency: si.HertzArray) -> str | None:
+        """A doubt about a sweep that leaves the frequencies for which its instrument is
+        specified."""
+        if self.specified is None:
+            return None
+        low, high = self.specified
+        if low <= frequency[0] and frequency[-1] <= high:
+            return None
+        swept, specified = (
+            " to ".join(si.format_quantity(float(one), si.Unit("Hz")) for one in pair)
+            for pair in ((frequency[0], frequency[-1]), self.specified)
+        )
+        return f"the sweep goes from {swept}; the {self.instrument} is specified from {specified}"
 
     def index(self, wanted: str | int) -> int | None:
         """The place (from 0) of a column by its number from 1, or by its name; None if none is so

@@ -1,0 +1,97 @@
+"""The impedance that two recorded quantities make: |Z| and phase, capacitance and loss, reflection,
+two voltages and a shunt."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from squeezefilm import quantities as si
+
+
+class Fixture(NamedTuple):
+    """What stands beside the two quantities: angular frequency (rad/s), the reference impedance of
+    a network analyser (Ω), and the shunt (Ω)."""
+
+    omega: si.FloatArray
+    reference: si.Ohm
+    shunt: si.Ohm
+
+
+# NumPy's types of quotients are wider than any of these arrays.
+Made = Callable[[Any, Any, Fixture], Any]
+"""The impedance (Ω) that two recorded quantities make, all (points,)."""
+
+
+def _polar(size: si.FloatArray, phase: si.FloatArray) -> si.ComplexArray:
+    return np.asarray(size * np.exp(1j * phase))
+
+
+def _beside(size: si.FloatArray, part: si.FloatArray) -> si.FloatArray:
+    """The resistive part of what has this size and this reactive part."""
+    return np.asarray(np.sqrt(np.maximum(size**2 - part**2, 0)))
+
+
+def _reflected(wave: si.ComplexArray, at: Fixture) -> si.ComplexArray:
+    """Of a one-port at the end of a line."""
+    return np.asarray(at.reference * (1 + wave) / (1 - wave))
+
+
+def _through(wave: si.ComplexArray, at: Fixture) -> si.ComplexArray:
+    """Of what stands in series between two ports."""
+    return np.asarray(2 * at.reference * (1 - wave) / wave)
+
+
+def _divided(gain: si.ComplexArray, at: Fixture) -> si.ComplexArray:
+    """Of what stands above a shunt, by the shunt's voltage over that of both."""
+    return np.asarray(at.shunt * (1 / gain - 1))
+
+
+IMPEDANCES: Mapping[tuple[str, ...], Made] = {
+    ("magnitude", "phase"): lambda z, phase, at: _polar(z, phase),
+    ("resistance", "reactance"): lambda r, x, at: r + 1j * x,
+    ("admittance_magnitude", "phase"): lambda y, phase, at: 1 / _polar(y, phase),
+    ("conductance", "susceptance"): lambda g, b, at: 1 / (g + 1j * b),
+    ("series_capacitance", "resistance"): lambda c, r, at: r + 1 / (1j * at.omega * c),
+    ("series_capacitance", "dissipation_factor"): lambda c, d, at: (d - 1j) / (at.omega * c),
+    ("series_capacitance", "quality_factor"): lambda c, q, at: (1 / q - 1j) / (at.omega * c),
+    ("series_inductance", "resistance"): lambda l, r, at: r + 1j * at.omega * l,  # noqa: E741
+    ("series_inductance", "quality_factor"): lambda l, q, at: (  # noqa: E741
+        at.omega * np.abs(l) / q + 1j * at.omega * l
+    ),
+    ("parallel_capacitance", "conductance"): lambda c, g, at: 1 / (g + 1j * at.omega * c),
+    ("parallel_capacitance", "dissipation_factor"): lambda c, d, at: 1 / (at.omega * c * (d + 1j)),
+    ("parallel_capacitance", "quality_factor"): lambda c, q, at: 1 / (at.omega * c * (1 / q + 1j)),
+    ("parallel_capacitance", "parallel_resistance"): lambda c, r, at: (
+        1 / (1 / r + 1j * at.omega * c)
+    ),
+    ("parallel_inductance", "conductance"): lambda l, g, at: (  # noqa: E741
+        1 / (g + 1 / (1j * at.omega * l))
+    ),
+    ("parallel_inductance", "quality_factor"): lambda l, q, at: (  # noqa: E741
+        1 / ((1 / (np.abs(l) * q) - 1j / l) / at.omega)
+    ),
+    ("parallel_inductance", "parallel_resistance"): lambda l, r, at: (  # noqa: E741
+        1 / (1 / r + 1 / (1j * at.omega * l))
+    ),
+    ("magnitude", "series_capacitance"): lambda z, c, at: (
+        _beside(z, 1 / (at.omega * c)) - 1j / (at.omega * c)
+    ),
+    ("magnitude", "series_inductance"): lambda z, l, at: (  # noqa: E741
+        _beside(z, at.omega * l) + 1j * at.omega * l
+    ),
+    ("magnitude", "parallel_capacitance"): lambda z, c, at: (
+        1 / (_beside(1 / z, at.omega * c) + 1j * at.omega * c)
+    ),
+    ("magnitude", "parallel_inductance"): lambda z, l, at: (  # noqa: E741
+        1 / (_beside(1 / z, 1 / (at.omega * l)) - 1j / (at.omega * l))
+    ),
+    ("reflection", "reflection_imaginary"): lambda re, im, at: _reflected(re + 1j * im, at),
+    ("reflection", "phase"): lambda s, phase, at: _reflected(_polar(s, phase), at),
+    ("transmission", "transmission_imaginary"): lambda re, im, at: _through(re + 1j * im, at),
+    ("transmission", "phase"): lambda s, phase, at: _through(_polar(s, phase), at),
+    ("gain", "phase"): lambda h, phase, at: _divided(_polar(h, phase), at),
+}
+"""The pairs of which one must be named, those first that say most, and what each makes."""

@@ -1,0 +1,1 @@
+"""Files of instruments as tables of numbers, whatever they hold."""

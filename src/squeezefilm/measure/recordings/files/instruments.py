@@ -1,0 +1,207 @@
+"""Instruments recognised by the first lines of their exports, and what the columns of a table hold
+by their names: the table `instruments.toml`, read here."""
+
+from __future__ import annotations
+
+import functools
+import re
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from squeezefilm import quantities as si
+from squeezefilm.errors import ConfigError, QuantityError
+from squeezefilm.measure.recordings.circuits_read import IMPEDANCES
+from squeezefilm.measure.recordings.files.raw_table import Held, RawTable
+
+_HEAD_CHARACTERS = 4000
+_UNIT = re.compile(r"\s*[(\[]([^()\[\]]*)[)\]]|\s+in\s+(\S+)$")
+_BESIDE_A_NAME = re.compile(r"^trace\s*\d*\s*:?\s*|^tr\d+\s+|[-_ ]data$|^measurement\s*:?\s*")
+_SYMBOLS = {"º": "deg", "degree": "deg", "degrees": "deg", "degre": "deg", "siemens": "S",
+            "volt": "V", "volts": "V", "second": "s", "seconds": "s", "sec": "s", "ohms": "ohm",
+            "db": "dB", "u": "1", "": "1"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Instrument:
+    """One entry of the table: see there."""
+
+    name: str
+    head: str
+    range: tuple[float, float] | None = None
+    begin: str = ""
+    end: str = ""
+    start_column: int = 1
+    names: tuple[str, ...] = ()
+    single: bool = False
+    counted: bool = False
+    start: str = ""
+    step: str = ""
+
+
+@dataclass(frozen=True)
+class _Vocabulary:
+    """What a column holds by its name, and the unit meant where the name has none."""
+
+    quantity: str
+    names: re.Pattern[str]
+    unit: str
+    dimension: str
+
+
+@functools.cache
+def _tables() -> tuple[tuple[Instrument, ...], tuple[_Vocabulary, ...]]:
+    text = Path(__file__).with_name("instruments.toml").read_text(encoding="utf-8")
+    tree = tomllib.loads(text)
+    instruments = []
+    for entry in tree["instrument"]:
+        entry["start_column"] = entry.pop("from", 1)
+        entry |= {key: tuple(entry[key]) for key in ("range", "names") if key in entry}
+        instruments.append(Instrument(**entry))
+    words = tuple(
+        _Vocabulary(one["quantity"], re.compile(one["names"]), one["unit"], one.get("with", ""))
+        for one in tree["column"]
+    )
+    return tuple(instruments), words
+
+
+def recognised(text: str) -> Instrument | None:
+    """The instrument whose export begins as a text does; None for one that is not known."""
+    head = text[:_HEAD_CHARACTERS]
+    for instrument in _tables()[0]:
+        if re.search(instrument.head, head, re.MULTILINE | re.IGNORECASE):
+            return instrument
+    return None
+
+
+def held_by(names: Sequence[str]) -> tuple[Held, ...]:
+    """What columns with these names hold: frequency with the first pair that makes an impedance, or
+    time with voltages; nothing where the names do not say."""
+    found: dict[str, list[tuple[int, str]]] = {}
+    for number, name in enumerate(names, 1):
+        for quantity, unit in _read_name(name):
+            found.setdefault(quantity, []).append((number, unit))
+    if "frequency" in found:
+        wanted = _pair(found)
+        chosen = [("frequency", found["frequency"][0])] if wanted else []
+        # Of an analyser with two channels the second is that over the first.
+        chosen += [(name, found[name][-1 if name in ("gain", "phase") else 0]) for name in wanted]
+    elif "time" in found:
+        chosen = [("time", found["time"][0])]
+        chosen += [("voltage", one) for one in found.get("voltage", [])]
+    else:
+        return ()
+    return tuple((name, _column(names, number), unit) for name, (number, unit) in chosen)
+
+
+def _pair(found: Mapping[str, object]) -> tuple[str, ...]:
+    for pair in IMPEDANCES:
+        if all(name in found for name in pair):
+            return pair
+    return ()
+
+
+def _column(names: Sequence[str], number: int) -> str | int:
+    """A column by its name where that is its own, or by its number."""
+    name = names[number - 1]
+    alike = [one for one in names if one.casefold() == name.casefold()]
+    return name if len(alike) == 1 and '"' not in name and "\\" not in name else number
+
+
+def _read_name(name: str) -> Iterable[tuple[str, str]]:
+    """The quantity that a column's name says, with its unit; none or one."""
+    unit, bare = "", name
+    for match in _UNIT.finditer(name):
+        symbol = (match[1] if match[1] is not None else match[2]).strip()
+        symbol = _SYMBOLS.get(symbol.casefold(), symbol)
+        if symbol == "dB" or _is_unit(symbol):
+            unit, bare = symbol, name[: match.start()] + name[match.end() :]
+    bare = _BESIDE_A_NAME.sub("", " ".join(bare.casefold().split()))
+    bare = _BESIDE_A_NAME.sub("", bare).strip(" _:\"'")
+    for word in _tables()[1]:
+        if not word.names.fullmatch(bare):
+            continue
+        said = unit or word.unit
+        if word.dimension and said != word.dimension and not _alike(said, word.dimension):
+            continue
+        if said == "dB" and word.unit not in ("1", "dB"):
+            said = f"dB re 1 {word.unit}"
+        elif said != "dB" and not _alike(said, word.unit):
+            # Seconds and siemens, both "(S)" in one maker's files.
+            said = word.unit
+        return [(word.quantity, said)]
+    return []
+
+
+def _is_unit(symbol: str) -> bool:
+    try:
+        si.parse_unit(symbol)
+    except QuantityError:
+        return False
+    return True
+
+
+def _alike(first: str, second: str) -> bool:
+    """Whether two units are of one dimension."""
+    if "dB" in (first, second):
+        return first == second
+    return si.parse_unit(first)[1] == si.parse_unit(second)[1]
+
+
+def table_lines(lines: Sequence[str], instrument: Instrument | None) -> list[str]:
+    """The lines of a file with those blanked that stand outside the first table, and cells before
+    it taken off; line numbers stay."""
+    if instrument is None:
+        return list(lines)
+    kept = list(lines)
+    if instrument.begin:
+        begins = [k for k, line in enumerate(lines) if re.match(instrument.begin, line)]
+        first = begins[0] if begins else -1
+        ends = [k for k in range(first + 1, len(lines)) if re.match(instrument.end, lines[k])]
+        if begins and not ends:
+            raise ConfigError(
+                f"the table that begins in line {first + 1} has no end: the file is cut short; "
+                "export it again"
+            )
+        last = ends[0] if ends else len(lines)
+        kept = [line if first < k < last else "" for k, line in enumerate(lines)]
+    if instrument.start_column > 1:
+        kept = [line.split(",", instrument.start_column - 1)[-1] for line in kept]
+    return kept
+
+
+def times_of(text: str, instrument: Instrument) -> tuple[float, float] | None:
+    """The first time and the interval (s) that a head says; None where rows hold their times."""
+    if not instrument.step:
+        return None
+    head = text[:_HEAD_CHARACTERS]
+    found = [
+        re.search(pattern, head, re.MULTILINE | re.IGNORECASE)
+        for pattern in (instrument.start, instrument.step)
+    ]
+    try:
+        start, step = (float(match[1]) if match else float("nan") for match in found)
+    except ValueError:
+        start, step = float("nan"), float("nan")
+    if not step > 0 or start != start:
+        raise ConfigError(
+            f"the head of the {instrument.name} does not say the first time and the interval; "
+            "export it again, with times"
+        )
+    return start, step
+
+
+def with_meaning(table: RawTable, instrument: Instrument | None) -> RawTable:
+    """A table with what its columns hold by their names, and the instrument that wrote it."""
+    described = table.described or held_by(table.names)
+    if instrument is None:
+        return replace(table, described=described)
+    return replace(
+        table,
+        format=f"{instrument.name}, {table.format}",
+        described=described,
+        sure=True,
+        instrument=instrument.name,
+        specified=instrument.range,
+    )
