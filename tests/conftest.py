@@ -78,6 +78,8 @@ def pytest_collection() -> Iterator[None]:
     finally:
         gc.enable()
         gc.freeze()
+        # Figures and solves make objects by the hundred thousand, most of which no cycle holds.
+        gc.set_threshold(100_000, 50, 100)
         # A session that is played thaws everything when it ends: each collection after it would
         # look through all that was loaded, which takes a second.
         gc.unfreeze = _leave_frozen

@@ -6,6 +6,7 @@ or a beam makes it for a plate, measured values make it for a stator.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -154,8 +155,15 @@ def working_mode(
     `beam_response` for its range and error) or as a shear plate (see `shear_working`); a disc is
     solved by Fourier harmonics; a stator is taken as measured, linear in the voltage. `pace` says
     how long a solid may take. Raises `InputError` for another theory or a disc's mode that crosses
-    no two nodal lines, and what the solvers raise.
+    no two nodal lines, and what the solvers raise. The last few are kept, so that what is kept of a
+    mode, its shape under a finger, is found again.
     """
+    si.require_one_of("theory", theory, PLATE_THEORIES)
+    return _working_mode(actuator, theory, pace)
+
+
+@functools.lru_cache(maxsize=4)
+def _working_mode(actuator: Actuator, theory: PlateTheory, pace: Pace) -> WorkingMode:
     if isinstance(actuator, AnnularStator):
         return WorkingMode(
             label=f"B(0,{round(actuator.wavelengths_around)})",
@@ -168,7 +176,6 @@ def working_mode(
         )
     if isinstance(actuator, DiscPlate):
         return _disc(actuator)
-    si.require_one_of("theory", theory, PLATE_THEORIES)
     if theory == "solid":
         return solid_working_mode(actuator, solid_mode(actuator, pace=pace))
     if theory == "shear":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -42,6 +43,7 @@ thicknesses = ["0.5 mm", "1 mm"]
 """
 
 
+@functools.cache
 def requirements(**changes: str) -> Requirements:
     """The requirements of `TEXT`, with texts in it replaced by others."""
     text = TEXT

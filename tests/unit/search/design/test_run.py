@@ -23,6 +23,8 @@ from squeezefilm.search.design.requirements import Requirements
 from squeezefilm.search.design.tolerance import Made
 from squeezefilm.search.tasks import Lost
 
+FEW = {"screened": 60, "solved": 10}
+
 
 def _made(wanted: object, one: Evaluated) -> Made:
     return Made(64, 0.9, {"power": 6}, {"power": (1.0, 2.5)}, {"sides": {"power": 0.125}})
@@ -42,10 +44,22 @@ def _search(folder: Path | None = None, **changes: int) -> DesignSearch:
 
 
 @pytest.fixture(scope="module")
-def whole() -> DesignSearch:
+def solved_tasks() -> list[tuple[Design, ...]]:
+    """What the usual search solves together, once `whole` has been searched."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def whole(solved_tasks: list[tuple[Design, ...]]) -> DesignSearch:
     """The usual search, by formula, that several tests read."""
+
+    def noted(wanted: Requirements, designs: tuple[Design, ...], level: Level) -> list[Evaluated]:
+        if level == "solved":
+            solved_tasks.append(designs)
+        return evaluated_by_formula(wanted, designs, level)
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run, "evaluate_all", evaluated_by_formula)
+        patch.setattr(run, "evaluate_all", noted)
         patch.setattr(run, "made_of", _made)
         return _search()
 
@@ -74,19 +88,13 @@ def test_the_front_is_feasible_and_nobody_beats_it(whole: DesignSearch) -> None:
     assert 0 < found.hypervolume < 1
 
 
+@pytest.mark.usefixtures("by_formula")
 def test_a_plate_is_one_task_with_voltages_over_the_whole_range(
-    by_formula: None, monkeypatch: pytest.MonkeyPatch
+    whole: DesignSearch, solved_tasks: list[tuple[Design, ...]]
 ) -> None:
-    tasks: list[tuple[Design, ...]] = []
-
-    def noted(wanted: Requirements, designs: tuple[Design, ...], level: Level) -> list[Evaluated]:
-        if level == "solved":
-            tasks.append(designs)
-        return evaluated_by_formula(wanted, designs, level)
-
-    monkeypatch.setattr(run, "evaluate_all", noted)
-    found = _search()
-    assert all(len({one.plate for one in task}) == 1 for task in tasks)
+    found = whole
+    assert solved_tasks
+    assert all(len({one.plate for one in task}) == 1 for task in solved_tasks)
     assert len(found.front) > found.plates_on_front > 8
     assert found.plates_solved <= 60 < len(found.solved)
     volts: dict[Design, set[float]] = {}
@@ -95,7 +103,7 @@ def test_a_plate_is_one_task_with_voltages_over_the_whole_range(
     assert all({5.0, 7.5, 10.0, 12.5, 15.0} <= every for every in volts.values())
     # Where no voltage may be chosen each plate is one design.
     fixed = requirements(**{', least_voltage = "5 V"': ""})
-    alone = run.search_designs(fixed, screened=60, solved=10)
+    alone = run.search_designs(fixed, **FEW)
     assert len(alone.solved) == alone.plates_solved
 
 
@@ -109,8 +117,8 @@ def test_seeds_agree() -> None:
 
 @pytest.mark.usefixtures("by_formula")
 def test_asked_again_it_computes_nothing_and_says_the_same(tmp_path: Path) -> None:
-    first = _search(tmp_path)
-    again = _search(tmp_path)
+    first = _search(tmp_path, **FEW)
+    again = _search(tmp_path, **FEW)
     assert again.computed == 0
     assert again.front == first.front
     assert again.hypervolume == first.hypervolume
@@ -119,7 +127,7 @@ def test_asked_again_it_computes_nothing_and_says_the_same(tmp_path: Path) -> No
 @pytest.mark.usefixtures("by_formula")
 def test_hosts_that_search_in_one_folder_end_with_what_all_have_solved(tmp_path: Path) -> None:
     def solved(member: int) -> set[Design]:
-        found = _search(tmp_path, member=member, screened=60, solved=10)
+        found = _search(tmp_path, member=member, **FEW)
         return {one.design for one in found.solved}
 
     first, second = solved(0), solved(1)
@@ -172,9 +180,9 @@ def test_designs_that_a_process_died_of_are_asked_again_another_time(
 ) -> None:
     with monkeypatch.context() as dying:
         dying.setattr(run, "workers", lambda **_: contextlib.nullcontext(_Deadly()))
-        lost = _search(tmp_path)
+        lost = _search(tmp_path, **FEW)
     assert any(one.reason == Lost().reason for one in lost.screened)
-    again = _search(tmp_path)
+    again = _search(tmp_path, **FEW)
     assert again.computed > 0
     assert not any(one.reason for one in again.screened)
 
@@ -254,7 +262,7 @@ def test_what_comes_to_the_front_for_a_plate_of_a_low_yield_is_asked_for_its_own
 @pytest.mark.usefixtures("by_formula")
 def test_whoever_watches_sees_the_front_grow() -> None:
     seen: list[run.Glimpse] = []
-    found = run.search_designs(requirements(), screened=60, solved=10, watch=seen.append)
+    found = run.search_designs(requirements(), **FEW, watch=seen.append)
     assert seen[-1].solved == found.plates_solved
     assert seen[0].screened_front
     assert list(seen[-1].front) == [one.evaluated for one in found.front]

@@ -44,7 +44,7 @@ def test_a_line_that_was_cut_off_costs_itself_only(tmp_path: Path) -> None:
     DesignStore(wanted, tmp_path).add([formula(wanted, d, "screened") for d in designs])
     file = tmp_path / FILE
     whole = file.read_bytes()
-    for cut in range(1, 200, 7):
+    for cut in (1, 2, 60, 120, 199):
         file.write_bytes(whole[:-cut])
         store = DesignStore(wanted, tmp_path)
         assert len(store) >= len(set(designs)) - 1

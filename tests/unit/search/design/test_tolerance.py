@@ -55,7 +55,7 @@ def test_each_tolerance_moves_what_it_names(wanted: Requirements, solved: Evalua
 
 
 def test_the_interval_is_about_the_solved_number(wanted: Requirements, solved: Evaluated) -> None:
-    made = made_of(wanted, solved, draws=32)
+    made = made_of(wanted, solved, draws=16)
     low, high = made.intervals["resonance_frequency"]
     own = solved.numbers["resonance_frequency"]
     assert low < own < high
