@@ -66,10 +66,9 @@ gate: $(VENV)/test.stamp  ## reliability: crash, kill, disk, fuzz, token, watchd
 
 # Solved anew, so that every line is seen that a test needs.
 coverage: export SQUEEZEFILM_CACHE = off
-coverage: $(VENV)/test.stamp  ## branches that the quick tests take, and which test runs which line
+coverage: $(VENV)/test.stamp  ## branches that the quick tests take
 	@failed=0; \
-	$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(QUICK)" --cov --cov-context=test --cov-report= \
-	  -p tests.costs --seconds out/test-seconds.json \
+	$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(QUICK)" --cov --cov-report= \
 	  || failed=1; \
 	$(BIN)/coverage report --skip-covered --sort=-cover; \
 	exit $$failed
@@ -85,7 +84,7 @@ nightly: $(VENV)/test.stamp  ## run what takes minutes or is repeated by the hun
 	@echo "nightly: seed $(SEED)"
 	$(call run_tests,and (nightly or hypothesis))
 
-campaign: coverage  ## what takes hours and goes on where it stopped: statistics, mutants
+campaign: $(VENV)/test.stamp  ## what takes hours and goes on where it stopped: statistics, mutants
 	@nice $(PYTEST) -n $(WORKERS) -p tests.campaign --answers campaigns/statistics.jsonl -m campaign
 	@nice $(BIN)/python tools/mutants.py --nightly --seed $(MUTANTS_SEED) --count $(COUNT) \
 	  --minutes $(MINUTES) --file campaigns/mutants-$(MUTANTS_SEED).jsonl

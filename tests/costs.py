@@ -2,6 +2,7 @@
 
     pytest -p tests.costs --costs docs/development/test-costs.md
     pytest -p tests.costs --seconds out/test-seconds.json       # of each test that passed
+    pytest -p tests.costs --within 10                           # none is begun after 10 s
 
 The time of a test is user and system time of its process and of the children that ended meanwhile,
 its fixtures included: what several tests share is counted with the first of them.
@@ -24,11 +25,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Declare what is written where."""
     parser.addoption("--costs", type=Path, help="the Markdown file of the table")
     parser.addoption("--seconds", type=Path, help="the JSON file of each test's time (s)")
+    parser.addoption("--within", type=float, help="processor time (s) after which none is begun")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Measure in every process; write in the one that hears all reports."""
-    config.pluginmanager.register(Stopwatch(), "stopwatch")
+    config.pluginmanager.register(Stopwatch(config.getoption("--within")), "stopwatch")
     if not hasattr(config, "workerinput"):
         paths = config.getoption("--costs"), config.getoption("--seconds")
         config.pluginmanager.register(Costs(*paths), "costs")
@@ -41,10 +43,10 @@ def processor_time() -> float:
 
 
 class Stopwatch:
-    """Attaches to each report the processor time since the one before."""
+    """Attaches to each report the processor time since the one before, and ends the run in time."""
 
-    def __init__(self) -> None:
-        self._before = processor_time()
+    def __init__(self, within: float | None) -> None:
+        self._before, self._within = processor_time(), within
 
     def pytest_collection_finish(self) -> None:
         """Leave imports and collection out."""
@@ -57,6 +59,8 @@ class Stopwatch:
         now = processor_time()
         report.processor_time, self._before = now - self._before, now
         report.is_slow = item.get_closest_marker("slow") is not None
+        if self._within is not None and now > self._within:
+            item.session.shouldstop = f"{self._within:g} s of processor time are spent"
         return report
 
 

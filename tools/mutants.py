@@ -1,28 +1,25 @@
 """Put small faults into the source, one at a time, and see which the tests notice.
 
-    make coverage                                 # which quick test runs which line, for how long
-    python tools/mutants.py --seed 1 --count 150 --minutes 240       # or --rooms study,lab
+    python tools/mutants.py --seed 1 --count 60         # some ten minutes; or --rooms study,lab
     python tools/mutants.py --report
 
 A sample is drawn by seed over all kinds of faults in turn. Each mutant is tried in a private copy
 of the working tree, never in the checkout, with compiled code cached apart, until a test fails. By
-the quick tests that run its lines, the nearest by imports first and for `--budget` seconds of
-processor time together; where none is known to (compiled code, other processes), by those of the
-nearest files. What fails counts if the source as it is passes it. What passes them all survived.
-`--nightly` asks slow tests by nearness too. The answers are appended to a file of JSON lines; a run
-that was cut off goes on where it stopped. Mutants that change nothing anybody could notice are
-named in ``tools/equivalent_mutants.toml`` with the reason, and do not count.
+the quick tests of the nearest files, by their names and imports, for `--budget` seconds of
+processor time together. What fails counts if the source passes it with nothing but a blank line
+more. What passes them all survived. `--nightly` asks the slow tests of those files too. The answers
+are appended to a file of JSON lines; a run that was cut off goes on where it stopped. Mutants that
+change nothing anybody could notice are named in ``tools/equivalent_mutants.toml`` with the reason,
+and do not count.
 """
 
 from __future__ import annotations
 
 import argparse
-import ast
 import contextlib
 import functools
 import hashlib
 import json
-import math
 import os
 import re
 import resource
@@ -33,12 +30,10 @@ import sys
 import tempfile
 import time
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
-
-from coverage import CoverageData
 
 import import_graph
 from mutant_report import print_report
@@ -46,13 +41,13 @@ from mutations import Mutant, all_mutants, sample
 
 ROOT = Path(__file__).parents[1]
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.toml")
-# What `make test` runs, in its two parts, and what `make slow` and `make nightly` add.
-QUICK = "not realtime and not slow and not nightly and not campaign"
-REALTIME = "realtime and not slow and not nightly"
-SLOW, NIGHTLY = "slow and not nightly", "nightly"
+# What `make test` runs side by side, and what else there is.
+MARKS = {
+    "quick": "not campaign and not (realtime or slow or nightly)",
+    "slow": "not campaign and (realtime or slow or nightly)",
+}
 _FILES = 12  # of tests that are asked by nearness
-_START = 10.0  # s of processor time in which pytest has collected what is asked
-_UNKNOWN = 1.0  # s, the processor time of a file or test of which nothing is known
+_CUT_OFF = 2.0  # budgets, after which a test that was begun within one is slow
 _FAILED = re.compile(r"^(?:FAILED|ERROR) (.+)$", re.MULTILINE)
 
 
@@ -107,16 +102,13 @@ class Copy:
             shutil.copy2(compiled, folder / compiled.name)
 
     @contextlib.contextmanager
-    def _mutated(self, mutant: Mutant | None) -> Iterator[None]:
-        # What is compiled of a mutant is forgotten with it.
+    def _changed(self, path: Path, text: bytes) -> Iterator[None]:
+        # What is compiled or solved of a changed source is forgotten with it.
         shutil.rmtree(self._tried, ignore_errors=True)
         shutil.copytree(self._cache, self._tried, copy_function=os.link)
-        if mutant is None:
-            yield
-            return
-        path = self.tree / "src" / mutant.path
+        shutil.rmtree(self.tree / "out" / "test-cache", ignore_errors=True)
         source, times = path.read_bytes(), path.stat()
-        path.write_bytes(mutant.applied(source))
+        path.write_bytes(text)
         try:
             yield
         finally:
@@ -124,14 +116,16 @@ class Copy:
             os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
     def ask(
-        self, tests: Sequence[str], marks: str, limit: float, mutant: Mutant | None = None
+        self, tests: Sequence[str], marks: str, budget: float, mutant: Mutant, healthy: bool = False
     ) -> Answer:
-        """Run tests, or files of them, until the first failure, or for `limit` seconds of processor
-        time, and at most ten times as long by the clock."""
-        with self._mutated(mutant):
-            return self._asked(tests, marks, limit)
+        """Run tests, or files of them, until the first failure, or for `budget` seconds of
+        processor time; `healthy`: of a source that only has a blank line more in the same file."""
+        path = self.tree / "src" / mutant.path
+        source = path.read_bytes()
+        with self._changed(path, source + b"\n" if healthy else mutant.applied(source)):
+            return self._asked(tests, marks, budget)
 
-    def _asked(self, tests: Sequence[str], marks: str, limit: float) -> Answer:
+    def _asked(self, tests: Sequence[str], marks: str, budget: float) -> Answer:
         shutil.rmtree(self._temporary, ignore_errors=True)
         self._temporary.mkdir()
         environment = {
@@ -144,14 +138,13 @@ class Copy:
             "HOME": str(self._temporary),
         }
         command = [sys.executable, "-m", "pytest", "-x", "-q", "-rfE", "-p", "no:cacheprovider"]
-        asked = self._temporary / "asked.txt"
-        asked.write_text("\n".join(tests), encoding="utf-8")
+        command += ["-p", "tests.costs", "--within", str(budget), "-m", MARKS[marks], *tests]
         test = tests[0] if len(tests) == 1 else f"{tests[0]} and {len(tests) - 1} others"
-        started = processor_time()
-        limits = resource.RLIMIT_CPU, (math.ceil(limit), math.ceil(limit))
+        started, limit = processor_time(), round(_CUT_OFF * budget)
+        limits = resource.RLIMIT_CPU, (limit, limit)
         with tempfile.TemporaryFile() as output:
             process = subprocess.Popen(
-                [*command, "-m", marks, f"@{asked}"],
+                command,
                 cwd=self.tree,
                 env=environment,
                 stdout=output,
@@ -173,9 +166,10 @@ class Copy:
             # Of the summary alone: what a test logged may stand before it as ERROR too.
             told = output.read().decode(errors="replace")
             failed = _FAILED.search(told.rpartition("short test summary info")[2])
-        said = {0: "passed", 5: "empty"}.get(process.returncode, "failed")
-        name = failed_test(failed[1], tests) if failed else test
-        return Answer(said, test if said == "passed" else name, processor_time() - started)
+        said = {0: "passed", 2: "passed", 5: "empty"}.get(process.returncode, "failed")
+        if failed is not None:
+            said, test = "failed", failed_test(failed[1], tests)
+        return Answer(said, test, processor_time() - started)
 
     def _end_processes(self) -> None:
         """End what the tests started: every process that has our folder for its temporary files."""
@@ -236,60 +230,6 @@ class Nearness:
         return [name for *_, name in sorted(ranked)]
 
 
-class Reached:
-    """Which quick tests run a line of the source and how long they take, by `make coverage`."""
-
-    def __init__(self, file: Path) -> None:
-        seconds = file.with_name("test-seconds.json")
-        self._seconds: dict[str, float] = json.loads(seconds.read_text(encoding="utf-8"))
-        for test, spent in list(self._seconds.items()):
-            whole = test.partition("::")[0]
-            self._seconds[whole] = self._seconds.get(whole, 0.0) + spent
-        self._data = CoverageData(str(file))
-        self._data.read()
-        package = f"{os.sep}src{os.sep}"
-        self._files = {
-            Path(name.rpartition(package)[2]).as_posix(): name
-            for name in self._data.measured_files()
-        }
-
-    def tests(self, mutant: Mutant, source: bytes) -> set[str]:
-        """The tests that run any line of what a mutant changes; none where no test is known to."""
-        name = self._files.get(mutant.path)
-        if name is None:
-            return set()
-        contexts = self._data.contexts_by_lineno(name)
-        ran = {test for line in lines_of(mutant, source) for test in contexts.get(line, ())}
-        return {test.rpartition("|")[0] for test in ran if "|" in test}
-
-    def affordable(self, tests: Iterable[str], files: Sequence[str], budget: float) -> list[str]:
-        """Of tests, or files of them, those that take no longer than a budget (s of processor time)
-        together: of the nearest of some files first, and of those the quickest."""
-        rank = {name: place for place, name in enumerate(files)}
-
-        def order(test: str) -> tuple[int, float, str]:
-            nearness = rank.get(test.partition("::")[0], len(rank))
-            return nearness, self._seconds.get(test, _UNKNOWN), test
-
-        chosen = []
-        for test in sorted(tests, key=order):
-            spent = self._seconds.get(test, _UNKNOWN)
-            if spent <= budget:
-                budget -= spent
-                chosen.append(test)
-        return chosen
-
-
-def lines_of(mutant: Mutant, source: bytes) -> range:
-    """The lines of a mutant, from the first of the innermost statement that holds it."""
-    first = max(
-        node.lineno
-        for node in ast.walk(ast.parse(source))
-        if isinstance(node, ast.stmt) and node.lineno <= mutant.line <= (node.end_lineno or 0)
-    )
-    return range(first, mutant.line + mutant.before.count("\n") + 1)
-
-
 class Report:
     """The file of answers: JSON lines, to which everything is appended at once."""
 
@@ -327,60 +267,44 @@ class Trial:
     """Tries mutants in a copy, with so much processor time for each."""
 
     def __init__(self, copy: Copy, report: Report, arguments: argparse.Namespace) -> None:
-        self._copy, self._report, self._arguments = copy, report, arguments
+        self._copy, self._report = copy, report
         self._nearness = Nearness(copy.tree)
-        self._reached = Reached(arguments.coverage)
-        self._parts = [REALTIME, SLOW, NIGHTLY] if arguments.nightly else []
+        self._budgets = {"quick": arguments.budget}
+        if arguments.nightly:
+            self._budgets["slow"] = arguments.slow_budget
 
-    def _passes(self, tests: Sequence[str], marks: str, limit: float) -> bool:
-        """Whether the source as it is passes tests, asked once."""
-        asked = " ".join(tests)
+    def _passes(self, tests: Sequence[str], marks: str, mutant: Mutant) -> bool:
+        """Whether the source passes tests, asked once for each module that is written anew."""
+        asked = " ".join([mutant.path, *tests])
         if (asked, marks) not in self._report.baselines:
-            answer = self._copy.ask(tests, marks, limit)
+            answer = self._copy.ask(tests, marks, self._budgets[marks], mutant, healthy=True)
             self._report.baselines[asked, marks] = answer
             line = {"type": "baseline", "asked": asked, "marks": marks, **asdict(answer)}
             self._report.write(line)
         return self._report.baselines[asked, marks].said == "passed"
 
-    def _notices(
-        self, mutant: Mutant, tests: Sequence[str], marks: str, limit: float
-    ) -> Answer | None:
+    def _notices(self, mutant: Mutant, tests: Sequence[str], marks: str) -> Answer | None:
         """How tests notice a mutant, if they do and the source as it is passes them."""
-        answer = self._copy.ask(tests, marks, limit, mutant)
+        answer = self._copy.ask(tests, marks, self._budgets[marks], mutant)
         if answer.said not in ("failed", "slow"):
             return None
         suspect = [answer.test] if answer.said == "failed" else tests
-        return answer if self._passes(suspect, marks, limit) else None
+        return answer if self._passes(suspect, marks, mutant) else None
 
     def run(self, mutant: Mutant) -> dict[str, Any]:
         """The line of the report for one mutant."""
-        started, files = processor_time(), self._nearness.tests(mutant.module)
+        started = processor_time()
         line: dict[str, Any] = {"type": "mutant", "id": mutant.id, "at": where(mutant)}
         line |= {"room": mutant.room, "kind": mutant.site.kind, "function": mutant.site.function}
         line |= {"before": mutant.before, "after": mutant.site.after}
         line |= {"noticed": False, "marks": "", "said": "passed", "test": ""}
-        source = (self._copy.tree / "src" / mutant.path).read_bytes()
-        known = self._reached.tests(mutant, source)
-        budget = self._arguments.budget
-        asked = self._reached.affordable(known or files[:_FILES], files, budget)
-        marks, answer = QUICK, None
-        if asked:
-            answer = self._notices(mutant, asked, QUICK, 2 * budget + _START)
-        for test, part in self._questions(files) if answer is None else ():
-            answer, marks = self._notices(mutant, [test], part, self._arguments.file_seconds), part
+        files = self._nearness.tests(mutant.module)[:_FILES]
+        for marks in self._budgets if files else ():
+            answer = self._notices(mutant, files, marks)
             if answer is not None:
+                line |= {"noticed": True, "marks": marks, **asdict(answer)}
                 break
-        if answer is not None:
-            line |= {"noticed": True, "marks": marks, **asdict(answer)}
-        spent = round(processor_time() - started, 1)
-        return line | {"reached": len(known), "asked": len(asked), "seconds": spent}
-
-    def _questions(self, files: list[str]) -> Iterator[tuple[str, str]]:
-        """Files of tests in real time, slow and nightly ones, with which of their tests."""
-        for marks in self._parts:
-            word = marks.split()[0]
-            marked = [file for file in files if f"mark.{word}" in self._nearness.texts[file]]
-            yield from ((test, marks) for test in marked[:_FILES])
+        return line | {"asked": files, "seconds": round(processor_time() - started, 1)}
 
 
 def where(mutant: Mutant) -> str:
@@ -402,14 +326,11 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--count", type=int, default=70, help="mutants in the sample")
     parser.add_argument("--rooms", default="", help="only these, separated by commas")
     parser.add_argument(
-        "--budget", type=float, default=8, help="processor time of the tests of a mutant (s)"
+        "--budget", type=float, default=10, help="processor time of the tests of a mutant (s)"
     )
     parser.add_argument("--minutes", type=float, default=60, help="after which none is begun")
     parser.add_argument(
-        "--file-seconds", type=float, default=600, help="of processor time for a slow file"
-    )
-    parser.add_argument(
-        "--coverage", type=Path, default=ROOT / "out" / "coverage", help="made by `make coverage`"
+        "--slow-budget", type=float, default=900, help="the same of its slow tests (s)"
     )
     parser.add_argument("--nightly", action="store_true", help="ask the slow tests too, last")
     parser.add_argument("--file", type=Path, default=ROOT / "out" / "mutants.jsonl")
@@ -427,8 +348,6 @@ def main() -> None:
     if arguments.report:
         print_report(read_lines(arguments.file), equivalent_mutants())
         return
-    if not arguments.list and not arguments.coverage.exists():
-        sys.exit(f"{arguments.coverage} is not there: run `make coverage` first")
     rooms = sorted(filter(None, arguments.rooms.split(",")))
     drawn = sample(all_mutants(ROOT / "src", rooms), arguments.seed)
     chosen: list[Mutant] = []

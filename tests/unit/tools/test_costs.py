@@ -1,6 +1,9 @@
 """The table of what tests cost: sums by folder and by file, the dearest first."""
 
-from tests.costs import table
+from types import SimpleNamespace
+
+import pytest
+from tests.costs import Stopwatch, table
 
 TIMES = {
     "tests/unit/film/test_gap.py": {False: 2.0, True: 0.0},
@@ -24,3 +27,14 @@ def test_folders_and_files_are_summed_and_sorted() -> None:
 def test_what_was_not_run_has_no_column() -> None:
     quick = {file: {False: 1.0, True: 0.0} for file in TIMES}
     assert "slow, s" not in table(quick, COUNTS)
+
+
+@pytest.mark.parametrize(("within", "stops"), [(0.0, True), (1e9, False)])
+def test_no_test_is_begun_when_the_time_is_spent(within: float, stops: bool) -> None:
+    session = SimpleNamespace(shouldstop="")
+    item = SimpleNamespace(session=session, get_closest_marker=lambda name: None)
+    phase = Stopwatch(within).pytest_runtest_makereport(item)
+    next(phase)
+    with pytest.raises(StopIteration):
+        phase.send(SimpleNamespace())
+    assert bool(session.shouldstop) is stops
