@@ -123,9 +123,12 @@ def differencing_rates(
     """
     si.require("d_prime", d_prime, at_least=0.0)
     si.require("criterion", criterion, at_least=0.0)
+    return _hits(d_prime, criterion), float(2 * ndtr(-criterion / math.sqrt(2.0)))
+
+
+def _hits(d_prime: float, criterion: float) -> float:
     root = math.sqrt(2.0)
-    hit = ndtr((d_prime - criterion) / root) + ndtr((-d_prime - criterion) / root)
-    return float(hit), float(2 * ndtr(-criterion / root))
+    return float(ndtr((d_prime - criterion) / root) + ndtr((-d_prime - criterion) / root))
 
 
 def differencing_sensitivity(
@@ -148,7 +151,7 @@ def differencing_sensitivity(
     if hit_rate <= false_alarm_rate:
         return Sensitivity(0.0, k, "same/different, differencing")
     highest = k + math.sqrt(2) * (abs(float(ndtri(hit_rate))) + 10.0)
-    d = brentq(lambda one: differencing_rates(one, k)[0] - hit_rate, 0.0, highest)
+    d = brentq(lambda one: _hits(one, k) - hit_rate, 0.0, highest)
     return Sensitivity(float(d), k, "same/different, differencing")
 
 
