@@ -28,6 +28,7 @@ from squeezefilm.report.study import time_figures as times
 from squeezefilm.report.study.pictures import pictures, png_files
 from squeezefilm.report.study.words import (
     PERSON_HEAD,
+    SCREENING_HEAD,
     condition_head,
     condition_rows,
     exploration_head,
@@ -35,6 +36,7 @@ from squeezefilm.report.study.words import (
     key_rows,
     person_rows,
     read_first,
+    screening_rows,
     whose,
 )
 from squeezefilm.study.tasks.findings import TaskAnalysis
@@ -172,6 +174,7 @@ def study_page(
         + section("Numbers", numbers)
         + picture_sections(figures)
         + details(analysis)
+        + _screening(analysis)
         + _worked(analysis)
         + section("What could not be computed, or needs care", bullets(analysis.notes, "Nothing."))
     )
@@ -208,6 +211,18 @@ def _identification(analysis: Any) -> str:
         + section("Information transfer by every estimator", _information(analysis))
         + (section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
     )
+
+
+def _screening(analysis: StudyAnalysis) -> str:
+    """Everybody judged by the design's rule."""
+    if analysis.screening is None:
+        return ""
+    caption = (
+        "z is near a standard normal deviate for somebody who guesses, and below 0 for answers "
+        "that are mixed up"
+    )
+    rows = screening_rows(analysis.screening)
+    return section("Who does the task", text_table(caption, SCREENING_HEAD, rows))
 
 
 def _worked(analysis: StudyAnalysis) -> str:

@@ -16,11 +16,13 @@ from squeezefilm.report.study.simulated_page import (
 )
 from squeezefilm.report.study.words import (
     PERSON_HEAD,
+    SCREENING_HEAD,
     condition_head,
     condition_rows,
     key_rows,
     person_rows,
     read_first,
+    screening_rows,
     whose,
 )
 
@@ -54,6 +56,9 @@ def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
                 table(console, PERSON_HEAD, person_rows(one), fixed=(0,))
         else:
             _show_confusion(console, one)
+        if one.screening is not None and one.screening.named:
+            rows = screening_rows(one.screening, named=True)
+            table(console, SCREENING_HEAD, rows, fixed=(0, 1))
         table(console, ("", "", ""), key_rows(one), fixed=(0,))
         for note in one.notes:
             console.print(f"  {note}", style="dim", highlight=False)

@@ -13,8 +13,10 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.course import Course
     from squeezefilm.study.identification.proportions import Interval
     from squeezefilm.study.identification.response_times import ExGaussian
+    from squeezefilm.study.identification.screening import Screening
+    from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.analyze import StudyAnalysis
-    from squeezefilm.study.tasks.findings import Estimate, PersonEstimate, TaskAnalysis
+    from squeezefilm.study.tasks.findings import PersonEstimate, TaskAnalysis
 
 Rows = list[tuple[str, str, str]]
 _SURE = 0.05
@@ -30,6 +32,8 @@ def read_first(analysis: StudyAnalysis) -> list[str]:
         said += _task_first(analysis)
     else:
         said += _identification_first(analysis)
+    if analysis.screening is not None:
+        said += _screening_first(analysis.screening)
     if analysis.course is not None:
         said += _course_first(analysis.course)
     if analysis.notes:
@@ -93,6 +97,56 @@ _JUDGED = {
 }
 
 
+def _screening_first(screening: Screening) -> list[str]:
+    """Who does not do the task, and what the main number is without them."""
+    said = [screening.said] if screening.said else []
+    named = screening.named
+    if not named:
+        return said
+    names = ", ".join(one.person for one in named)
+    count = f"{len(named)} of {len(screening.people)} people"
+    verbs = ("does", "is") if len(named) == 1 else ("do", "are")
+    done = "left out" if screening.left_out else "kept, as the design's rule only marks"
+    return [*said, f"{count} {verbs[0]} not do the task ({names}), and {verbs[1]} {done}."]
+
+
+SCREENING_HEAD = ("Participant", "z", "Judged")
+"""Of `screening_rows`."""
+
+
+def screening_rows(screening: Screening, named: bool = False) -> list[tuple[str, ...]]:
+    """Everybody, judged; or those only who do not do the task."""
+    return [
+        (
+            one.person,
+            f"{one.follows:.1f}",
+            "; ".join(one.reasons) or "; ".join(("does the task", *one.doubts)),
+        )
+        for one in (screening.named if named else screening.people)
+    ]
+
+
+def result_rows(analysis: StudyAnalysis) -> Rows:
+    """The main number with and without the people who do not do the task; none where all do."""
+    screening = analysis.screening
+    if screening is None or not screening.named:
+        return []
+    measure = getattr(analysis, "measure", "proportion correct")
+    parts = measure in ("Weber fraction", "proportion correct")
+    scale, unit = (100.0, " %") if parts else (1.0, "")
+    return [
+        (f"{measure[:1].upper()}{measure[1:]}: {name}", *_value_and_interval(one, scale, unit))
+        for name, one in screening.results.items()
+    ]
+
+
+def _value_and_interval(found: Estimate, scale: float, unit: str) -> tuple[str, str]:
+    low, high = scale * found.low, scale * found.high
+    between = f"{low:.3g} to {high:.3g}{unit}" if not math.isnan(low) else "no interval"
+    value = f"{scale * found.value:.3g}{unit}"
+    return value, f"{between} ({found.method}, {100 * found.level:g} %)"
+
+
 def _course_first(course: Course) -> list[str]:
     said = []
     for one in course.drift:
@@ -133,7 +187,7 @@ def key_rows(analysis: StudyAnalysis) -> Rows:
         rows += _identification_rows(analysis)
     if analysis.ex_gaussian is not None:
         rows.append(_time_row(analysis.ex_gaussian))
-    return rows + course_rows(analysis.course)
+    return rows + result_rows(analysis) + course_rows(analysis.course)
 
 
 def _time_row(fit: ExGaussian) -> tuple[str, str, str]:
@@ -177,15 +231,7 @@ def _task_rows(analysis: TaskAnalysis) -> Rows:
         if found is None:
             continue
         s, u = (scale, unit) if name.lower() == analysis.measure.lower() else _scale_of(name)
-        low, high = s * found.low, s * found.high
-        between = f"{low:.3g} to {high:.3g}{u}" if not math.isnan(low) else "no interval"
-        rows.append(
-            (
-                name[0].upper() + name[1:],
-                f"{s * found.value:.3g}{u}",
-                f"{between} ({found.method}, {100 * found.level:g} %)",
-            )
-        )
+        rows.append((name[0].upper() + name[1:], *_value_and_interval(found, s, u)))
     if analysis.spread is not None:
         spread = analysis.spread
         what = "ln(Weber fraction)" if percent else "the exponent"

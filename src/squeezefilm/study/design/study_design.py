@@ -29,6 +29,7 @@ from squeezefilm.from_text import ReadBy
 from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
 from squeezefilm.perception.stimuli import Grating, Stimulus, Varied
 from squeezefilm.results import config_hash
+from squeezefilm.study.design.exclusion import ExclusionRule
 from squeezefilm.study.design.matching import (
     Exploring,
     MatchedWith,
@@ -81,6 +82,8 @@ class StudyDesign:
             practice and familiarisation only.
         break_between_blocks: rest (s) before every block but the first.
         rules: of the exploration; a trial outside of them comes again.
+        exclusion: who counts as not doing the task, and whether they are left out; they are only
+            marked, by the rule's own numbers, without.
         practice_criterion: share of right answers in a round of practice below which there is
             another round (1); 0 for none.
         practice_rounds: of practice, at most.
@@ -113,6 +116,7 @@ class StudyDesign:
     break_between_blocks: Annotated[si.Second, si.AtLeast(0.0)] = 60.0
     trial_duration: Annotated[si.Second, si.Above(0.0), si.AtMost(3600.0)] = 20.0
     rules: TrialRules | None = None
+    exclusion: ExclusionRule | None = None
     practice_criterion: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 0.0
     practice_rounds: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 3
     resume_within: Annotated[si.Second, si.AtLeast(0.0)] = 0.0

@@ -40,7 +40,9 @@ from squeezefilm.study.identification.response_times import (
     fit_ex_gaussian,
     response_time_summary,
 )
+from squeezefilm.study.identification.screening import Screening
 from squeezefilm.study.identification.sensitivity import OrderedSensitivity, ordered_sensitivity
+from squeezefilm.study.psychometric.estimate import Estimate
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +83,7 @@ class IdentificationAnalysis(Result):
         seed: of all resampling.
         course: response times, drift and attention; None of trials without a design.
         methods: the methods section; empty likewise.
+        screening: who does the task; None likewise.
     """
 
     name: str
@@ -105,6 +108,7 @@ class IdentificationAnalysis(Result):
     seed: int
     course: Course | None = None
     methods: str = ""
+    screening: Screening | None = None
     _shown: ClassVar[str] = "name origin participants proportion_correct"
 
     @property
@@ -126,6 +130,12 @@ class IdentificationAnalysis(Result):
     def interval(self) -> Interval:
         """The interval to quote: over participants, or Wilson's where there is one."""
         return self.intervals[-1] if self.participants > 1 else self.intervals[0]
+
+    @property
+    def main_number(self) -> Estimate:
+        """The share of right answers with the interval to quote."""
+        found = self.interval
+        return Estimate(self.proportion_correct, found.low, found.high, found.level, found.method)
 
     def summary(self) -> dict[str, Any]:
         """All numbers as plain JSON values, units in the keys; `confusion` in the paper's layout:
@@ -166,6 +176,7 @@ class IdentificationAnalysis(Result):
             "mixed_model": self.mixed,
             "course": self.course,
             "methods": self.methods,
+            "screening": self.screening,
             "notes": self.notes,
             "provenance": stamp(
                 {"name": self.name, "origin": self.origin, "counts": self.counts}, self.seed

@@ -6,10 +6,13 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+from scipy import stats
+from scipy.stats import mstats
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import ConvergenceError, InputError
@@ -24,13 +27,14 @@ from squeezefilm.study.identification.response_times import (
     fit_ex_gaussian,
     response_time_summary,
 )
+from squeezefilm.study.identification.screening import Screening, judged_people, rule_of
+from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers, recorded_answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.tasks.asked_again import asked_again, require_rerun
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
-    Estimate,
     PersonEstimate,
     PersonFunction,
     TaskAnalysis,
@@ -61,6 +65,7 @@ from squeezefilm.study.tasks.unlike_surfaces import (
 StudyAnalysis = IdentificationAnalysis | TaskAnalysis
 Tell = Callable[[str], None]
 Numbers = dict[str, Estimate]
+_Analysis = TypeVar("_Analysis", IdentificationAnalysis, TaskAnalysis)
 _POPULATION = "posterior, mixed model"
 
 
@@ -134,16 +139,40 @@ def analyze_answers(
         main = answers.main(number)
         if not main.trials:
             continue
-        said = f"{name}, {display}"
+        how: dict[str, Any] = {"display": number, "name": f"{name}, {display}", "level": level}
+        how |= {"seed": seed, "tell": tell}
         if answers.design.task == "match-to-sample":
-            found[display] = _matches(answers, number, said, mixed, resamples, level, seed, tell)
-        else:
-            one = _judgements(answers, number, said, assumed, level, seed, tell)
-            if reruns:
-                persons = asked_again(main, one.persons, reruns, level, seed, tell)
-                one = dataclasses.replace(one, persons=persons)
-            found[display] = one
+            match = partial(_matches, **how, mixed=mixed, resamples=resamples)
+            found[display] = _screened(answers, number, match)
+            continue
+        one = _screened(answers, number, partial(_judgements, **how, assumed=assumed))
+        if reruns:
+            persons = asked_again(main, one.persons, reruns, level, seed, tell)
+            one = dataclasses.replace(one, persons=persons)
+        found[display] = one
     return found
+
+
+def _screened(
+    answers: Answers, display: int, analysis: Callable[[Answers], _Analysis]
+) -> _Analysis:
+    """The analysis of everybody, or of those who do the task, as the design's rule says; with the
+    main number of both."""
+    everybody = analysis(answers)
+    people, said = judged_people(answers, display)
+    rule = rule_of(answers.design)
+    results: dict[str, Estimate | None] = {"everybody": everybody.main_number}
+    out = [one.person for one in people if one.reasons]
+    chosen = everybody
+    if out and len(out) < len(people):
+        numbers = [answers.people.index(one) for one in out]
+        without = analysis(answers.take(~np.isin(answers.participant, numbers)))
+        results["without those named"] = without.main_number
+        chosen = without if rule.action == "exclude" else everybody
+    if isinstance(everybody, TaskAnalysis):
+        results["robust, everybody"] = everybody.robust
+    known = {name: one for name, one in results.items() if one is not None}
+    return dataclasses.replace(chosen, screening=Screening(rule, people, known, said))
 
 
 def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:
@@ -215,6 +244,7 @@ class _Found:
     more: dict[str, Estimate]
     functions: dict[str, PersonFunction]
     notes: list[str]
+    robust: Estimate | None = None
 
 
 def _judgements(
@@ -246,12 +276,6 @@ def _judgements(
             f"{found.measure}: an end of its interval is where the prior ends, and more trials "
             "near the threshold are wanted"
         )
-    unattended = [one.person for one in course.attention if not one.attended]
-    if unattended:
-        notes.append(
-            f"{len(unattended)} of {len(course.attention)} people missed more catch trials than "
-            f"one who attends would ({', '.join(unattended)}); nobody was left out"
-        )
     here = design.judged_value(design.stimulus(design.reference)) if design.reference else math.nan
     return TaskAnalysis(
         name=name,
@@ -276,8 +300,25 @@ def _judgements(
         assumed=assumed,
         notes=tuple(notes),
         methods=methods_text(answers, display),
+        screening=None,
+        robust=found.robust or _trimmed(found.persons, level),
         seed=seed,
     )
+
+
+def _trimmed(persons: list[PersonEstimate], level: float) -> Estimate | None:
+    """The mean of people's values without the fifth at either end, with Yuen's interval (1974,
+    10.1093/biomet/61.1.165); None of fewer than five people."""
+    values = np.sort([one.estimate.value for one in persons])
+    cut = values.size // 5
+    if not cut:
+        return None
+    kept = values.size - 2 * cut
+    error = float(mstats.winsorize(values, (cut / values.size,) * 2).std(ddof=1))
+    reach = float(stats.t.isf((1 - level) / 2, kept - 1)) * error * math.sqrt(values.size - 1)
+    reach /= math.sqrt(kept * (kept - 1.0))
+    mean = float(values[cut : values.size - cut].mean())
+    return Estimate(mean, mean - reach, mean + reach, level, "trimmed by a fifth at either end")
 
 
 def _of_fractions(
@@ -289,10 +330,12 @@ def _of_fractions(
 ) -> _Found:
     notes: list[str] = []
     persons = people.estimates(level)
-    pooled, spread = persons[0].estimate, None
+    pooled, spread, robust = persons[0].estimate, None, None
     if len(persons) > 1:
         population = Population(people.likelihoods())
         pooled, spread = of_population(population.estimate(level), _POPULATION)
+        low, middle, high = (math.exp(one) for one in population.robust(level))
+        robust = Estimate(middle, low, high, level, "posterior, some do not do the task")
         # Answers at random go into a criterion where there is one.
         notes += [note for note in [population.lapse_note] if note and not criterion]
     else:
@@ -300,7 +343,9 @@ def _of_fractions(
             "one participant: the population's interval is theirs, and says nothing of others"
         )
     functions = people.functions(level)
-    return _Found("Weber fraction", persons, pooled, spread, conditions, more, functions, notes)
+    return _Found(
+        "Weber fraction", persons, pooled, spread, conditions, more, functions, notes, robust
+    )
 
 
 def _two_interval(main: Answers, level: float, seed: int, tell: Tell) -> _Found:

@@ -21,9 +21,10 @@ from squeezefilm.study.adaptive.rerun import Procedure, rerun_intervals
 from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.adaptive.staircase import Staircase
 from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.tasks.findings import Estimate, PersonEstimate
+from squeezefilm.study.tasks.findings import PersonEstimate
 
 LEAST_RUNS = 39
 """Simulated experiments without which there is no 95 % interval."""

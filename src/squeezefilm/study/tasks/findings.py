@@ -14,18 +14,9 @@ from squeezefilm.study.design.study_design import Task
 from squeezefilm.study.identification.condition_means import ConditionMean
 from squeezefilm.study.identification.course import Course
 from squeezefilm.study.identification.response_times import ExGaussian, ResponseTimeSummary
+from squeezefilm.study.identification.screening import Screening
+from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.tasks.population import PopulationEstimate
-
-
-@dataclass(frozen=True, slots=True)
-class Estimate:
-    """A number with its interval of `level`; `low` and `high` are NaN where there is none."""
-
-    value: float
-    low: float
-    high: float
-    level: si.Dimensionless
-    method: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +98,8 @@ class TaskAnalysis(Result):
         assumed: what simulated answers rest on; empty for people.
         notes: what could not be computed, or needs care, and why.
         methods: the methods section of a paper.
+        screening: who does the task, by the design's rule.
+        robust: `pooled` as people who do not do the task hardly move it.
         seed: of resampling.
     """
 
@@ -132,6 +125,8 @@ class TaskAnalysis(Result):
     assumed: tuple[str, ...]
     notes: tuple[str, ...]
     methods: str
+    screening: Screening | None
+    robust: Estimate | None
     seed: int
     _shown: ClassVar[str] = "name origin measure participants trials"
 
@@ -139,6 +134,11 @@ class TaskAnalysis(Result):
     def participants(self) -> int:
         """How many people answered."""
         return len(self.people)
+
+    @property
+    def main_number(self) -> Estimate | None:
+        """What the population's `measure` is."""
+        return self.pooled
 
     def summary(self) -> dict[str, Any]:
         """All numbers as plain JSON values, units in the keys."""
@@ -165,6 +165,8 @@ class TaskAnalysis(Result):
             "assumed": self.assumed,
             "notes": self.notes,
             "methods": self.methods,
+            "screening": self.screening,
+            "robust": self.robust,
             "provenance": stamp({"name": self.name, "persons": self.persons}, self.seed),
         }
         plain: dict[str, Any] = to_json(values)

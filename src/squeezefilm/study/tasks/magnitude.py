@@ -9,10 +9,11 @@ from scipy import stats
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
+from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.psychometric.interval_ends import holding
 from squeezefilm.study.psychometric.magnitude_estimation import fit_power_law
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.tasks.findings import ConditionFinding, Estimate, PersonEstimate, through
+from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, through
 from squeezefilm.study.tasks.two_interval import t_interval
 
 

@@ -18,11 +18,13 @@ from scipy.special import ndtr
 from squeezefilm import quantities as si
 from squeezefilm.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.psychometric.discrimination import differencing_sensitivity
+from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.tasks.findings import ConditionFinding, Estimate
+from squeezefilm.study.tasks.findings import ConditionFinding
 from squeezefilm.study.tasks.population import LAPSES, lapse_weights
 from squeezefilm.study.tasks.two_interval import (
     PeopleOnGrid,
+    answers_anyhow,
     condition_finding,
     differences,
     in_eighths,
@@ -52,7 +54,7 @@ def same_different_on_grid(main: Answers) -> PeopleOnGrid:
         log_q.append(np.log1p(-p))
     prior = lapse_weights()
     weber = np.log(np.expm1(D_PRIME_OF_75 * np.exp(edges)))
-    people = PeopleOnGrid([], weber, np.diff(edges), [], [], [], [])
+    people = PeopleOnGrid([], weber, np.diff(edges), [], [], [], [], [])
     for person in np.unique(main.participant):
         mine = main.participant == person
         total = np.zeros((_SPREADS, _CRITERIA, LAPSES.size))
@@ -62,7 +64,9 @@ def same_different_on_grid(main: Answers) -> PeopleOnGrid:
             total += different * log_p[number] + (said.size - different) * log_q[number]
         whole = np.exp(total - total.max())
         people.names.append(main.people[person])
-        people.likelihood.append(prior @ whole.sum(axis=1).T)
+        people.likelihood.append(prior @ whole.mean(axis=1).T)
+        said = float(np.count_nonzero(main.choice[mine] == 1))
+        people.otherwise.append(answers_anyhow(said, float(mine.sum()), float(total.max())))
         people.bias.append(float(whole.sum(axis=(0, 2)) @ limits / whole.sum()))
         people.lapse.append(float(whole.sum(axis=(0, 1)) @ LAPSES / whole.sum()))
         people.trials.append(int(mine.sum()))

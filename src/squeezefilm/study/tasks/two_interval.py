@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
+from scipy.special import betaln
 
 from squeezefilm import quantities as si
 from squeezefilm.errors import InputError
@@ -30,10 +31,10 @@ from squeezefilm.study.psychometric.discrimination import (
     sensitivity,
     two_interval_sensitivity,
 )
+from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
-    Estimate,
     PersonEstimate,
     PersonFunction,
     through,
@@ -50,6 +51,7 @@ QUARTILE = 0.6744897501960817
 # From 5 to 95 % of a normal distribution, which is what the kernel calls the width.
 _WIDTH = 2 * 1.6448536269514722
 _SPREADS, _BIASES = 81, 41
+_MOST = 600.0
 
 
 def comparisons(main: Answers) -> tuple[si.IntArray, NDArray[np.bool_]]:
@@ -92,6 +94,7 @@ class PeopleOnGrid:
         bias: mean of the person's bias or criterion.
         lapse: mean of the person's lapse rate (1).
         trials: of each person.
+        otherwise: likelihood of each one's answers from somebody who does not do the task.
     """
 
     names: list[str]
@@ -101,11 +104,15 @@ class PeopleOnGrid:
     bias: list[float]
     lapse: list[float]
     trials: list[int]
+    otherwise: list[float]
 
     def likelihoods(self) -> list[PersonLikelihood]:
         """As a population takes them."""
         middle, width = 0.5 * (self.edges[1:] + self.edges[:-1]), np.diff(self.edges)
-        return [PersonLikelihood(middle, width, one) for one in self.likelihood]
+        return [
+            PersonLikelihood(middle, width, one, other)
+            for one, other in zip(self.likelihood, self.otherwise, strict=True)
+        ]
 
     def estimates(self, level: si.Dimensionless) -> list[PersonEstimate]:
         """Of each person's Weber fraction: the posterior's median and central interval, with the
@@ -139,7 +146,7 @@ def on_grid(main: Answers, tell: Callable[[str], None]) -> PeopleOnGrid:
     biases = np.linspace(-0.5, 0.5, _BIASES) * reach
     prior = lapse_weights()
     people = PeopleOnGrid(
-        [], np.log(np.expm1(QUARTILE * np.exp(edges))), np.diff(edges), [], [], [], []
+        [], np.log(np.expm1(QUARTILE * np.exp(edges))), np.diff(edges), [], [], [], [], []
     )
     for person in np.unique(main.participant):
         tell(f"psychometric function {len(people.names) + 1} of {len(main.people)}")
@@ -149,14 +156,27 @@ def on_grid(main: Answers, tell: Callable[[str], None]) -> PeopleOnGrid:
         n = np.bincount(where).astype(np.float64)
         wide = middle + math.log(_WIDTH)
         found = kernel.guessing_log_likelihood(kernel.GAUSSIAN, biases, wide, LAPSES, places, k, n)
-        whole = np.exp(found - found.max())
+        turned = kernel.guessing_log_likelihood(
+            kernel.GAUSSIAN, biases, wide, LAPSES, places, n - k, n
+        )
+        greatest = float(found.max())
+        whole, mixed_up = np.exp(found - greatest), np.exp(np.minimum(turned - greatest, _MOST))
         people.names.append(main.people[person])
-        people.likelihood.append(prior @ whole.sum(axis=1))
+        people.likelihood.append(prior @ whole.mean(axis=1))
+        keys = answers_anyhow(float(k.sum()), float(n.sum()), greatest)
+        people.otherwise.append(0.5 * keys + 0.5 * float((prior[1] @ mixed_up.mean(axis=1)).mean()))
         total = whole.sum()
         people.bias.append(float(whole.sum(axis=(0, 2)) @ biases / total))
         people.lapse.append(float(whole.sum(axis=(1, 2)) @ LAPSES / total))
         people.trials.append(int(mine.sum()))
     return people
+
+
+def answers_anyhow(said: float, trials: float, greatest: float) -> float:
+    """Likelihood of answers that do not go by the surfaces, over one whose logarithm is `greatest`:
+    one of two is given with a probability that may be anything (Jeffreys' prior)."""
+    logs = float(betaln(said + 0.5, trials - said + 0.5) - betaln(0.5, 0.5))
+    return math.exp(min(logs - greatest, _MOST))
 
 
 def two_interval_conditions(

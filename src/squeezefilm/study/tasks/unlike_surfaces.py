@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from squeezefilm import quantities as si
 from squeezefilm.study.psychometric.discrimination import differencing_sensitivity, sensitivity
+from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.tasks.findings import ConditionFinding, Estimate, PersonEstimate
+from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate
 from squeezefilm.study.tasks.two_interval import (
     condition_finding,
     mean_sensitivity,
