@@ -24,6 +24,11 @@ $(VENV)/run.stamp: pyproject.toml constraints.txt
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
 	@touch $@
 
+$(VENV)/all.stamp: $(VENV)/run.stamp
+	@echo "Adding what lab, bench, design and studies need to $(VENV)"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[all]'
+	@touch $@
+
 $(VENV)/test.stamp: $(VENV)/run.stamp
 	@echo "Adding what tests and docs need to $(VENV)"
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,firmware-test,oracles,docs]'
@@ -32,7 +37,7 @@ $(VENV)/test.stamp: $(VENV)/run.stamp
 demo: $(VENV)/run.stamp  ## analyse the paper's plate and write a report
 	@$(BIN)/squeezefilm analyze biet2008-plate --out $(OUT)
 
-lab: $(VENV)/run.stamp  ## open the lab in the browser
+lab: $(VENV)/all.stamp  ## open the lab in the browser
 	@$(BIN)/squeezefilm lab
 
 # Twins and loops in real time are tested last and alone: a device stops when its host is held up

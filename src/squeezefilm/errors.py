@@ -7,6 +7,8 @@ turns them into one message and exit code 2.
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +58,25 @@ class ConfigError(InputError):
         place = ", ".join(part for part in (self.file, line, column) if part)
         parts = [part for part in (place, self.key) if part]
         return ": ".join([*parts, self.message])
+
+
+class MissingPackageError(InputError):
+    """A package that is not installed with squeezefilm alone."""
+
+
+@contextlib.contextmanager
+def optional(extra: str, what: str) -> Iterator[None]:
+    """Within it an import that fails says what needs the package and which extra installs it.
+
+    Raises `MissingPackageError`, also for a package whose own library cannot be loaded.
+    """
+    try:
+        yield
+    except (ImportError, RuntimeError, OSError) as error:
+        raise MissingPackageError(
+            f"{what} needs a package that is not installed or cannot be loaded ({error}); "
+            f"run: pip install 'squeezefilm[{extra}]'"
+        ) from error
 
 
 class GeometryError(InputError):

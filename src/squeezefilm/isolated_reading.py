@@ -26,7 +26,7 @@ from typing import IO, Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError
+from squeezefilm.errors import ConfigError, MissingPackageError
 from squeezefilm.hard_limits import READING_MEMORY, READING_TIME
 
 Read = tuple[Any, list[si.FloatArray]]
@@ -208,6 +208,8 @@ def _answer(head: dict[str, Any], data: bytes) -> bytes:
         refused = {key: getattr(error, key) for key in ("message", "file", "line", "column", "key")}
         refused = {key: value for key, value in refused.items() if value is not None}
         arrays, contents = (), []
+    except MissingPackageError as error:
+        refused, contents = {"message": str(error)}, []
     except MemoryError:
         arrays, contents = (), []
         allowed = f"{READING_MEMORY.most / 1e9:g} GB ({READING_MEMORY.name}"

@@ -242,7 +242,7 @@ def test_a_missing_package_is_said(tmp_path: Path) -> None:
         capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.returncode != 0
-    assert "squeezefilm[lan]" in " ".join((done.stdout + done.stderr).split())
+    assert "squeezefilm[lab]" in " ".join((done.stdout + done.stderr).split())
     assert "Traceback" not in done.stderr
 
 

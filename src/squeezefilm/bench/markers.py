@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.errors import optional
 
 NAME = "squeezefilm"
 """What the stream is called, unless it is called something else."""
@@ -51,13 +51,7 @@ def markers_if(asked: bool | str) -> Markers | None:
 
 
 def _pylsl() -> Any:
-    try:
+    # What is installed without its library says so by an error of its own.
+    with optional("lsl", "a stream of markers"):
         import pylsl
-    except (ImportError, RuntimeError, OSError) as error:
-        # What is installed without its library says so by an error of its own.
-        raise InputError(
-            "markers need the package pylsl, which is not installed or lacks its library "
-            f"({error}); install squeezefilm[lsl], or leave the markers out",
-            quantity="lsl",
-        ) from error
     return pylsl

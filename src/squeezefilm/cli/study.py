@@ -37,12 +37,15 @@ def lab(
         typer.Option(
             metavar="ADDRESS",
             help="This computer's address in the local network, to pair tablets as participant "
-            "stations by TLS; needs squeezefilm[lan].",
+            "stations by TLS.",
         ),
     ] = None,
 ) -> None:
     """Open the lab, a page on this computer: design, feel, drive and study."""
-    from squeezefilm.lab.serve import serve
+    from squeezefilm.errors import optional
+
+    with optional("lab", "the lab"):
+        from squeezefilm.lab.serve import serve
 
     serve(folder, port=port, browser=browser, lan=lan, say=lambda line: typer.echo(line))
 

@@ -26,10 +26,11 @@ def dxf_text(drawing: Drawing) -> str:
     Dimensions are entities of their own, which keep `value_of` as extended data of `APPLICATION`.
     Raises `InputError` for a drawing in which ezdxf's own audit finds an error.
     """
-    from ezdxf._options import options
-    from ezdxf.filemanagement import new
+    from squeezefilm.errors import InputError, optional
 
-    from squeezefilm.errors import InputError
+    with optional("design", "a DXF file"):
+        from ezdxf._options import options
+        from ezdxf.filemanagement import new
 
     found = new("R2010", setup=True)
     found.header["$INSUNITS"] = MILLIMETRES

@@ -4,7 +4,7 @@ CSV is UTF-8 with a comma, one header line, and before it one comment line ``# {
 metadata, in whose texts commas and semicolons are escaped, so that no spreadsheet finds a formula
 behind one; numbers are written so that they read back as the same float, a missing one is empty.
 Parquet keeps the metadata under the key ``squeezefilm`` of the schema and needs pyarrow (the extra
-``squeezefilm[parquet]``); it is written for other programs, and none of this one reads it.
+``squeezefilm[study]``); it is written for other programs, and none of this one reads it.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.errors import ConfigError, InputError, optional
 from squeezefilm.hard_limits import TABLE_BYTES
 from squeezefilm.regular_file import parsed_json, read_regular_text
 
@@ -178,12 +178,7 @@ def parquet_of_columns(columns: Mapping[str, Sequence[Any]], metadata: Mapping[s
 
 
 def _arrow() -> tuple[ModuleType, ModuleType]:
-    try:
+    with optional("study", "Parquet (not CSV)"):
         import pyarrow
         import pyarrow.parquet
-    except ImportError as error:
-        raise InputError(
-            "Parquet needs pyarrow, which is not installed; install squeezefilm[parquet], or write "
-            "CSV"
-        ) from error
     return pyarrow, pyarrow.parquet

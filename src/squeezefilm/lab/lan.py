@@ -21,7 +21,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, optional
 from squeezefilm.hard_limits import OWN_BYTES
 from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN, Door
 from squeezefilm.lab.files import write_secret
@@ -81,15 +81,11 @@ def certificate(address: str, file: Path) -> str:
     Raises:
         InputError: the package `cryptography` is not there, or the file cannot be written.
     """
-    try:
+    with optional("lab", "the certificate of --lan"):
         from cryptography import x509
         from cryptography.hazmat.primitives import hashes, serialization
         from cryptography.hazmat.primitives.asymmetric import ec
         from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
-    except ImportError as error:
-        raise InputError(
-            "--lan needs the package cryptography for its certificate; install squeezefilm[lan]"
-        ) from error
     now = datetime.datetime.now(datetime.UTC)
     kept = _fingerprint_of(file, address, now + datetime.timedelta(days=1))
     if kept is not None:

@@ -22,7 +22,7 @@ from typing import Any, Generic
 
 from squeezefilm import __version__
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError, WorkersError
+from squeezefilm.errors import WorkersError, optional
 from squeezefilm.kept.computed_by import computed_by
 from squeezefilm.progress import SayProgress
 from squeezefilm.search.tasks import A, K, Lost, Shares, computed, grouped, tried_again
@@ -41,19 +41,13 @@ _PATIENCE: si.Second = 120.0
 class Cluster:
     """The workers of the scheduler at an address, as many as there are at any time.
 
-    Raises `InputError` where Dask is not installed, and on entry `WorkersError` where nothing
-    answers at the address.
+    Raises `MissingPackageError` where Dask is not installed, and on entry `WorkersError` where
+    nothing answers at the address.
     """
 
     def __init__(self, address: str, tell: SayProgress) -> None:
-        try:
+        with optional("cluster", "a scheduler (not processes of this machine, --jobs)"):
             import distributed
-        except ImportError as error:
-            raise InputError(
-                "a scheduler is asked through Dask, which is not installed; install it with "
-                "pip install 'squeezefilm[cluster]', or use processes of this machine (--jobs)",
-                quantity="scheduler",
-            ) from error
         self._dask, self._address, self._tell = distributed, address, tell
         self._client: Any = None
         self._admitted: list[str] = []

@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 
 from squeezefilm.bench.markers import NAME, Markers, markers_if
-from squeezefilm.errors import InputError
 
 
 class Layer:
@@ -62,22 +61,6 @@ def test_markers_are_only_where_they_are_asked_for(layer: Layer) -> None:
     assert markers_if(True) is not None
     assert markers_if("mine") is not None
     assert [one[0] for one in layer.streams] == [NAME, "mine"]
-
-
-@pytest.mark.parametrize("why", [ImportError("no pylsl"), RuntimeError("liblsl is not there")])
-def test_without_pylsl_or_its_library_it_is_said_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, why: Exception
-) -> None:
-    class Refusing:
-        def find_spec(self, name: str, *_: Any) -> None:
-            if name == "pylsl":
-                raise why
-
-    monkeypatch.delitem(sys.modules, "pylsl", raising=False)
-    monkeypatch.setattr(sys, "meta_path", [Refusing(), *sys.meta_path])
-    with pytest.raises(InputError, match=r"install squeezefilm\[lsl\]") as refused:
-        Markers()
-    assert str(why) in str(refused.value)
 
 
 @pytest.mark.slow

@@ -1,6 +1,5 @@
 """Tables in CSV and Parquet: every float comes back, metadata too; what is broken has its line."""
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -70,12 +69,6 @@ def test_files_that_are_none_are_refused(tmp_path: Path) -> None:
         table_from_csv(tmp_path / "none.csv")
     with pytest.raises(InputError, match="one length"):
         Table({"a": np.zeros(2), "b": np.zeros(3)})
-
-
-def test_without_pyarrow_the_message_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(InputError, match=r"install squeezefilm\[parquet\], or write CSV"):
-        parquet_bytes(Table({"x_m": np.zeros(1)}))
 
 
 @given(st.text(alphabet="=+-@,;\t\r\n\"'\\\\ab# {}[]:", max_size=30))

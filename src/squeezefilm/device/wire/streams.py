@@ -11,9 +11,7 @@ import os
 import select
 from typing import Protocol
 
-import serial
-
-from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.errors import DeviceError, InputError, optional
 
 BAUD_RATE = 921_600
 """Bits per second where a port has a real line; USB and pseudo-terminals do not look at it."""
@@ -49,11 +47,14 @@ class SerialStream:
     """
 
     def __init__(self, port: str, baudrate: int = BAUD_RATE) -> None:
+        with optional("device", "a serial port"):
+            import serial
         self.port = port
         self._unsent = bytearray()
+        # pyserial's own error is an OSError.
         try:
             self._serial = serial.Serial(port, baudrate, timeout=0, write_timeout=0, exclusive=True)
-        except (serial.SerialException, OSError, ValueError) as error:
+        except (OSError, ValueError) as error:
             raise DeviceError(
                 f"serial port {port} at {baudrate} baud cannot be opened: {error}; look whether "
                 "the device is plugged in, whether another program has it, and whether you may "
@@ -66,7 +67,7 @@ class SerialStream:
         try:
             waiting = self._serial.in_waiting
             return bytes(self._serial.read(min(waiting, _MOST_READ))) if waiting else b""
-        except (serial.SerialException, OSError, TypeError) as error:
+        except (OSError, TypeError) as error:
             raise self._gone("read from", error) from error
 
     def write(self, data: bytes) -> None:
@@ -88,7 +89,7 @@ class SerialStream:
     def close(self) -> None:
         """Let go of the port."""
         # An unplugged port may fail to close as well; there is nothing left to let go of.
-        with contextlib.suppress(serial.SerialException, OSError):
+        with contextlib.suppress(OSError):
             self._serial.close()
 
     def _flush(self) -> None:
@@ -99,7 +100,7 @@ class SerialStream:
             if os.name == "posix" and not select.select([], [self._serial.fileno()], [], 0.0)[1]:
                 return
             taken = self._serial.write(bytes(self._unsent))
-        except (serial.SerialException, OSError, TypeError) as error:
+        except (OSError, TypeError) as error:
             raise self._gone("write to", error) from error
         del self._unsent[: taken or 0]
 

@@ -15,7 +15,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, optional
 from squeezefilm.measure.calibration.discrepancy import (
     KINDS,
     READ_ALONE,
@@ -244,7 +244,8 @@ def sampled_posterior(
 
     Raises `InputError` where nothing was observed of the plate; interrupted, it leaves nothing.
     """
-    import emcee
+    with optional("measure", "a calibration"):
+        import emcee
 
     if not problem.observations:
         raise InputError("nothing of the plate was observed; give at least one observation of it")

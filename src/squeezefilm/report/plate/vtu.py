@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, optional
 from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
@@ -72,7 +72,8 @@ def write_vtu(
 
 
 def _vtu(volume: PlateVolume, points: dict[str, FloatArray], notes: dict[str, float]) -> bytes:
-    import meshio
+    with optional("design", "a VTU file"):
+        import meshio
 
     mesh: Any = meshio.Mesh(
         volume.points,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, optional
 from squeezefilm.search.design.candidate import (
     Design,
     Evaluated,
@@ -65,7 +65,8 @@ class Proposals:
         *,
         member: int = 0,
     ) -> None:
-        import optuna
+        with optional("design", "a search of designs"):
+            import optuna
 
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         self._requirements, self._shape, self._level = requirements, shape, level

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError, InputError, SqueezefilmWarning
+from squeezefilm.errors import ConfigError, InputError, SqueezefilmWarning, optional
 from squeezefilm.hard_limits import LINES_BYTES
 from squeezefilm.regular_file import read_regular
 from squeezefilm.search.lines import SET_ASIDE, checked_line, is_damaged
@@ -34,8 +34,9 @@ def journal(file: Path) -> Any:
     A lock that a killed process left is taken away after `_LOCK_STAYS`, with a
     `SqueezefilmWarning` while one waits.
     """
-    from optuna.storages import JournalStorage
-    from optuna.storages.journal import JournalFileBackend, JournalFileOpenLock
+    with optional("design", "a search of designs"):
+        from optuna.storages import JournalStorage
+        from optuna.storages.journal import JournalFileBackend, JournalFileOpenLock
 
     class Unhurried(JournalFileBackend):
         def __init__(self) -> None:

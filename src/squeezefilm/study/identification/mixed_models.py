@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.errors import InputError, optional
 from squeezefilm.study.identification.confusion import one_per_trial
 
 _MOST_TRIALS = 50_000
@@ -159,12 +159,7 @@ def _averaged(right: si.FloatArray, fixed: si.FloatArray, people: si.IntArray) -
 
 
 def _statsmodels() -> ModuleType:
-    try:
+    with optional("study", "a mixed model"):
         from statsmodels import api
-    except ImportError as error:
-        raise InputError(
-            "mixed models need statsmodels, which is not installed; install the extra: "
-            "pip install 'squeezefilm[models]'"
-        ) from error
     found: ModuleType = api
     return found

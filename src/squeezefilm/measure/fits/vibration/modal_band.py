@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from squeezefilm import quantities as si
+from squeezefilm.errors import optional
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +69,8 @@ def band_poles(band: ModalBand, H: si.ComplexArray, count: int) -> list[tuple[fl
     import io
     import warnings
 
-    from sdypy import EMA
+    with optional("measure", "a modal fit"):
+        from sdypy import EMA
 
     f = np.linspace(band.f[0], band.f[-1], max(2 * band.f.size, 400))
     even = np.interp(f, band.f, H.real) + 1j * np.interp(f, band.f, H.imag)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError
+from squeezefilm.errors import ConfigError, optional
 from squeezefilm.hard_limits import RECORDING_BYTES
 from squeezefilm.isolated_reading import Read, read_isolated
 from squeezefilm.measure.recordings.files.raw_table import RawTable
@@ -84,7 +84,8 @@ def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
 
 def _blocks(path: Path) -> list[_Block]:
     """The data sets that are read, each looked at before and after."""
-    import pyuff
+    with optional("measure", "a Universal File"):
+        import pyuff
 
     data = read_regular(path, RECORDING_BYTES, "a Universal File")
     # As the reader finds them; behind binary values a mark does not begin its line.
