@@ -27,7 +27,7 @@ def test_a_prediction_and_a_sweep_of_them_are_plotted(sweep: list[Any]) -> None:
     assert len(several.axes[0].lines) == 3
     marks = [float(line.get_ydata()[0]) for line in several.axes[0].lines[1:]]
     assert marks == [one.relative_friction for one in sweep]
-    assert png(several).startswith(b"\x89PNG")
+    assert png(several, 40).startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize("shape", ["strip", "disc", "rectangle"])

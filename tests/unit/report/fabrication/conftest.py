@@ -55,9 +55,7 @@ def with_body() -> Callable[..., Fabrication]:
 @pytest.fixture
 def undrawn(undrawn: None) -> Iterator[None]:
     """Nor are there drawings for a workshop."""
-    page = "squeezefilm.report.fabrication.page"
-    with (
-        mock.patch(f"{page}.pdf", return_value=b"%PDF"),
-        mock.patch(f"{page}.dxf_text", return_value=""),
-    ):
+    drawings = {"pdf": b"%PDF", "dxf_text": "", "sheet_figure": None, "views_figure": None}
+    stand_ins = {name: mock.Mock(return_value=value) for name, value in drawings.items()}
+    with mock.patch.multiple("squeezefilm.report.fabrication.page", **stand_ins):
         yield

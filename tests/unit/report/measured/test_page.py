@@ -132,6 +132,7 @@ def test_two_recordings_of_one_name_have_two_pictures(tmp_path: Path) -> None:
     assert {one.name for one in tmp_path.glob("*.png")} == {"a.png", "a-2.png"}
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_nothing_half_written_is_left_where_a_folder_refuses(tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("a file", encoding="utf-8")
@@ -250,6 +251,7 @@ def folder() -> FolderComparison:
     return FolderComparison((compared(), compared()), (total,), (people,))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_curves_are_shown_beside_all_models(tmp_path: Path) -> None:
     lines = printed(lambda: show_comparisons(folder()))
     assert "partial-levitation 0.008 0.2 3 of 3 1" in lines
