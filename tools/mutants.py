@@ -47,6 +47,7 @@ MARKS = {
     "slow": "not campaign and (realtime or slow or nightly)",
 }
 _FILES = 12  # of tests that are asked by nearness
+_COMPILED = 4.0  # budgets of a module that numba compiles anew for each mutant
 _CUT_OFF = 2.0  # budgets, after which a test that was begun within one is slow
 _FAILED = re.compile(r"^(?:FAILED|ERROR) (.+)$", re.MULTILINE)
 
@@ -122,6 +123,8 @@ class Copy:
         processor time; `healthy`: of a source that only has a blank line more in the same file."""
         path = self.tree / "src" / mutant.path
         source = path.read_bytes()
+        if b"@compiled(" in source:
+            budget *= _COMPILED
         with self._changed(path, source + b"\n" if healthy else mutant.applied(source)):
             return self._asked(tests, marks, budget)
 

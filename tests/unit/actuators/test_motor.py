@@ -348,6 +348,20 @@ def test_the_kernel_of_the_mean_is_of_second_order_in_its_instants() -> None:
     assert errors[1] < 2e-3
 
 
+def test_the_mean_loss_in_the_feet_is_that_of_each_foots_depth_and_speed() -> None:
+    there = motor(beside=0.2)
+    stator, feet, height = there.stator(WORKING), there.feet, 2e-7
+    found = np.zeros(average_kernel.MEANS)
+    swing = average_kernel.Swing(0.0, 0.0, 256, 1, 1)
+    average_kernel.average_contact(stator, feet, there.sideways, height, swing, found)
+    angle = np.outer(stator.omega / stator.omega[0], 2 * np.pi * np.arange(256) / 256)
+    angle += stator.phase[:, None]
+    depth = feet.across @ (stator.amplitude[:, None] * np.cos(angle)) - height
+    speed = feet.across @ ((stator.amplitude * stator.omega)[:, None] * np.sin(angle))
+    lost = (feet.chi * feet.k_nn)[:, None] * speed**2 * np.maximum(depth, 0.0)
+    assert found[5] == pytest.approx(lost.sum(axis=0).mean(), rel=1e-9)
+
+
 def test_what_cannot_work_is_refused_in_words() -> None:
     there = motor()
     with pytest.raises(OutOfRangeError, match=r"900 V; from 333\.3 V on .* loses its poling"):

@@ -11,6 +11,7 @@ from scipy.stats import norm
 from squeezefilm.errors import InputError
 from squeezefilm.measure.fits.friction.friction_scores import (
     SHAPES,
+    ModelScore,
     fitted_shape,
     rest_friction,
     scored,
@@ -126,3 +127,9 @@ def test_a_finger_counts_once_however_often_it_was_measured() -> None:
     assert totals[0] == totals[1]
     unnamed = replace(first, finger="")
     assert unnamed.unit == replace(second, finger="").unit != first.unit
+
+
+def test_a_model_that_refuses_an_amplitude_comes_last_however_near_it_is() -> None:
+    near, far = (ModelScore("a", 1, np.ones(2), off, None) for off in (0.1, 0.2))
+    partial = ModelScore("b", 1, np.array([1.0, np.nan]), 0.01, None)
+    assert sorted([partial, far, near], key=lambda score: score.rank) == [near, far, partial]

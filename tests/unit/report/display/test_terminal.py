@@ -44,7 +44,7 @@ def test_all_of_it_is_printed_where_it_is_asked_for(
     for text in unsaid_warnings(plate_analysis):
         assert " ".join(printable(text).split()) in words
     for part in ("piezoelectric_solid_3d (used)", "timoshenko_beam_plane_strain", "shear_plate",
-                 "Squeeze number", "Thermal resistance"):  # fmt: skip
+                 "Squeeze number", "Thermal resistance", "Slew rate"):  # fmt: skip
         assert part in words
 
 

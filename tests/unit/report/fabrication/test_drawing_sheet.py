@@ -191,8 +191,13 @@ def test_a_small_disc_and_a_ring_of_sectors_are_legible(
     )  # fmt: skip
     for body, keys in ((small, 5), (ring, 7)):
         made = with_body(base, body)
-        require_apart(drawing_sheet(made))
+        drawing = drawing_sheet(made)
+        require_apart(drawing)
         assert len(require_those_of_the_description(made)) == keys
+        words = [item.text for item in drawing.items if isinstance(item, Text)]
+        for name, kind in (("Substrate", "substrate"), ("Ceramic", "ceramic")):
+            materials = {part.material for part in made.parts if part.kind == kind}
+            assert words[words.index(name) + 1] in materials
 
 
 def test_nodal_lines_leave_labels_free(preset: Preset) -> None:

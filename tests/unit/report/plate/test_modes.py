@@ -74,6 +74,13 @@ def test_a_pair_has_its_table(paper: ModeList) -> None:
     assert any("standing-wave ratio" in line for line in lines)
 
 
+def test_numbers_are_written_without_figures_too(paper: ModeList, tmp_path: Path) -> None:
+    write_modes(dataclasses.replace(paper, modes=(), screened=()), tmp_path)
+    (file,) = tmp_path.iterdir()
+    assert file.name == "modes.json"
+    assert json.loads(file.read_text(encoding="utf-8"))["modes"] == []
+
+
 @pytest.mark.slow
 def test_figures_and_numbers_are_written(paper: ModeList, tmp_path: Path) -> None:
     assert write_modes(paper, tmp_path / "a") == tmp_path / "a"

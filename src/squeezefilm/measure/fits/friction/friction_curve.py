@@ -206,7 +206,7 @@ def compare_friction_curve(
         edges[:, :, here] = [(band.low, band.high) for band in bands]
     scores = [scored(model, friction[model], curve) for model in MODEL_KINDS]
     scores += shape_scores(curve)
-    scores.sort(key=lambda score: (score.answered < count, score.difference or 0.0))
+    scores.sort(key=lambda score: score.rank)
     default = next(score for score in scores if score.model == DEFAULT_MODEL)
     # Where the default falls steeply from rest on, a line through its first points starts too low.
     fitted = float(np.nanmean(default.friction / friction[DEFAULT_MODEL]))

@@ -52,6 +52,11 @@ class ModelScore:
         """At how many amplitudes the model has a friction."""
         return int(np.count_nonzero(np.isfinite(self.friction)))
 
+    @property
+    def rank(self) -> tuple[bool, float]:
+        """Sorts the least difference first, and models that refuse an amplitude last."""
+        return self.answered < self.friction.size, self.difference or 0.0
+
 
 @dataclass(frozen=True)
 class TotalScore:
