@@ -68,7 +68,7 @@ _SPOKEN = re.compile(r"^(_?log(ger|ging)?\b|print$|warnings\.|typer\.(echo|secho
 # How a figure looks: no test should pin it.
 _LOOKS = frozenset(
     {"alpha", "color", "dpi", "figsize", "fontsize", "gridspec_kw", "height_ratios", "labelpad"}
-    | {"labelsize", "length", "linewidth", "linewidths", "lw", "marker", "markersize", "ncol"}
+    | {"labelsize", "length", "linewidth", "linewidths", "lw", "marker", "markersize", "ms", "ncol"}
     | {"pad", "rotation", "s", "width", "width_ratios", "x", "y", "zorder"}
 )
 _NO_BEHAVIOUR = frozenset({"indent", "stacklevel"})

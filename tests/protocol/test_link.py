@@ -321,6 +321,11 @@ def test_a_writer_far_ahead_is_told_what_fits() -> None:
     assert drive.write(np.full(2_000, 1.0)) == pytest.approx(250, abs=10)
 
 
+def test_a_writer_of_long_periods_is_at_most_a_second_ahead() -> None:
+    _, _, host = playing(FAST)
+    assert 90 < SerialDrive(host, 10e-3).write(np.full(200, 1.0)) < 100
+
+
 def test_a_drive_needs_a_clock() -> None:
     wire = Wire(Machine(9))
     host = DeviceHost(Link(wire, wire.clock, wire.wait))

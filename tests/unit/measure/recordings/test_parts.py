@@ -111,6 +111,10 @@ def test_every_kind_may_be_doubted() -> None:
     assert doubts_of(kinds.FrequencyResponse(f, h)) == ()
     (rising,) = doubts_of(kinds.FrequencyResponse(f, np.conj(h)))
     assert "the sign of the phase may be the other one" in rising
+    right, wrong = (kinds.FrequencyResponse(f, y, voltage=2.0) for y in (h, np.conj(h)))
+    second, alike = doubts_of(kinds.VoltageSweeps((right, wrong), ("up", "down")))
+    assert second == f"sweep 2: {rising}"
+    assert alike.startswith("all sweeps are at one voltage")
 
 
 def test_an_export_is_known_by_its_head(tmp_path: Path) -> None:
