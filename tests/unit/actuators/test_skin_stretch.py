@@ -29,6 +29,11 @@ def test_the_preset_has_nearly_the_published_figures(array: SkinStretchArray) ->
     assert skin.stiffness == pytest.approx(load_line.IMPLIED_STIFFNESS, rel=0.01)
     loaded = load_line.loaded_tip(bender, skin, voltage)
     assert loaded.deflection == pytest.approx(load_line.PUBLISHED_LOADED, rel=0.05)
+    mass, stiffness = bender.effective_mass + skin.mass, bender.stiffness + skin.stiffness
+    assert (2 * np.pi * loaded.resonance_frequency) ** 2 == pytest.approx(stiffness / mass)
+    rate = 2 * np.pi * loaded.bandwidth
+    gain = abs(stiffness / (stiffness - mass * rate**2 + 1j * rate * skin.damping))
+    assert abs(np.log2(gain)) == pytest.approx(0.5)  # 3 dB
     assert array.cradle.count == 60
     assert array.budget.over == ()
 
