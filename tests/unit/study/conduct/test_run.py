@@ -58,6 +58,8 @@ def test_the_same_token_twice_is_one_row_and_the_first_answer(tmp_path: Path) ->
             run.respond(shown.token, Response())
         shown = run.next_trial()
         assert shown is not None
+        with pytest.raises(InputError, match=r"'5 mm' is no answer to trial 4; answers: .*4 mm"):
+            run.respond(shown.token, Response(choice="5 mm"))
         first = run.respond(shown.token, Response(choice="4 mm"))
         assert not first.repeated
         for choice in ("4 mm", "8 mm"):
