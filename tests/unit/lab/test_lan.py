@@ -183,7 +183,7 @@ def test_without_its_package_a_certificate_is_refused_in_words(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "cryptography", None)
-    with pytest.raises(InputError, match=r"install squeezefilm\[lan\]"):
+    with pytest.raises(InputError, match=r"squeezefilm\[lab\]"):
         certificate("192.168.1.20", tmp_path / "key.pem")
     assert list(tmp_path.iterdir()) == []
 
