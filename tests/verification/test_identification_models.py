@@ -292,7 +292,7 @@ def test_a_stimulus_always_right_is_said_to_be() -> None:
 
 def test_without_statsmodels_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "statsmodels", None)
-    with pytest.raises(InputError, match=r"squeezefilm\[models\]"):
+    with pytest.raises(InputError, match=r"squeezefilm\[study\]"):
         mixed_model([0, 1], [0, 0], [True, False], ("a",))
 
 

@@ -58,9 +58,9 @@ def shown(drawing: Drawing) -> dict[str, list[float]]:
     return values
 
 
-def require_those_of_the_description(made: Fabrication) -> dict[str, list[float]]:
+def require_those_of_the_description(made: Fabrication, drawing: Drawing) -> dict[str, list[float]]:
     """All dimensions of a drawing are the description's values."""
-    found = shown(drawing_sheet(made))
+    found = shown(drawing)
     for key, values in found.items():
         wanted = 1e3 * value_at(made.display, key)[0]
         assert values == pytest.approx([wanted] * len(values), abs=1e-6), key
@@ -95,8 +95,9 @@ def require_apart(drawing: Drawing) -> None:
 @pytest.mark.parametrize("name", sf.display_names())
 def test_every_preset_has_a_sound_drawing_of_its_own_sizes(preset: Preset, name: str) -> None:
     made = preset(name)
-    found = require_those_of_the_description(made)
-    require_apart(drawing_sheet(made))
+    drawing = drawing_sheet(made)
+    found = require_those_of_the_description(made, drawing)
+    require_apart(drawing)
     wanted = {
         "rectangular_plate": {"actuator.length", "actuator.width", "actuator.thickness"},
         "disc": {"actuator.diameter", "actuator.thickness", "actuator.ceramic_thickness"},
@@ -144,7 +145,7 @@ def test_dimensions_of_any_plate_are_its_description(
     preset: Preset, with_body: WithBody, plate: RectangularPlate
 ) -> None:
     made = with_body(preset("biet2008-plate"), plate)
-    found = require_those_of_the_description(made)
+    found = require_those_of_the_description(made, drawing_sheet(made))
     assert {"actuator.length", "actuator.width", "actuator.thickness"} <= set(found)
     assert "actuator.patches.0.length" in found
     assert any(key.endswith(".thickness") and "patches" in key for key in found)
@@ -193,7 +194,7 @@ def test_a_small_disc_and_a_ring_of_sectors_are_legible(
         made = with_body(base, body)
         drawing = drawing_sheet(made)
         require_apart(drawing)
-        assert len(require_those_of_the_description(made)) == keys
+        assert len(require_those_of_the_description(made, drawing)) == keys
         words = [item.text for item in drawing.items if isinstance(item, Text)]
         for name, kind in (("Substrate", "substrate"), ("Ceramic", "ceramic")):
             materials = {part.material for part in made.parts if part.kind == kind}
@@ -232,7 +233,7 @@ def test_tolerances_of_the_description_stand_behind_their_numbers(
     assert said["actuator.length"] == "83 ±0.1"
     assert said["actuator.thickness"] == "2 (1.9 to 2.2)"
     assert said["actuator.width"] == "49"
-    require_those_of_the_description(made)
+    require_those_of_the_description(made, drawing)
     assert tolerance_said(made.display, "actuator.width") == ""
     even = {"actuator.thickness": Provenance("sheet", "measured", Uniform(1.9e-3, 2.1e-3))}
     narrow = with_body(base, base.display.actuator, provenance=even)
@@ -302,6 +303,6 @@ def test_ceramics_on_both_faces_have_their_thicknesses(preset: Preset, with_body
     made = with_body(base, dataclasses.replace(plate, patches=(*plate.patches, *above)))
     drawing = drawing_sheet(made)
     require_apart(drawing)
-    found = require_those_of_the_description(made)
+    found = require_those_of_the_description(made, drawing)
     assert {"actuator.patches.6.thickness", "actuator.patches.13.thickness"} <= set(found)
     assert "Dashed: 7 ceramics on the upper face." in drawing.notes
