@@ -80,7 +80,10 @@ def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
     frequency, value = frequency[kept], value[kept]
     outside = reading.table.outside(frequency)
     reading.doubts += [] if outside is None else [outside]
-    return kinds.ImpedanceSweep(frequency, value, reading.told(), _ceramic(reading))
+    said: Any = reading.description.said
+    return kinds.ImpedanceSweep(
+        frequency, value, reading.told(), _ceramic(reading), said.compensated
+    )
 
 
 def _first_and_second(

@@ -64,7 +64,8 @@ class DescribedImpedance(Described):
     """An impedance or admittance against frequency; of a bare ceramic where its shape is told.
 
     `reference` is the impedance that waves are told against, `shunt` the resistor between the
-    device and ground over which a gain was taken, `band` the frequencies that are kept.
+    device and ground over which a gain was taken, `compensated` whether the leads were, `band` the
+    frequencies that are kept.
     """
 
     kind: Literal["impedance"]
@@ -74,6 +75,7 @@ class DescribedImpedance(Described):
     correct: Literal["phase 180 deg", "phase sign"] | None = None
     reference: Annotated[si.Ohm, RESISTANCE] | None = None
     shunt: Annotated[si.Ohm, RESISTANCE] | None = None
+    compensated: bool | None = None
     band: Band | None = None
 
 

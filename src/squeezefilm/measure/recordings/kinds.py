@@ -39,12 +39,14 @@ class Told:
 @dataclass(frozen=True, eq=False)
 class ImpedanceSweep:
     """Admittance (S, complex, time factor e^{iωt}) at rising `frequency` (Hz), both (points,);
-    `body` is the bare ceramic that was swept, where it is told to be one."""
+    `body` is the bare ceramic that was swept, where it is told to be one, `compensated` whether
+    the fixture's leads were (None where that is not told)."""
 
     frequency: si.HertzArray
     admittance: si.Array
     told: Told = field(default_factory=Told)
     body: CeramicBar | CeramicDisc | None = None
+    compensated: bool | None = None
 
     def __post_init__(self) -> None:
         si.require_alike(frequency=self.frequency, admittance=self.admittance)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -88,7 +89,7 @@ def test_five_modes_of_a_wide_band_are_found() -> None:
 @pytest.mark.parametrize(
     ("quality", "capacitance", "band", "points"),
     [
-        (3000.0, 2e-10, (27e3, 31e3), 401),
+        (2000.0, 2e-10, (27e3, 31e3), 401),
         (8.0, 4e-10, (18e3, 45e3), 401),
         (100.0, 2e-13, (27e3, 29.2e3), 401),
         (100.0, 2e-10, (27e3, 30e3), 25),
@@ -151,13 +152,28 @@ def test_a_linear_branch_is_not_said_to_soften() -> None:
     assert fit_impedance(PLAIN).softening is None
 
 
-def test_a_drift_is_fitted_on_request_and_otherwise_noticed() -> None:
+def test_a_drift_is_fitted_on_request_and_found_by_itself() -> None:
     drifting = sweep_of(Layout(1, drift=True), np.append(TRUTH, [0.1, 0.05]))
     fit = fit_impedance(drifting, drift=True)
     assert fit.drift == pytest.approx(0.1 + 0.05j, abs=5e-3)
     assert fit.strongest.quality_factor.value == pytest.approx(75, rel=0.01)
     assert fit.adequacy.adequate
-    assert not fit_impedance(drifting, branches=1).adequacy.adequate
+    found = fit_impedance(drifting, branches=1)
+    assert found.drift == pytest.approx(fit.drift, abs=5e-3)
+    assert "alike" not in found.adequacy.sentence
+
+
+def test_leads_are_fitted_where_told_and_doubted_where_a_loss_would_do_as_well() -> None:
+    y = PLAIN.admittance
+    leads = ImpedanceSweep(PLAIN.frequency, y / (1 + y * 30.0), compensated=False)
+    told = fit_impedance(leads)
+    assert told.layout.leads
+    assert told.strongest.quality_factor.value == pytest.approx(75, rel=0.01)
+    assert not fit_impedance(replace(leads, compensated=True)).layout.leads
+    open_ = fit_impedance(replace(leads, compensated=None))
+    low, high = open_.strongest.quality_factor.interval
+    assert low < 75 < high
+    assert "alike" in open_.adequacy.sentence or open_.layout.leads
 
 
 @pytest.mark.parametrize(

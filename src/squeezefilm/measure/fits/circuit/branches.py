@@ -2,7 +2,8 @@
 
 Y = (1 + a s) [iω C0 (1 − i tan δ) + (1 − iθ)² Σ iω C_k / (1 − (f/f_k)² + i f/(f_k Q_k))], with s
 from −½ to ½ along the sweep. A branch is the R, L, C of Butterworth and Van Dyke: C_k = C,
-f_k = 1/(2π √(LC)), Q_k = √(L/C)/R. Beyond their circuit, and 0 unless fitted: θ, the loss of the
+f_k = 1/(2π √(LC)), Q_k = √(L/C)/R. Leads in series with all of it, of resistance R_l and inductance
+L_l, make it Y/(1 + Y (R_l + iω L_l)). Beyond their circuit, and 0 unless fitted: θ, the loss of the
 piezoelectric coupling itself (a complex charge coefficient, which turns the circle of the
 admittance); a, complex, a drift of the analyser's gain; and softening, by which f_k and Q_k are
 those at the largest motion of the sweep, u = 1, while at less motion the stiffness is larger by
@@ -27,17 +28,19 @@ _LARGEST = np.array([30.0, 30.0, 0.0])
 @dataclass(frozen=True)
 class Layout:
     """Which parameter stands where: ln C0 and tan δ, then ln f, ln Q, ln C of each branch, then
-    the coupling's loss, g and h of softening, real and imaginary part of a drift."""
+    the coupling's loss, g and h of softening, R_l (Ω) and L_l (H) of leads, real and imaginary part
+    of a drift."""
 
     branches: int
     coupling_loss: bool = False
     softening: bool = False
+    leads: bool = False
     drift: bool = False
 
     @property
     def size(self) -> int:
         """How many parameters there are."""
-        return self.soft + 2 * self.softening + 2 * self.drift
+        return self.lead + 2 * self.leads + 2 * self.drift
 
     @property
     def loss(self) -> int:
@@ -48,6 +51,11 @@ class Layout:
     def soft(self) -> int:
         """Where g and h of softening stand, if it is fitted."""
         return self.loss + self.coupling_loss
+
+    @property
+    def lead(self) -> int:
+        """Where the leads' resistance and inductance stand, if they are fitted."""
+        return self.soft + 2 * self.softening
 
     def branch(self, k: int) -> slice:
         """Where ln f, ln Q and ln C of branch k stand."""
@@ -92,6 +100,12 @@ def circuit_curve(
             slopes[layout.soft + 1] += term / below * full * stiller
     if layout.coupling_loss:
         slopes[layout.loss] = (total - slopes[0]) * -2j / (1 - 1j * loss)
+    if layout.leads:
+        through = 1 / (1 + total * (p[layout.lead] + 1j * omega * p[layout.lead + 1]))
+        slopes *= through**2
+        slopes[layout.lead] = -((total * through) ** 2)
+        slopes[layout.lead + 1] = 1j * omega * slopes[layout.lead]
+        total = total * through
     if layout.drift:
         place = np.linspace(-0.5, 0.5, frequency.size)
         gain = 1 + complex(p[-2], p[-1]) * place

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
 import numpy as np
@@ -36,6 +38,13 @@ _LEAST_RISE = 1e-3
 _EVIDENCE, _LESS_LEFT = 10.0, 0.8
 # ... and be told from the others: to that standard error of ln Q and ln C.
 _TOLD_APART = 0.35
+
+
+# What may stand beside the branches.
+_CORRECTIONS = ("coupling_loss", "leads", "drift")
+_WORDS = {"coupling_loss": "a loss of the coupling", "leads": "leads in series",
+          "drift": "a drift of the analyser"}  # fmt: skip
+_Fitted = tuple[ComplexFit, Layout]
 
 
 @dataclass(frozen=True)
@@ -116,8 +125,10 @@ class ImpedanceFit:
     @property
     def observations(self) -> tuple[Observation, ...]:
         """What a calibration may use of the strongest branch; the coupling follows from the two
-        resonances and would count them twice."""
+        resonances and would count them twice. Nothing of one whose Q has no bounds."""
         branch = self.strongest
+        if not branch.quality_factor.standard_error < branch.quality_factor.value / 2:
+            return ()
         return tuple(
             Observation(answer, estimate.value, estimate.standard_error)
             for answer, estimate in (
@@ -135,36 +146,77 @@ def fit_impedance(
     """Fit a circuit of Butterworth and Van Dyke, with as many `branches` as the sweep asks for.
 
     Without `branches`: one more as long as what is left is smoother than noise and the Bayesian
-    information criterion falls by more than 10, at most 8; a loss of the coupling itself is asked
-    for in the same way, and after it a branch that softens and loses more the farther it moves, by
-    the square of its motion (for a sweep at one voltage). `drift` fits a complex gain that changes
-    in proportion to the point's number too; a resonance that drifts during the sweep cannot be told
-    from another Q. Noise is relative, down to a floor where the data tell of one, and estimated
-    from them; missing points do no harm. Intervals are of 95 %, to first order in the noise; where
-    the circuit misses something they are widened by how alike neighbouring residuals are, which is
-    no bound. Raises `InputError` for a sweep that no passive capacitive body has (a phase that is
-    off by 180° or has the wrong sign), that holds no resonance, or is too short.
+    information criterion falls by more than 10, at most 8. In the same way are asked for: a
+    loss of the coupling itself, leads in series, a drift of the complex gain in proportion to
+    the point's number, and after them a branch that softens and loses more the farther it
+    moves, by the square of its motion (for a sweep at one voltage). `drift`, or a sweep that is
+    not `compensated`, has drift or leads for certain; a compensated one has no leads. Where the
+    sweep does not tell one of the three from another, intervals hold what each makes of it, and
+    the adequacy says so. A resonance that drifts during the sweep cannot be told from another
+    Q. Noise is relative, down to a floor where the data tell of one, and estimated from them;
+    missing points do no harm. Intervals are of 95 %, to first order in the noise; where the
+    circuit misses something they are widened by how alike neighbouring residuals are, which is
+    no bound. Raises `InputError` for a sweep that no passive capacitive body has (a phase that
+    is off by 180° or has the wrong sign), that holds no resonance, or is too short.
     """
     require_passive(sweep)
     if branches is not None:
         si.require("branches", branches, at_least=1, at_most=MOST_BRANCHES)
-    fit, layout = _chosen(sweep, branches, drift)
-    return _told(sweep, fit, layout)
+    (fit, layout), rivals = _settled(sweep, _chosen(sweep, branches, drift), drift)
+    told = _told(sweep, fit, layout)
+    for rival in rivals:
+        told = _holding(told, _told(sweep, *rival))
+    return told
 
 
-def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> tuple[ComplexFit, Layout]:
+def _holding(told: ImpedanceFit, rival: ImpedanceFit) -> ImpedanceFit:
+    """The same with intervals that hold what a circuit says that describes the sweep as well."""
+    pairs = zip(told.branches, rival.branches, strict=True)
+    branches = tuple(
+        Branch(**{
+            one.name: _wider(getattr(ours, one.name), getattr(theirs, one.name))
+            for one in fields(Branch)
+        })
+        for ours, theirs in pairs
+    )  # fmt: skip
+    said = told.adequacy.sentence
+    if "alike" not in said:
+        either = told.layout, rival.layout
+        found = [one for one in _CORRECTIONS if any(getattr(layout, one) for layout in either)]
+        names = " and ".join(_WORDS[one] for one in found)
+        said += (
+            f" {names.capitalize()} describe this sweep alike: intervals hold what either makes of "
+            "it. Write compensated = true if leads were compensated, or false if they were not."
+        )
+    return replace(
+        told,
+        branches=branches,
+        static_capacitance=_wider(told.static_capacitance, rival.static_capacitance),
+        adequacy=replace(told.adequacy, sentence=said),
+    )
+
+
+def _wider(ours: Estimate, theirs: Estimate) -> Estimate:
+    """An estimate under two circuits that are as likely: each with half of the weight."""
+    error = math.hypot(ours.standard_error, (theirs.value - ours.value) / math.sqrt(2))
+    more = error / ours.standard_error if ours.standard_error > 0 else 1.0
+    low, high = (ours.value + more * (end - ours.value) for end in ours.interval)
+    return replace(ours, standard_error=error, interval=(low, high))
+
+
+def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> _Fitted:
     """The fit of as many branches as were asked for, or as the sweep asks for."""
     counts = range(1, MOST_BRANCHES + 1) if branches is None else (branches,)
-    best: tuple[ComplexFit, Layout] | None = None
+    best: _Fitted | None = None
     since = 0
     for count in counts:
-        for layout in _layouts(count, drift):
+        for step in _layouts(count, _corrections(sweep, drift)):
             if best is not None and (best[0].correlation == 1.0 or since == _PATIENCE):
                 return best
-            tried = [_fitted(sweep, layout), _one_more(sweep, layout, best)]
+            tried = [_fitted(sweep, layout) for layout in step] + [_one_more(sweep, step[0], best)]
             told = [one for one in tried if one is not None and (not best or _better(one, best))]
             if told:
-                best, since = min(told, key=lambda one: one[0].left), 0
+                best, since = min(told, key=_criterion), 0
             else:
                 since += 1
     if best is None:
@@ -172,28 +224,80 @@ def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> tuple[C
     return best
 
 
-def _layouts(count: int, drift: bool) -> tuple[Layout, ...]:
-    """Circuits of that many branches, the plainer first; only one branch can soften."""
-    plain, lossy = Layout(count, drift=drift), Layout(count, coupling_loss=True, drift=drift)
-    if count > 1:
-        return plain, lossy
-    return plain, lossy, replace(lossy, softening=True)
+def _corrections(sweep: ImpedanceSweep, drift: bool) -> tuple[frozenset[str], ...]:
+    """What may stand beside the branches, the plainer first: what was told stands in all."""
+    told = {"drift"} if drift else set()
+    told |= {"leads"} if sweep.compensated is False else set()
+    free = [one for one in _CORRECTIONS if one not in told]
+    if sweep.compensated:
+        free.remove("leads")
+    return tuple(
+        frozenset(told | set(one))
+        for size in range(3)
+        for one in itertools.combinations(free, size)
+    )
 
 
-def _better(more: tuple[ComplexFit, Layout], best: tuple[ComplexFit, Layout]) -> bool:
+def _layouts(count: int, corrections: Sequence[frozenset[str]]) -> Iterator[tuple[Layout, ...]]:
+    """Circuits of that many branches, the plainer first, those of one step beside each other; only
+    one branch can soften."""
+    made = [Layout(count, **dict.fromkeys(one, True)) for one in corrections]
+    for _, step in itertools.groupby(made, _corrected):
+        yield tuple(step)
+    if count == 1:
+        yield (replace(made[0], coupling_loss=True, softening=True),)
+
+
+def _corrected(layout: Layout) -> int:
+    """How many corrections a circuit has."""
+    return sum(getattr(layout, one) for one in _CORRECTIONS)
+
+
+def _settled(sweep: ImpedanceSweep, best: _Fitted, drift: bool) -> tuple[_Fitted, list[_Fitted]]:
+    """The fit with the corrections that are told, though what is left looked like noise (leads far
+    too small to be seen there move Q by more than its interval); and its rivals: as many
+    corrections of another kind, which the sweep does not tell from them."""
+    if best[1].softening:
+        return best, []
+    corrected = _corrected(best[1])
+    tried = [
+        _fitted(sweep, layout)
+        for step in _layouts(best[1].branches, _corrections(sweep, drift))
+        for layout in step
+        if corrected <= _corrected(layout) <= corrected + 1
+        and (not layout.softening or best[0].correlation > 1.0)
+    ]
+    fits = [one for one in tried if one is not None]
+    least = min(fits, key=_criterion, default=best)
+    best = least if _criterion(least) < _criterion(best) - _EVIDENCE else best
+    return best, [
+        one
+        for one in fits
+        if one[1] != best[1]
+        and _corrected(one[1]) == _corrected(best[1])
+        and _deviance(one) < _deviance(best) + _EVIDENCE
+    ]
+
+
+def _deviance(fit: _Fitted) -> float:
+    """What a fit leaves: twice the logarithm of a likelihood, but for a constant."""
+    return 2 * fit[0].residual.size * math.log(fit[0].left ** 2)
+
+
+def _criterion(fit: _Fitted) -> float:
+    """The Bayesian information criterion of a fit."""
+    return _deviance(fit) + fit[1].size * math.log(2 * fit[0].residual.size)
+
+
+def _better(more: _Fitted, best: _Fitted) -> bool:
     """Whether the richer circuit is asked for by the data, and each of its branches is told."""
     fit, layout = more
     for k in range(layout.branches):
         if np.any(np.sqrt(np.diag(fit.covariance)[layout.branch(k)]) > _TOLD_APART):
             return False
-    rows = 2 * more[0].residual.size
-    fall = rows * math.log(best[0].left ** 2 / more[0].left ** 2)
-    fall -= (more[1].size - best[1].size) * math.log(rows)
-    explains = more[0].left < _LESS_LEFT * best[0].left
     # Under much noise a neighbour takes less, and leaves nothing but noise.
-    if layout.branches > best[1].branches:
-        explains |= more[0].correlation == 1.0
-    return fall > _EVIDENCE and explains
+    explains = fit.left < _LESS_LEFT * best[0].left or fit.correlation == 1.0
+    return _criterion(best) - _criterion(more) > _EVIDENCE and explains
 
 
 def _no_resonance(sweep: ImpedanceSweep, branches: int) -> InputError:
@@ -207,9 +311,7 @@ def _no_resonance(sweep: ImpedanceSweep, branches: int) -> InputError:
     )
 
 
-def _one_more(
-    sweep: ImpedanceSweep, layout: Layout, best: tuple[ComplexFit, Layout] | None
-) -> tuple[ComplexFit, Layout] | None:
+def _one_more(sweep: ImpedanceSweep, layout: Layout, best: _Fitted | None) -> _Fitted | None:
     """A branch more than the best fit has, where that leaves most: poles of all the sweep do not
     find a small one under noise."""
     if best is None or layout.branches != best[1].branches + 1:
@@ -229,7 +331,7 @@ def _fitted(
     layout: Layout,
     own: si.HertzArray | None = None,
     quality: si.DimensionlessArray | None = None,
-) -> tuple[ComplexFit, Layout] | None:
+) -> _Fitted | None:
     """The fit of a layout, branches rising in frequency, from frequencies (Hz) and Q of branches or
     from the poles of the sweep; None where there are not so many."""
     f, y, count = sweep.frequency, sweep.admittance, layout.branches
@@ -248,14 +350,21 @@ def _fitted(
     logs = np.array([fit.parameters[layout.branch(k)] for k in range(count)])
     frequency, quality = np.exp(np.clip(logs[:, :2], -30, 30)).T
     inside = (frequency > f[0]) & (frequency < f[-1])
-    # Narrower than the points are apart is no resonance but a point that is off.
+    # Narrower than the points are apart is no resonance that these points can tell.
     step = np.interp(frequency, f, np.gradient(f))
-    sharp = (quality > _LEAST_QUALITY) & (frequency / quality > 0.5 * step)
+    sharp = (quality > _LEAST_QUALITY) & (frequency / quality > step)
     # How far the branch rises above the static capacitance, at its resonance.
     strong = quality * np.exp(np.clip(logs[:, 2] - fit.parameters[0], -60, 30)) > _LEAST_RISE
     if not np.all(inside & sharp & strong) or not np.all(np.diag(fit.covariance) > 0):
         return None
     # Softer by a third is no correction of a linear circuit any more.
+    if layout.leads:
+        ohms, henries = fit.parameters[layout.lead :][:2]
+        # A coil within the sweep's own reactance; leads give no power.
+        error = math.sqrt(fit.covariance[layout.lead, layout.lead])
+        least = float(np.min(np.abs(1 / y)))
+        if ohms < -2 * error or ohms > least or 2 * math.pi * f[-1] * abs(henries) > 10 * least:
+            return None
     if layout.softening and np.any(np.abs(fit.parameters[layout.soft :][:2]) > [0.3, 0.95]):
         return None
     return _in_order(fit, layout, frequency), layout
