@@ -13,6 +13,7 @@ from squeezefilm.measure.fits.ceramic.disc import (
     Combination,
     DiscConstants,
     DiscCurve,
+    _doubted,
     combinations,
     disc_by_mass,
     disc_constants,
@@ -22,6 +23,7 @@ from squeezefilm.measure.fits.ceramic.disc_prediction import (
     RadialPrediction,
     predict_radial_mode,
 )
+from squeezefilm.measure.fits.estimate import Adequacy
 from squeezefilm.measure.fits.sweep_reading import sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
@@ -165,3 +167,11 @@ def test_what_is_assumed_of_the_way_can_be_said(found: DiscConstants) -> None:
     assert rise == pytest.approx(0.012 * math.log(2.63) / math.pi, abs=1e-3)
     with pytest.raises(InputError, match="number"):
         predict_radial_mode(found, disc_sweep(), 9)
+
+
+def test_a_compliance_that_no_ceramic_has_is_doubted() -> None:
+    good = Adequacy(True, 0.0, 0.0, "", "As noise would.")
+    assert _doubted(good, 0.3) is good
+    doubted = _doubted(good, math.log(0.15))
+    assert not doubted.adequate
+    assert "another than the first radial mode" in doubted.sentence

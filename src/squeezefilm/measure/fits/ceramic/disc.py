@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -18,12 +18,13 @@ from squeezefilm.measure.fits.ceramic.constants import (
     resonance_peaks,
 )
 from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, fit_complex
-from squeezefilm.measure.fits.estimate import Estimate
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
 
 _LEAST_SLENDERNESS = 5.0
+_NO_CERAMIC = 2.5
 
 
 @dataclass(frozen=True)
@@ -88,8 +89,10 @@ def disc_constants(
         square = math.exp(2 * p[2] - p[0] - p[3]) / VACUUM_PERMITTIVITY
         return math.sqrt(2 * square / (1 - p[1]))
 
+    found = constants_of(fit, sweep, fitted, (0, 2, 3, 4, 5, 6), "The solved disc")
+    found["adequacy"] = _doubted(found["adequacy"], float(fit.parameters[0] - prior.mean[0]))
     return DiscConstants(
-        **constants_of(fit, sweep, fitted, (0, 2, 3, 4, 5, 6), "The solved disc"),
+        **found,
         disc=disc,
         compliance_12=fit.estimate(lambda p: -float(p[1]) * math.exp(p[0]), "m2/N"),
         poisson_ratio=fit.estimate(lambda p: float(p[1]), "1"),
@@ -98,6 +101,18 @@ def disc_constants(
         combinations=combinations(fit, prior),
         mean_misfit=float(miss),
     )
+
+
+def _doubted(adequacy: Adequacy, away: float) -> Adequacy:
+    """Inadequate where s11 is beyond any ceramic by its logarithm `away` from the prior's: the
+    second radial mode taken as the first makes s11 (2.06/5.40)² = 0.15 of what it is."""
+    if abs(away) < math.log(_NO_CERAMIC):
+        return adequacy
+    said = (
+        f" The compliance is {math.exp(away):.2g} times that of usual ceramics, which none has: "
+        "another than the first radial mode was probably recorded; sweep around the lowest one."
+    )
+    return replace(adequacy, adequate=False, sentence=adequacy.sentence + said)
 
 
 class DiscCurve:
