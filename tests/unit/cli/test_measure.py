@@ -72,7 +72,7 @@ def test_a_file_that_cannot_be_read_is_one_message_and_leaves_nothing(tmp_path: 
     assert folder.returncode == 1
     assert "1 could not be read" in folder.stdout
     both = run("measure", "check", str(tmp_path), "--described", str(path))
-    assert "--described goes with one file" in both.stderr
+    assert "--described and --write go with one file" in both.stderr
 
 
 @pytest.mark.parametrize("adequate", [True, False])
