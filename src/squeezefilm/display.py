@@ -311,7 +311,7 @@ def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
     if file.is_dir():
         raise InputError(f"{file} is a directory; give the name of a TOML file to write")
     if file.exists() and not replace:
-        raise InputError(f"{file} exists; give another name, or --force to replace it")
+        raise InputError(f"{file} exists; give another name, or force to replace it")
     name = re.sub(r"[^A-Za-z0-9._-]+", "-", file.stem) or "display"
     own = re.sub(r'(?m)^name = ".*"$', f'name = "{name}"', text, count=1)
     # What was measured of the preset's device was not measured of this one.

@@ -1,5 +1,6 @@
 """The house's own rules: layers, docstrings, licences, and what is never committed."""
 
+import ast
 import importlib
 import importlib.metadata
 import inspect
@@ -131,3 +132,19 @@ def test_constraints_pin_and_hold_no_address() -> None:
     # Asked for on other platforms, or by Pythons before ours, only.
     elsewhere = {"tzdata", "colorama", "exceptiongroup", "importlib-metadata", "tomli"}
     assert _runtime_closure() - names <= elsewhere
+
+
+def test_messages_of_the_library_speak_of_arguments_not_of_options() -> None:
+    """An error is read in a notebook and in the browser too, where there is no `--place`."""
+    package = ROOT / "src" / "squeezefilm"
+    speaking = []
+    for file in sorted(package.rglob("*.py")):
+        if file.is_relative_to(package / "cli"):
+            continue
+        for raised in ast.walk(ast.parse(file.read_text("utf-8"))):
+            if isinstance(raised, ast.Raise):
+                texts = (one.value for one in ast.walk(raised) if isinstance(one, ast.Constant))
+                options = [text for text in texts if re.search(r"(^|[ (`])--[a-z]", str(text))]
+                speaking += [(str(file.relative_to(package)), text) for text in options]
+    # What Dask's own program and a command line given whole are called is another matter.
+    assert [one for one in speaking if not re.search("--nworkers|squeezefilm ", one[1])] == []

@@ -178,8 +178,8 @@ def reading_checks(talk: Conversation, duration: si.Second = 0.5) -> list[CheckR
             "finger sensor",
             seen,
             "present" if seen else "none",
-            "present, for --sensor device",
-            "without one play with --sensor replay:FILE; else connect it and look at the firmware",
+            "present, for sensor device",
+            "without one play with sensor replay:FILE; else connect it and look at the firmware",
         ),
     ]
 

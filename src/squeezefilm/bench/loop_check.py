@@ -82,7 +82,7 @@ def loop_result(lateness: Lateness, stolen: si.Second) -> CheckResult:
     advice = (
         "the host of this virtual computer may have lost them; play on a computer of one's own"
         if stolen >= missing
-        else "allow real-time priority (rtprio), close other programs, or play at a lower --rate"
+        else "allow real-time priority (rtprio), close other programs, or play at a lower rate"
     )
     allowed = f"at least {100 * LEAST_MADE:g} % made"
     return CheckResult("loop", passed, measured, allowed, "" if passed else advice)

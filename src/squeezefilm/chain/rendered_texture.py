@@ -241,11 +241,11 @@ class RenderRequest:
         where it changes no friction."""
         if self.place is not None and self.wave != "ignored":
             raise InputError(
-                f"--place keeps the finger at one place of the plate, and with --wave {self.wave} "
+                f"place keeps the finger at one place of the plate, and with wave {self.wave} "
                 "it crosses a wave that is even across and has an antinode at the texture's x = 0: "
-                "both say where the nodes are. For the friction of the place leave --wave out. For "
-                "the wave leave --place out and begin the stroke at the place's distance from the "
-                'antinode: --stroke "60 mm/s over 4 cm, from 5 mm"',
+                "both say where the nodes are. For the friction of the place leave wave out. For "
+                "the wave leave place out and begin the stroke at the place's distance from the "
+                'antinode: stroke "60 mm/s over 4 cm, from 5 mm"',
                 quantity="place",
             )
         return at_largest_amplitude(

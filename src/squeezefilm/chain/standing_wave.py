@@ -49,7 +49,7 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
     plate = display.actuator
     if isinstance(plate, DiscPlate):
         raise InputError(
-            "the wave of a disc is no standing wave along a line; leave --wave out for a disc"
+            "the wave of a disc is no standing wave along a line; leave wave out for a disc"
         )
     along = AlongY() if plate.lines_across == "width" else AlongX()
     half, law = p.mode.half_wavelength, p.law

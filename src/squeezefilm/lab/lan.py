@@ -56,19 +56,19 @@ def lan_listener(address: str, port: int = PORT) -> socket.socket:
         found = ipaddress.IPv4Address(address)
     except ValueError:
         raise InputError(
-            f"--lan {address[:60]} is no IPv4 address; give this computer's in the local network, "
+            f"lan {address[:60]} is no IPv4 address; give this computer's in the local network, "
             "like 192.168.1.20"
         ) from None
     if found.is_unspecified or found.is_multicast or not found.is_private:
         raise InputError(
-            f"--lan {found} is not allowed: only one address of this computer in a private network "
+            f"lan {found} is not allowed: only one address of this computer in a private network "
             "(10.x, 172.16–31.x, 192.168.x, 169.254.x) is"
         )
     try:
         return listening_socket(port, str(found))
     except OSError as error:
         raise InputError(
-            f"--lan {found} is no address of this computer; look it up in its network settings"
+            f"lan {found} is no address of this computer; look it up in its network settings"
         ) from error
 
 
@@ -81,7 +81,7 @@ def certificate(address: str, file: Path) -> str:
     Raises:
         InputError: the package `cryptography` is not there, or the file cannot be written.
     """
-    with optional("lab", "the certificate of --lan"):
+    with optional("lab", "a certificate for tablets (lan)"):
         from cryptography import x509
         from cryptography.hazmat.primitives import hashes, serialization
         from cryptography.hazmat.primitives.asymmetric import ec

@@ -50,7 +50,9 @@ def serve(
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder} cannot be made: {error.strerror}; say --folder") from error
+        raise InputError(
+            f"{folder} cannot be made: {error.strerror}; give another folder"
+        ) from error
     with contextlib.ExitStack() as opened:
         listener = opened.enter_context(listening_socket(port))
         _serve(folder, port, browser, lan, say, listener, opened)

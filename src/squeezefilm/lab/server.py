@@ -234,7 +234,7 @@ def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
             continue
         return one
     raise InputError(
-        f"ports {port} to {port + 19} of {host} are all in use; say another with --port, or stop "
+        f"ports {port} to {port + 19} of {host} are all in use; say another port, or stop "
         "what uses them"
     )
 

@@ -135,7 +135,7 @@ def asked_for(texts: Sequence[str]) -> tuple[Asked, ...]:
                 found.update(dict.fromkeys(_asked_by(name.strip())))
     if not found:
         raise InputError(
-            "nothing is asked for; add --ask relative_friction,resonance_frequency",
+            "nothing is asked for; give ask = relative_friction,resonance_frequency",
             quantity="ask",
         )
     return tuple(found)
@@ -152,13 +152,13 @@ def _asked_by(name: str) -> list[Asked]:
         exact = [wanted] if any(_pattern(one).fullmatch(wanted) for one in keys) else []
         plain = exact or _spelled_out(wanted, keys)
         if len(plain) > 1:
-            raise InputError(f"--ask {name} may be {' or '.join(plain)}; say which", quantity="ask")
+            raise InputError(f"ask {name} may be {' or '.join(plain)}; say which", quantity="ask")
         group = [one for one in keys if without_units(one).startswith(f"{without_units(wanted)}.")]
         if found := plain or [one for one in group if "*" not in one]:
             return [Asked(verb, key) for key in found]
         if group:
             raise InputError(
-                f"--ask {name} is a list of {verb}; say which of it, like "
+                f"ask {name} is a list of {verb}; say which of it, like "
                 f"{without_units(group[0]).replace('*', '0')}",
                 quantity="ask",
             )
@@ -188,7 +188,7 @@ def _unknown(name: str, verbs: Sequence[str], wanted: str) -> InputError:
         f"{verb}: {', '.join(head for head, of in told.items() if of == verb)}" for verb in verbs
     )
     return InputError(
-        f"--ask {name}: no verb answers that.{near or si.did_you_mean(wanted, every)} There are, "
+        f"ask {name}: no verb answers that.{near or si.did_you_mean(wanted, every)} There are, "
         f"by the verb that is asked first: {heads}. squeezefilm sweep --answers lists all",
         quantity="ask",
     )

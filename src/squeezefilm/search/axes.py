@@ -70,7 +70,7 @@ def axis_of_text(text: str, display: Display) -> Axis:
     name, equals, values = text.partition("=")
     if not equals or not name.strip() or not values.strip():
         raise InputError(
-            f"--vary '{text:.80}' says not what is varied and over which values; write "
+            f"vary '{text:.80}' says not what is varied and over which values; write "
             '"actuator.thickness=1 mm..3 mm:9" or "voltage=10 V, 15 V, 20 V"'
         )
     return axis_of(name.strip(), values.strip(), display)
@@ -97,7 +97,7 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
             if ".." in values and unit is not None:
                 raise InputError(
                     f"{name}={values} has no number of steps; write it behind a colon, {values}:9, "
-                    "or draw samples in it with --sample 200"
+                    "or draw samples in it with sample 200"
                 )
             parts = values.split("," if option is None else option.between)
             found = [_value(name, part.strip(), option, unit) for part in parts]

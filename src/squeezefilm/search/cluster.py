@@ -46,7 +46,7 @@ class Cluster:
     """
 
     def __init__(self, address: str, tell: SayProgress) -> None:
-        with optional("cluster", "a scheduler (not processes of this machine, --jobs)"):
+        with optional("cluster", "a scheduler (not the processes of this machine, jobs)"):
             import distributed
         self._dask, self._address, self._tell = distributed, address, tell
         self._client: Any = None

@@ -50,7 +50,7 @@ def plan_of(
         axes = (Axis((DISPLAY,), (None,), labels), *axes)
     if not axes:
         raise InputError(
-            'a sweep varies something; add --vary "voltage=5 V..30 V:6", a file --over, or '
+            'a sweep varies something; give vary = "voltage=5 V..30 V:6", a file `over`, or '
             "several displays"
         )
     count = math.prod(len(axis) for axis in axes)
@@ -82,14 +82,14 @@ def _check_options(
             takers = ", ".join(verb.name for verb in VERBS.values() if name in verb.takes)
             raise InputError(
                 f"{name} does not go with what is asked of {whose}; it goes with {takers}: ask "
-                f"for numbers of these, as in --ask {takers.split(', ')[0]}.NAME",
+                f"for numbers of these, as in ask = {takers.split(', ')[0]}.NAME",
                 quantity="vary",
             )
     if {"voltage", "vibration_amplitude"} <= set(options):
         raise InputError("a voltage and an amplitude are both varied; vary one of them")
     if any(one.verb == "render" for one in asked) and "texture" not in options:
         raise InputError(
-            'what is asked of render needs a texture; add --vary "texture=sine-3mm"',
+            'what is asked of render needs a texture; give vary = "texture=sine-3mm"',
             quantity="vary",
         )
     for axis in axes:

@@ -88,7 +88,7 @@ def axes_of_ranges(
             ranges[number] = _range(name, found, display)
     if not ranges:
         raise InputError(
-            'samples are drawn in ranges, and none is given; add --vary "actuator.thickness='
+            'samples are drawn in ranges, and none is given; give vary = "actuator.thickness='
             '1 mm..3 mm", without a number of steps',
             quantity="sample",
         )

@@ -60,7 +60,7 @@ class Verb:
 
 def _render(display: Display, **options: Any) -> Any:
     if "texture" not in options:
-        raise InputError('render needs a texture; add --vary "texture=sine-3mm"')
+        raise InputError('render needs a texture; give vary = "texture=sine-3mm"')
     return render_texture(display, **{"motion": USUAL_MOTION, **options})
 
 

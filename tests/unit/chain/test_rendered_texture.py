@@ -325,7 +325,7 @@ PICTURE = Image(((0.0, 1.0), (1.0, 0.0)), 1e-3)
         ({"compensation": "inverted"}, "compensation = 'inverted' is not known. Did you mean 'inv"),
         ({"wave": "fel"}, "wave = 'fel' is not known. Did you mean 'felt'? Allowed: ignored, "),
         ({"sensor": "eye"}, "the sensor 'eye' is not known"),
-        ({"place": (30e-3, 1e-3), "wave": "felt"}, "--place keeps the finger at one place of the"),
+        ({"place": (30e-3, 1e-3), "wave": "felt"}, "place keeps the finger at one place of the"),
         ({"voltage": 0.0}, "display 'biet2008-stator' changes no friction at 0 V, so it renders"),
         ({"motion": FingerPath(np.array([0.0, 1.0]), np.array([0.0, 0.0]), np.array([0.0, 0.01]))},
          "a stator renders along its circumference"),

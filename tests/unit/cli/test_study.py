@@ -185,7 +185,7 @@ def test_a_rehearsal_makes_the_file_and_says_what_comes_next(
     assert asked.calls[-1][0][2] == 1
     refused = run("rehearse", PRESET, "--store", path, "--seed", "1")
     assert refused.returncode == 2
-    assert "give another --store" in refused.stderr
+    assert "give another store" in refused.stderr
 
 
 def test_a_session_is_given_every_option(

@@ -120,7 +120,7 @@ def test_the_browser_opens_the_link_and_may_be_missing(
 
 def test_a_folder_that_cannot_be_made_is_said(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match=r"file/lab cannot be made: .+; say --folder$"):
+    with pytest.raises(InputError, match=r"file/lab cannot be made: .+; give another folder$"):
         serve(tmp_path / "file" / "lab", browser=False)
 
 

@@ -109,7 +109,7 @@ def test_what_nobody_answers_is_refused_with_what_there_is(name: str, message: s
 
 def test_nothing_asked_is_refused() -> None:
     for names in ([], [""], [" , "]):
-        with pytest.raises(InputError, match="nothing is asked for; add --ask"):
+        with pytest.raises(InputError, match="nothing is asked for; give ask"):
             asked_for(names)
 
 

@@ -196,7 +196,7 @@ def sweep_film(request: FilmRequest, *, progress: Callable[[str], None] | None =
 
     if request.shape not in _LINES:
         raise InputError(
-            f"a map of shape '{request.shape}' would take minutes; --sweep knows strip and disc"
+            f"a map of shape '{request.shape}' would take minutes; sweep knows strip and disc"
         )
     sigma, excursion = np.geomspace(0.01, 1e4, 61), np.linspace(0.02, 0.95, 40)
 

@@ -88,7 +88,7 @@ class CoarseShifts:
         if not 0 < at < f.size - 1:
             raise OutOfRangeError(
                 f"this glue moves the mode by more than {si.percent(_REACH)}; ask for the solved "
-                "plate (--sensitivities solved)"
+                "plate (sensitivities solved)"
             )
         # A resonance is a parabola in 1/|w|², near its top between the points of the band too.
         low, top, high = 1 / alike[at - 1 : at + 2] ** 2

@@ -121,9 +121,9 @@ def parse_mode(text: str) -> tuple[int, int]:
     if len(parts) == 2 and all(re.fullmatch(r"\s*[0-9]{1,9}\s*", part) for part in parts):
         label = int(parts[0]), int(parts[1])
         for lines in label:
-            require_within(NODAL_LINES, max(lines, NODAL_LINES.least), "--mode")
+            require_within(NODAL_LINES, max(lines, NODAL_LINES.least), "mode")
         return label
-    raise InputError(f"--mode '{text}' is no mode; write nodal lines across length, width: 8,0")
+    raise InputError(f"mode '{text}' is no mode; write nodal lines across length, width: 8,0")
 
 
 @si.checked_numbers
@@ -312,11 +312,11 @@ def parse_band(text: str) -> tuple[si.Hertz, si.Hertz]:
 
     parts = text.split(".." if ".." in text else ":")
     if len(parts) != 2:
-        raise InputError(f"--band '{text}' is no band; write two frequencies: 25 kHz..45 kHz")
+        raise InputError(f"band '{text}' is no band; write two frequencies: 25 kHz..45 kHz")
     low, high = (parse_quantity(part.strip(), si.Unit("Hz")) for part in parts)
     if low >= high:
         raise InputError(
-            f"--band runs from {si.format_quantity(low, si.Unit('Hz'))} down to "
+            f"band runs from {si.format_quantity(low, si.Unit('Hz'))} down to "
             f"{si.format_quantity(high, si.Unit('Hz'))}; write the lower frequency first"
         )
     return low, high

@@ -206,7 +206,7 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
             None,
             "No driven mode in this band is surely above the hearing range and has straight nodal "
             "lines across one side only, so that none can be suggested: look in a wider band "
-            "(--band), or change the ceramics' polarity, place or size.",
+            "(band), or change the ceramics' polarity, place or size.",
         )
     best = max(able, key=lambda mode: mode.alone_per_volt / (1 + 4 * mode.neighbour_share))
     straight = "" if best.straightness is None else ", its nodal lines cross one side only"

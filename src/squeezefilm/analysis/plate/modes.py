@@ -138,7 +138,7 @@ def list_modes(
     if isinstance(display.actuator, RectangularPlate):
         if split is not None:
             raise InputError(
-                "--split is of the two orientations of a ring's mode; a rectangular plate has none"
+                "split is of the two orientations of a ring's mode; a rectangular plate has none"
             )
         tell("driven modes on a light mesh")
         return _of_plate(display, display.actuator, band, tell)

@@ -109,6 +109,6 @@ def require_safe_drive(
     if not bench_only:
         raise InputError(
             f"{hangs}; it is allowed on a bench that nobody touches by chance: say so with "
-            "--bench-only, or use a device with a watchdog",
+            "bench_only, or use a device with a watchdog",
             quantity="drive",
         )

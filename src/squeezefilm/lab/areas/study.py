@@ -246,7 +246,7 @@ class StudyArea:
 
     async def _code(self, asked: OfSitting) -> Answer:
         if self._lab.lan is None:
-            raise InputError("tablets are paired where the lab was started with --lan ADDRESS")
+            raise InputError("tablets are paired where the lab was started with lan ADDRESS")
         await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
         return {
             "type": "code",

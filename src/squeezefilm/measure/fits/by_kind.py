@@ -118,7 +118,7 @@ def _of_display(
     if not isinstance(plate, RectangularPlate):
         raise InputError(
             "a grid scan is compared with a plate's solved shapes; name its display, a rectangular "
-            "plate: --display biet2008-plate, or a TOML file",
+            "plate: display biet2008-plate, or a TOML file",
             quantity="display",
         )
     mode = solid_mode(plate)

@@ -97,6 +97,6 @@ def require_memory(model: BoxModel) -> None:
 def _require_memory(slices: int, most: int, memory: float) -> None:
     enough = (
         f"{slices} slices of up to {most} unknowns are too many; "
-        "ask for fewer nodal lines or a lower frequency, or take a beam (--theory timoshenko)"
+        "ask for fewer nodal lines or a lower frequency, or take a beam (theory timoshenko)"
     )
     require_within(SOLID_MEMORY, memory, enough=enough)

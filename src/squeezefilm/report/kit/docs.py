@@ -13,7 +13,7 @@ def checkout(root: Path | None = None) -> Path:
     top = root or Path(__file__).parents[4]
     if not (top / "docs").is_dir() or not (top / "pyproject.toml").is_file():
         raise InputError(
-            "--write-docs needs a checkout of the source, and this is an installed package; "
+            "write_docs needs a checkout of the source, and this is an installed package; "
             "clone the repository and run it there"
         )
     return top

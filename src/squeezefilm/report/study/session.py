@@ -103,7 +103,7 @@ def _told_by_hand(asked: SessionRequest) -> Callable[[str], None] | None:
         except OSError as error:
             raise InputError(
                 f"{path} cannot be written ({error}), so that nobody is told what to present; give "
-                "--by-hand another file"
+                "by_hand another file"
             ) from error
 
     write("a session begins")

@@ -234,5 +234,5 @@ def ask_acknowledgement(statement: str, read: Callable[[str], str] = input) -> b
         return read("Type 'yes' to acknowledge it: ").strip().lower() == "yes"
     except EOFError as error:
         raise InputError(
-            "nobody is there to acknowledge the exposure; give --acknowledge-ultrasound"
+            "nobody is there to acknowledge the exposure; give acknowledge_ultrasound"
         ) from error

@@ -24,8 +24,7 @@ def compared_rows(folder: Path | None, rows: str) -> tuple[Row, ...]:
     file = None if folder is None else folder / "sweep.csv"
     if file is None or not file.is_file():
         raise InputError(
-            "rows are compared of a sweep's table; name the folder that has its sweep.csv with "
-            "--out DIR",
+            "rows are compared of a sweep's table; name the folder that has its sweep.csv as `out`",
             quantity="compare",
         )
     lines = read_regular_text(file, TABLE_BYTES, "a sweep's table").splitlines()
@@ -39,8 +38,8 @@ def compared_rows(folder: Path | None, rows: str) -> tuple[Row, ...]:
     places = [int(one) for one in numbers.groups()] if numbers else []
     if not places or not all(1 <= one <= len(body) for one in places):
         raise InputError(
-            f"--compare {rows:.40} names no two rows of {file}; write two numbers from 1 to "
-            f"{len(body)}, as in --compare 1,2",
+            f"compare {rows:.40} names no two rows of {file}; write two numbers from 1 to "
+            f"{len(body)}, as in compare = 1,2",
             quantity="compare",
         )
     first, second = (body[one - 1] for one in places)

@@ -57,7 +57,7 @@ def wishes(
                 raise InputError(
                     f"--{option} {name} is of modes that have names only once they are solved, so "
                     "that nothing can be wished of them; name another number, like "
-                    "resonance_frequency, and --ask for it",
+                    "resonance_frequency, and ask for it",
                     quantity=option,
                 )
             if name not in by_name:

@@ -236,7 +236,7 @@ class Player:
     def _sample(self, reading: Reading, stamp: si.Second) -> tuple[float, ...]:
         if not reading.flags & SENSOR_PRESENT:
             raise DeviceError(
-                "the device has no finger sensor; give one with --sensor replay:FILE, or connect it"
+                "the device has no finger sensor; give one as sensor replay:FILE, or connect it"
             )
         return (
             stamp - self.plan.sensor_latency,

@@ -273,7 +273,7 @@ def _require_acknowledged(exposure: Exposure | None, acknowledged: bool, driven:
     if exposure is not None and not acknowledged:
         raise InputError(
             f"the exposure to airborne ultrasound was not acknowledged. {exposure.statement} "
-            "Show it and acknowledge it (--acknowledge-ultrasound), or lower voltage or duration"
+            "Show it and acknowledge it (acknowledge_ultrasound), or lower voltage or duration"
         )
 
 

@@ -89,14 +89,14 @@ def open_study(
         said = "" if seed is None else f" with seed {seed}"
         raise InputError(
             f"{path} is of design {here[:12]} with seed {own}; asked for is "
-            f"{wanted.sha256[:12]}{said}; leave --seed out, or give another --store"
+            f"{wanted.sha256[:12]}{said}; leave seed out, or give another store"
         )
     of, every = store.study["station"], store.study["stations"]
     if station not in (None, of) or stations not in (None, every):
         store.close()
         raise InputError(
             f"{path} is of station {of} of {every}, which decides the orders of its participants; "
-            "leave --station and --stations out, or give another --store"
+            "leave station and stations out, or give another store"
         )
     return store
 

@@ -117,7 +117,7 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     elif middle < 0:
         said = (
             "most people's answers are mixed up: the names of the answers may be exchanged in the "
-            "file, which --values can say"
+            "file, which values can say"
         )
     if not excused:
         asked = min(asked, 0.5 * abs(middle))

@@ -126,7 +126,7 @@ def _places(
     if lacking:
         raise InputError(
             f"{path} has no column {', '.join(lacking)}; say which it is by "
-            f'--columns "{lacking[0]}=…"; it has {", ".join(names) or "none"}',
+            f'columns "{lacking[0]}=…"; it has {", ".join(names) or "none"}',
             quantity="columns",
         )
     return places

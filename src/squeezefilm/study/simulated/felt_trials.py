@@ -43,7 +43,7 @@ def felt_in_trial(
         raise InputError(
             f"trial {trial} of {participant} presented {len(names)} surfaces and has "
             f"{len(tables)} paths beside {store.path.name}; only a device or its twin keeps them, "
-            f"in {store.traces.name}. Give another trial, or a path by --path"
+            f"in {store.traces.name}. Give another trial, or a path"
         )
     known = row["mean_normal_force_N"]
     force: si.Newton | None = None if known is None else float(known)

@@ -148,8 +148,8 @@ def require_pair(design: StudyDesign, first: str, second: str) -> None:
     if design.adaptive:
         raise InputError(
             f"the series of '{design.name}' choose their comparisons, so that no pair is presented "
-            "often; ask how many people make the threshold precise instead, with --precision 20%, "
-            "or show that it is another one on another display, with --against DISPLAY"
+            "often; ask how many people make the threshold precise instead, with precision 20 %, "
+            "or show that it is another one on another display, with against DISPLAY"
         )
     if first == second:
         raise InputError(f"'{first}' is asked to be told from itself; name two stimuli")

@@ -70,7 +70,7 @@ def test_a_session_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None
     ended = run_study(design, store, str(person["uuid"]), examiner=again, consent=True, seed=3)
     assert ended == "4 trials on biet2008-plate recorded"
     # The file has a seed of its own; another one is refused.
-    with pytest.raises(InputError, match="leave --seed out, or give another --store"):
+    with pytest.raises(InputError, match="leave seed out, or give another store"):
         run_study(design, store, examiner=Script(), consent=True, seed=0)
 
 

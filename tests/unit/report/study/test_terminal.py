@@ -269,5 +269,5 @@ def test_an_exposure_is_acknowledged_by_yes_alone(
 
 
 def test_where_nobody_is_an_exposure_is_not_acknowledged() -> None:
-    with pytest.raises(InputError, match="--acknowledge-ultrasound"):
+    with pytest.raises(InputError, match="acknowledge_ultrasound"):
         ask_acknowledgement("120 dB", Terminal().read)

@@ -42,5 +42,5 @@ def test_rows_that_are_none_are_refused(tmp_path: Path, rows: str) -> None:
 
 def test_a_folder_without_a_sweep_is_refused(tmp_path: Path) -> None:
     for folder in (None, tmp_path):
-        with pytest.raises(InputError, match="--out DIR"):
+        with pytest.raises(InputError, match="as `out`"):
             compared_rows(folder, "1,2")

@@ -209,10 +209,10 @@ def test_a_file_is_opened_again_for_its_own_design_and_seed_alone(tmp_path: Path
     with open_study(path, "biet2008-gratings", 7) as store:
         assert store.study["uuid"] == made
     for design, seed in (("biet2008-gratings", 8), ("biet2008-gratings-as-widths", 7)):
-        with pytest.raises(InputError, match=r"with seed 7; asked for is .*give another --store"):
+        with pytest.raises(InputError, match=r"with seed 7; asked for is .*give another store"):
             open_study(path, design, seed)
     with open_study(path, "biet2008-gratings", None, station=1, stations=3) as store:
         assert store.study["uuid"] == made
     for station, stations in ((2, None), (0, 3), (1, 4)):
-        with pytest.raises(InputError, match=r"is of station 1 of 3.*leave --station"):
+        with pytest.raises(InputError, match=r"is of station 1 of 3.*leave station"):
             open_study(path, "biet2008-gratings", 7, station, stations)
