@@ -194,5 +194,5 @@ def test_the_listener_is_asked_for_the_port_and_address(monkeypatch: pytest.Monk
     lan_listener("192.168.1.20")
     lan_listener("169.254.7.7", 9000)
     assert asked == [(8632, "192.168.1.20"), (9000, "169.254.7.7")]
-    with pytest.raises(InputError, match=f"--lan {'x' * 60} is no IPv4"):
+    with pytest.raises(InputError, match=f"lan {'x' * 60} is no IPv4"):
         lan_listener("x" * 61)
