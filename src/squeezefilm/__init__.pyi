@@ -459,6 +459,8 @@ if TYPE_CHECKING:
         *,
         design: NamedDesign | str | Path | None = ...,
         columns: Mapping[str, str] | None = ...,
+        values: Mapping[str, str] | None = ...,
+        decimal_comma: bool = ...,
         mixed: bool = ...,
         resamples: int = ...,
         reruns: int = ...,

@@ -44,12 +44,12 @@ def merge(
     store: Store,
     others: Annotated[list[Path], typer.Argument(metavar="OTHER.sqlite …", help="To add.")],
 ) -> None:
-    """Add other stations' files to this one; merging again changes nothing."""
+    """Add other stations' files to this one, made if not there; merging again changes nothing."""
     from squeezefilm.report.study.terminal import show_merge
     from squeezefilm.study.record.merge import merge as add
-    from squeezefilm.study.record.store import StudyStore
+    from squeezefilm.study.record.merge import open_or_begin
 
-    with StudyStore.open(store) as found:
+    with open_or_begin(store, others[0]) as found:
         for other in others:
             show_merge(add(found, other), str(other))
 
@@ -96,6 +96,15 @@ def analyze(
             help='What its columns are called, like "participant_id=who, choice=key_resp.keys".'
         ),
     ] = "",
+    values: Annotated[
+        str,
+        typer.Option(
+            help='What its words for answers and stimuli mean, like "left=first, right=second".'
+        ),
+    ] = "",
+    decimal_comma: Annotated[
+        bool, typer.Option("--decimal-comma", help="Its numbers have decimal commas.")
+    ] = False,
     out: Annotated[
         Path | None,
         written_to("Folder for numbers, figures and a page per display."),
@@ -125,7 +134,7 @@ def analyze(
     from squeezefilm.study.record.foreign import columns_of
     from squeezefilm.study.tasks.analyze import analyze_study
 
-    if design is None and (columns or store.suffix.lower() in (".csv", ".tsv")):
+    if design is None and (columns or values or store.suffix.lower() in (".csv", ".tsv")):
         raise InputError(
             f"{store} is analysed as answers of another program; say to which study they were "
             "given by --design NAME|FILE"
@@ -135,6 +144,8 @@ def analyze(
             store,
             design=None if design is None else load_design(design),
             columns=columns_of(columns),
+            values=columns_of(values, "values"),
+            decimal_comma=decimal_comma,
             mixed=mixed,
             reruns=reruns,
             seed=seed,

@@ -287,7 +287,8 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     done = run("analyze", store)
     assert asked.given == (store,)
     assert asked.named == {
-        "design": None, "columns": {}, "mixed": False, "reruns": 0, "seed": 0,
+        "design": None, "columns": {}, "values": {}, "decimal_comma": False,
+        "mixed": False, "reruns": 0, "seed": 0,
     }  # fmt: skip
     assert shown.given == (found,)
     assert "  a step …" in done.stderr
@@ -297,7 +298,8 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     out = tmp_path / "pages"
     done = run("analyze", store, "--out", out, "--mixed", "--reruns", "99", "--seed", "6")
     assert asked.calls[-1][1] == {
-        "design": None, "columns": {}, "mixed": True, "reruns": 99, "seed": 6,
+        "design": None, "columns": {}, "values": {}, "decimal_comma": False,
+        "mixed": True, "reruns": 99, "seed": 6,
     }  # fmt: skip
     assert [given[:2] for given, _ in written.calls] == [(found, out)]
     assert done.stdout == f"page: {tmp_path / 'index.html'}\n"

@@ -33,6 +33,18 @@ class Merge:
     doubled_numbers: tuple[int, ...]
 
 
+def open_or_begin(path: str | Path, other: str | Path) -> StudyStore:
+    """The study's file at `path`; where there is none, a new one of the other's design and seed.
+
+    Raises `InputError` or `RecordError` as `StudyStore.open` and `StudyStore.create` do.
+    """
+    if os.path.lexists(path):
+        return StudyStore.open(path)
+    with StudyStore.open(other) as theirs:
+        stations = int(theirs.study["stations"])
+        return StudyStore.create(path, theirs.design, int(theirs.study["seed"]), stations=stations)
+
+
 def merge(store: StudyStore, other: str | Path) -> Merge:
     """Add another station's rows and traces to this file. Merging again changes nothing.
 

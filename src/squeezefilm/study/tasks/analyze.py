@@ -75,6 +75,8 @@ def analyze_study(
     *,
     design: NamedDesign | None = None,
     columns: Mapping[str, str] | None = None,
+    values: Mapping[str, str] | None = None,
+    decimal_comma: bool = False,
     mixed: bool = False,
     resamples: int = 1000,
     reruns: int = 0,
@@ -84,7 +86,8 @@ def analyze_study(
     """The analysis of a study's answers, by display.
 
     `store` is the study, or the path of its file; with a `design` the path of a CSV that another
-    program recorded of it, whose `columns` are read as `read_answers` says. Main trials are
+    program recorded of it, whose `columns`, `values` and `decimal_comma` are read as
+    `read_answers` says. Main trials are
     analysed; practice and familiarisation are left out, catch trials say who attended. Results say
     whose answers they are. `mixed` adds statsmodels' mixed models to match-to-sample, whose stimuli
     must each have the grating of their own period among the answers; `resamples` are its
@@ -99,7 +102,7 @@ def analyze_study(
     if design is not None and not isinstance(store, StudyStore):
         if design.task == "match-to-sample":
             stimuli_and_answers(design)
-        answers, name = read_answers(store, design, columns), design.name
+        answers, name = read_answers(store, design, columns, values, decimal_comma), design.name
     elif not isinstance(store, StudyStore):
         with StudyStore.open(store) as opened:
             return analyze_study(opened, **how, progress=progress)

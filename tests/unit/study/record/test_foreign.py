@@ -190,7 +190,7 @@ def test_columns_are_told_as_pairs() -> None:
     }  # fmt: skip
     assert columns_of("") == {}
     for wrong in ("choice", "choice=", "=who"):
-        with pytest.raises(InputError, match="says no column; write NAME=COLUMN"):
+        with pytest.raises(InputError, match="says no column and no word; write NAME=COLUMN"):
             columns_of(wrong)
     assert foreign.COUNT == "count"
 

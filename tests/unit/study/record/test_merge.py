@@ -11,7 +11,7 @@ import pytest
 from squeezefilm.errors import ContradictionError, InputError, RecordError
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
-from squeezefilm.study.record.merge import merge
+from squeezefilm.study.record.merge import merge, open_or_begin
 from squeezefilm.study.record.schema import TABLES
 from squeezefilm.study.record.store import StudyStore
 
@@ -203,3 +203,15 @@ def test_a_link_in_place_of_the_folder_of_traces_is_not_written_through(tmp_path
     elsewhere.rename(a.traces)
     assert merge(a, tmp_path / "b.sqlite").traces > 0
     a.close()
+
+
+def test_stations_merge_into_a_new_file(tmp_path: Path) -> None:
+    for number, name in enumerate("ab"):
+        _station(tmp_path / f"{name}.sqlite", number, people=1).close()
+    whole, paths = tmp_path / "all.sqlite", [tmp_path / "a.sqlite", tmp_path / "b.sqlite"]
+    with open_or_begin(whole, paths[0]) as store:
+        for path in paths:
+            merge(store, path)
+        assert len(store.participants()) == 2
+    with open_or_begin(whole, paths[0]) as store:
+        assert sum(merge(store, paths[1]).added.values()) == 0
