@@ -182,7 +182,7 @@ def _row(
     for key, words_allowed in allowed.items():
         if found[key] not in words_allowed:
             raise ConfigError(
-                f"'{found[key]}' is none of: {', '.join(words_allowed)}; --values "
+                f"'{found[key]}' is none of: {', '.join(words_allowed)}; values = "
                 f'"{found[key] or "WORD"}={words_allowed[0]}" says what it means',
                 file=path,
                 line=line,
@@ -217,7 +217,7 @@ def _number(path: str | Path, line: int, column: str, text: str) -> float:
     except ValueError as error:
         raise ConfigError(
             f"'{text}' is no number; write one with a point, like 0.0125, or ask for decimal "
-            "commas (--decimal-comma)",
+            "commas (decimal_comma)",
             file=path,
             line=line,
             key=column,

@@ -83,7 +83,7 @@ def _require_seconds(path: str | Path, who: str, mine: Numbered) -> None:
             mine[0][0],
             "response_time_s",
             f"'{who}' takes {median(times):g} s in the median; if these are milliseconds, say so "
-            'by --columns "response_time_ms=COLUMN"',
+            'by columns = "response_time_ms=COLUMN"',
         )
 
 
