@@ -44,7 +44,7 @@ lab: $(VENV)/all.stamp  ## open the lab in the browser
 # for 50 ms, as it must, and other tests would hold it up. Both runs happen even if the first fails.
 PYTEST := $(BIN)/python -m pytest
 # A second argument names a mark: only files that have it are read, which takes a second in place of ten.
-# Files of tests, all unless said: `TESTS="tests/unit/film"`, or those of a room or folder: `PART=film`.
+# Files of tests, all unless said: `TESTS="tests/unit/physics/film"`, or those of a room or folder: `PART=film`.
 PART ?=
 TESTS ?= $(if $(PART),$(or $(shell $(BIN)/python tools/part_tests.py $(PART)),$(error no tests of PART=$(PART))),tests)
 define run_tests
@@ -107,7 +107,7 @@ layers: $(VENV)/test.stamp  ## who may import whom
 	@$(BIN)/lint-imports
 
 gallery: $(VENV)/run.stamp  ## draw the preset textures for the documentation
-	@$(BIN)/python -m squeezefilm.report.textures.gallery
+	@$(BIN)/python -m squeezefilm.design.textures.report.gallery
 
 pictures: $(VENV)/test.stamp  ## draw the pictures of the README, with a Chromium
 	@$(BIN)/python tools/pictures.py

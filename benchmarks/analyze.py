@@ -44,11 +44,11 @@ def tell(text):
     last[:] = [text, now]
 from pathlib import Path
 from squeezefilm.cli.describe import _prepare, _prepare_figures
-from squeezefilm.second_process import second_process
+from squeezefilm.core.second_process import second_process
 with second_process(_prepare, _prepare_figures, at_once=False):
-    from squeezefilm.analysis.analyze import analyze
-    from squeezefilm.display import load_display
-    from squeezefilm.report.display.page import write_analysis
+    from squeezefilm.design.analysis.analyze import analyze
+    from squeezefilm.physics.display import load_display
+    from squeezefilm.design.analysis.report.page import write_analysis
     display = load_display(sys.argv[1])
     force = float(sys.argv[4]) * display.finger.normal_force
     found = analyze(display, normal_force=force, progress=tell)

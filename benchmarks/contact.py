@@ -23,12 +23,12 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
-from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.sharing.balance import share_load
-from squeezefilm.contact.sharing.gas_table import FilmTable
-from squeezefilm.contact.sharing.pad import pad_friction, pad_points
-from squeezefilm.display import load_display
-from squeezefilm.film.periodic.film import solve_uniform
+from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.sharing.balance import share_load
+from squeezefilm.physics.contact.sharing.gas_table import FilmTable
+from squeezefilm.physics.contact.sharing.pad import pad_friction, pad_points
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.film.periodic.film import solve_uniform
 
 FREQUENCY, HALF_WAVELENGTH = 40.5e3, 9.35e-3
 

@@ -25,13 +25,13 @@ from typing import Any
 import numpy as np
 from scipy.linalg import solve_banded
 
-from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.periodic.film import solve_profile, solve_uniform
-from squeezefilm.film.periodic.profile import flexural_profile
-from squeezefilm.film.planar.film import solve_planar
-from squeezefilm.film.planar.gap import PlanarGap
-from squeezefilm.film.transient.settling import settle_to_periodic
+from squeezefilm.physics.film.line_grid import uniform_gap
+from squeezefilm.physics.film.periodic.batch import solve_films
+from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
+from squeezefilm.physics.film.periodic.profile import flexural_profile
+from squeezefilm.physics.film.planar.film import solve_planar
+from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.transient.settling import settle_to_periodic
 
 
 def best_time(run: Callable[[], object], repeats: int = 3) -> float:

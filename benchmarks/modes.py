@@ -18,10 +18,10 @@ import sys
 import time
 from pathlib import Path
 
-from squeezefilm.display import load_display
-from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.solid.screening import screened_modes
-from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.physics.plate.solid.screening import screened_modes
+from squeezefilm.physics.plate.solid.solve import solve_modes
 
 BAND = 20e3, 60e3
 AIM = 2.0  # s

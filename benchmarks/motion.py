@@ -20,12 +20,16 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from squeezefilm.render.motion import kernel as motion_kernel
-from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.render.motion.stroke import MinimumJerkStroke
-from squeezefilm.render.resonator import kernel as compensation_kernel
-from squeezefilm.render.resonator.carrier import carrier_block
-from squeezefilm.render.resonator.compensation import DrivenEnvelope, preview_samples, preview_work
+from squeezefilm.physics.render.motion import kernel as motion_kernel
+from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
+from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
+from squeezefilm.physics.render.resonator import kernel as compensation_kernel
+from squeezefilm.physics.render.resonator.carrier import carrier_block
+from squeezefilm.physics.render.resonator.compensation import (
+    DrivenEnvelope,
+    preview_samples,
+    preview_work,
+)
 
 TAU, LIMIT, RATE = 0.5687e-3, 1e-6, 20e3
 

@@ -25,12 +25,12 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm.display import load_display
-from squeezefilm.plate.elements.box_model import BoxModel
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.response import harmonic_response
-from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.solid.working import solid_mode
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.elements.box_model import BoxModel
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.solid.response import harmonic_response
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.working import solid_mode
 
 CONVERGED = {"from_d31": 33574.0, "printed_e31": 33422.0}
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from squeezefilm.plate.elements.box_model import BoxModel
-from squeezefilm.plate.elements.lobatto import LineMesh
-from squeezefilm.quantities import FloatArray
+from squeezefilm.core.quantities import FloatArray
+from squeezefilm.physics.plate.elements.box_model import BoxModel
+from squeezefilm.physics.plate.elements.lobatto import LineMesh
 
 
 def graded_strips(layers: tuple[float, ...], across: int, bond: tuple[float, ...], half: bool):  # type: ignore[no-untyped-def]

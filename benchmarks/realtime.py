@@ -29,20 +29,20 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.render.program.lowering import lower
-from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.shapes import SquareWave
-from squeezefilm.session.loop import shared
-from squeezefilm.session.loop.atomics import store_release
-from squeezefilm.session.loop.lateness import Lateness
-from squeezefilm.session.loop.plan import DriveTable, LoopPlan
-from squeezefilm.session.loop.process import PRIORITY, LoopProcess
-from squeezefilm.session.loop.ring import ring_put_all
-from squeezefilm.session.loop.simulated import lateness_in, run_ticks, taken
-from squeezefilm.session.loop.worker import Orders, run_loop
+from squeezefilm.instruments.session.loop import shared
+from squeezefilm.instruments.session.loop.atomics import store_release
+from squeezefilm.instruments.session.loop.lateness import Lateness
+from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.process import PRIORITY, LoopProcess
+from squeezefilm.instruments.session.loop.ring import ring_put_all
+from squeezefilm.instruments.session.loop.simulated import lateness_in, run_ticks, taken
+from squeezefilm.instruments.session.loop.worker import Orders, run_loop
+from squeezefilm.physics.render.motion.estimator import MotionEstimator
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.program.lowering import lower
+from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.texture.levels import Amplitude
+from squeezefilm.physics.render.texture.shapes import SquareWave
 
 RATES = (1e3, 5e3, 10e3)
 SPEED, LIMIT = 0.06, 1e-6

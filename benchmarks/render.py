@@ -19,16 +19,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from squeezefilm.render import opcodes
-from squeezefilm.render.program import interpreter, lookup
-from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import Program, lower
-from squeezefilm.render.program.renderer import Renderer, evaluate, new_state
-from squeezefilm.render.texture.composition import Composable
-from squeezefilm.render.texture.gates import Attack, speed
-from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.render.texture.noise import Noise, NoiseField
-from squeezefilm.render.texture.shapes import Band, Bump, Pulse, SineWave, SquareWave
+from squeezefilm.physics.render import opcodes
+from squeezefilm.physics.render.program import interpreter, lookup
+from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.lowering import Program, lower
+from squeezefilm.physics.render.program.renderer import Renderer, evaluate, new_state
+from squeezefilm.physics.render.texture.composition import Composable
+from squeezefilm.physics.render.texture.gates import Attack, speed
+from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.physics.render.texture.noise import Noise, NoiseField
+from squeezefilm.physics.render.texture.shapes import Band, Bump, Pulse, SineWave, SquareWave
 
 INVERSE = FrictionInverse.from_function(lambda a: 0.3 + 0.7 * np.exp(-((a / 2e-6) ** 2)), 4e-6)
 # As many knots and speeds as a display's friction has.
@@ -146,7 +146,7 @@ def table(count: int) -> None:
 def opcode_costs(count: int) -> None:
     """What one further instruction adds: the slope between programs with 1 and 33 of it."""
     print("\nWhat one instruction takes, ns (the slope between 8 and 40 in a row)")
-    from squeezefilm.render.program import layout as at
+    from squeezefilm.physics.render.program import layout as at
 
     arrays = samples(count)
     head = program_of(Amplitude(SineWave(1e-3), 0.0, 1e-6)).array[: at.HEADER]

@@ -26,7 +26,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from tests.cluster import local_cluster  # noqa: E402
 from tests.counted_tasks import busy, whose  # noqa: E402
 
-from squeezefilm.search.workers import workers  # noqa: E402
+from squeezefilm.design.sweep.workers import workers  # noqa: E402
 
 SMALL, MANY, SECONDS = 1000, 60, 0.1
 # Beside the files that they name.
@@ -56,7 +56,7 @@ def pools() -> Iterator[dict[str, Any]]:
     """One and two workers, of processes and of a cluster."""
     with local_cluster(1) as one, local_cluster(2) as two:
         # A pool of processes that has one.
-        from squeezefilm.search.processes import Processes
+        from squeezefilm.design.sweep.processes import Processes
 
         with (
             Processes(1) as process,
@@ -91,9 +91,9 @@ def costs() -> float:
 
 def seconds_a_design() -> float:
     """Seconds of one process for a plate nobody has solved: resonance, amplitude and friction."""
-    from squeezefilm.analysis.parameters import with_values
-    from squeezefilm.display import load_display
-    from squeezefilm.search.points import Point, answer_of
+    from squeezefilm.design.sweep.points import Point, answer_of
+    from squeezefilm.physics.display import load_display
+    from squeezefilm.physics.uncertainty.parameters import with_values
 
     display = load_display("biet2008-plate")
     answer_of(Point(display, {}, "predict"))
@@ -128,7 +128,7 @@ def questions() -> None:
 
 def screening() -> None:
     """Prints how long 10 000 designs take to be proposed, screened and ranked, on two cores."""
-    from squeezefilm.search.design.run import search_designs
+    from squeezefilm.design.search.run import search_designs
 
     found = search_designs("biet2008-plate", screened=10_000, solved=0, jobs=2)
     busy_for = sum(one.seconds for one in found.screened)

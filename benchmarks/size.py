@@ -2,7 +2,7 @@
 """The time that a plate's solve is expected to take against the processor time that it takes.
 
 Plates of metal and of glass, thick and thin, small and large, by one thread; by these
-`plate/solid/size.py` is calibrated.
+`physics/plate/solid/size.py` is calibrated.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from squeezefilm.display import load_display
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.guess import estimated_frequency
-from squeezefilm.plate.solid.size import solve_size
-from squeezefilm.plate.solid.working import solid_mode
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.solid.guess import estimated_frequency
+from squeezefilm.physics.plate.solid.size import solve_size
+from squeezefilm.physics.plate.solid.working import solid_mode
 
 
 def plates() -> Iterator[tuple[str, RectangularPlate]]:

@@ -21,7 +21,7 @@ import numpy as np
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
 from squeezefilm.actuators.skin_stretch.patterns import pattern_voltages
-from squeezefilm.render.texture.shapes import SineWave
+from squeezefilm.physics.render.texture.shapes import SineWave
 
 RATE, SPEED, REPEATS = 1e3, 0.05, 300
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from squeezefilm.contact.finger.load import compiled_finger
-from squeezefilm.contact.finger.load_kernel import between
-from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.rough_contact import ContactLaw
-from squeezefilm.materials import Gas
+from squeezefilm.core.materials import Gas
+from squeezefilm.physics.contact.finger.load import compiled_finger
+from squeezefilm.physics.contact.finger.load_kernel import between
+from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.rough_contact import ContactLaw
 
 
 def interface_stiffness(

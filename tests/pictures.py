@@ -7,7 +7,7 @@ import io
 import numpy as np
 from PIL import Image
 
-from squeezefilm.quantities import DimensionlessArray
+from squeezefilm.core.quantities import DimensionlessArray
 
 
 def picture_bytes(values: DimensionlessArray, bits: int = 8) -> bytes:

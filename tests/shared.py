@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-from squeezefilm.kept.computed_by import computed_by
+from squeezefilm.core.kept.computed_by import computed_by
 
 T = TypeVar("T")
 

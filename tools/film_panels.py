@@ -2,16 +2,16 @@
 
     python tools/film_panels.py
 
-writes `contact/sharing/film_panels.npz`. After a change of the film solver or of the table's nodes
-tests compare the file with solved films and ask for this.
+writes `physics/contact/sharing/film_panels.npz`. After a change of the film solver or of the
+table's nodes tests compare the file with solved films and ask for this.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.contact.sharing.film_panels import (
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.contact.sharing.film_panels import (
     SHIPPED,
     SHIPPED_OCTAVES,
     SHIPPED_PANELS,

@@ -79,7 +79,7 @@ def cases() -> Iterator[str]:
 def answer(case: str) -> Any:
     """What a command line prints: its JSON, its text, or the message with which it refuses."""
     from squeezefilm.cli import app
-    from squeezefilm.errors import SqueezefilmError
+    from squeezefilm.core.errors import SqueezefilmError
 
     printed = io.StringIO()
     arguments = shlex.split(case)

@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.errors import InputError
-from squeezefilm.render.program.lowering import lower
-from squeezefilm.render.program.renderer import render
-from squeezefilm.render.texture.composition import Composable
-from squeezefilm.texture_file import load_texture
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.render.program.lowering import lower
+from squeezefilm.physics.render.program.renderer import render
+from squeezefilm.physics.render.texture.composition import Composable
+from squeezefilm.physics.texture_files.texture_file import load_texture
 
 STORED = Path(__file__).parents[1] / "tests" / "properties" / "golden_programs.json"
 LARGEST_AMPLITUDE = 4e-6  # m

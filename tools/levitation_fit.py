@@ -3,11 +3,11 @@
     python tools/levitation_fit.py
 
 prints the two numbers of each person (decay length and friction at rest), those of the seventy
-strokes, the defaults of `contact.finger.fingertip` and `contact.finger.people` that follow; how a
-person who was left out is predicted from the others, beside the mean and spread of the others
-without physics; how the log-normal population predicts a stroke beside a resample of the strokes;
-and what partial levitation makes of the same people, of skins that move by their own phase, and of
-a vacuum, with the roughness of skin as the literature has it and fitted.
+strokes, the defaults of `physics.contact.finger.fingertip` and `physics.contact.finger.people` that
+follow; how a person who was left out is predicted from the others, beside the mean and spread of
+the others without physics; how the log-normal population predicts a stroke beside a resample of the
+strokes; and what partial levitation makes of the same people, of skins that move by their own
+phase, and of a vacuum, with the roughness of skin as the literature has it and fitted.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import gaussian_kde, multivariate_normal
 
-from squeezefilm import presets
-from squeezefilm import quantities as si
-from squeezefilm.chain.friction import FrictionLaw, friction_law
-from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.rough_contact import RoughContact
-from squeezefilm.contact.sharing.levitation import levitation_friction, levitation_scale
-from squeezefilm.display import load_display
-from squeezefilm.errors import ConvergenceError, OutOfRangeError
+from squeezefilm.core import presets
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, OutOfRangeError
 from squeezefilm.measure.fits.friction.friction_scores import nearest_scale, rest_friction, scored
 from squeezefilm.measure.fits.friction.person import PersonFit, fitted_person, with_decay_length
 from squeezefilm.measure.recordings.kinds import FrictionCurve, FrictionDecays
 from squeezefilm.measure.recordings.read import check_folder
+from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
+from squeezefilm.physics.contact.finger.fingertip import Finger
+from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.rough_contact import RoughContact
+from squeezefilm.physics.contact.sharing.levitation import levitation_friction, levitation_scale
+from squeezefilm.physics.display import load_display
 
 FREE_STROKES_SPEED = 0.1
 REFERENCE_SPEED = Finger.decay_speed

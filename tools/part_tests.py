@@ -3,9 +3,9 @@
     python tools/part_tests.py film
 
 A part is a folder or a module below ``src/squeezefilm``, by its name (`film`) or its path
-(`film/planar`); of several with that name the outermost. Its tests lie in the folder of the same
-path below ``tests/unit``, are named after one of its modules, or stand beside ``tests/unit`` and
-import nothing else of the package.
+(`physics/film/planar`); of several with that name the outermost. Its tests lie in the folder of the
+same path below ``tests/unit``, are named after one of its modules, or stand beside ``tests/unit``
+and import nothing else of the package.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 import import_graph
 
 ROOT = Path(__file__).parents[1]
-_EVERYWHERE = ("squeezefilm.quantities", "squeezefilm.errors")
+_EVERYWHERE = ("squeezefilm.core.quantities", "squeezefilm.core.errors")
 
 
 def part_path(part: str, package: Path) -> Path:

@@ -24,18 +24,18 @@ import tomlkit
 
 from levitation_fit import law_of
 from predict_disc import is_sealed, sealed
-from squeezefilm import presets
-from squeezefilm import quantities as si
-from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.friction_models import FrictionModel
-from squeezefilm.contact.finger.fingertip import (
+from squeezefilm.core import presets
+from squeezefilm.core import quantities as si
+from squeezefilm.measure.fits.friction.person import with_decay_length
+from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.chain.friction_models import FrictionModel
+from squeezefilm.physics.contact.finger.fingertip import (
     CONTACT_DECAY_LENGTH,
     DECAY_SPEED_EXPONENT,
     RIDGE_POWER_OF_PEOPLE,
     RIDGE_POWER_OF_SPEED,
     Finger,
 )
-from squeezefilm.measure.fits.friction.person import with_decay_length
 
 FOLDER = Path(__file__).parents[1] / "predictions"
 FILES: Mapping[FrictionModel, Path] = {

@@ -19,14 +19,14 @@ import numpy as np
 import tomlkit
 
 from predict_disc import sealed
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.fits.friction.detection import (
     MEAN_FRICTION,
     RIVALS,
     detection_medians,
     rival_observer,
 )
-from squeezefilm.perception.observer import load_observer
+from squeezefilm.physics.perception.observer import load_observer
 from threshold_fit import fitted, published
 
 FILE = Path(__file__).parents[1] / "predictions" / "detection-thresholds-at-100-mm-per-s.toml"

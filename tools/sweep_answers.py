@@ -11,19 +11,19 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import squeezefilm.search
-from squeezefilm.analysis.analyze import analyze
-from squeezefilm.analysis.friction.command import analyze_friction
-from squeezefilm.analysis.plate.command import solve_plate
-from squeezefilm.analysis.plate.solved import ModeRow
-from squeezefilm.chain.prediction import predict
-from squeezefilm.chain.rendered_texture import render_texture
-from squeezefilm.display import load_display
-from squeezefilm.formats.trajectories import motion_from
-from squeezefilm.results import Result, to_json
-from squeezefilm.search.answers import numbers_of
-from squeezefilm.search.verbs import VERBS
-from squeezefilm.texture_file import load_texture
+import squeezefilm.design.sweep
+from squeezefilm.core.results import Result, to_json
+from squeezefilm.design.analysis.analyze import analyze
+from squeezefilm.design.friction.command import analyze_friction
+from squeezefilm.design.plate.command import solve_plate
+from squeezefilm.design.plate.solved import ModeRow
+from squeezefilm.design.sweep.answers import numbers_of
+from squeezefilm.design.sweep.verbs import VERBS
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.chain.rendered_texture import render_texture
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.texture_files.texture_file import load_texture
+from squeezefilm.physics.texture_files.trajectories import motion_from
 
 DISPLAYS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 # Two numbers that always stand together are listed each; of longer lists only that there is one.
@@ -96,5 +96,7 @@ def text() -> str:
 
 
 if __name__ == "__main__":
-    assert squeezefilm.search.__file__ is not None
-    Path(squeezefilm.search.__file__).with_name("answers.toml").write_text(text(), encoding="utf-8")
+    assert squeezefilm.design.sweep.__file__ is not None
+    Path(squeezefilm.design.sweep.__file__).with_name("answers.toml").write_text(
+        text(), encoding="utf-8"
+    )

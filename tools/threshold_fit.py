@@ -19,12 +19,12 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import ndtr
 
-from squeezefilm import presets
-from squeezefilm import quantities as si
+from squeezefilm.core import presets
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.fits.friction.detection import METHOD_RATIO, detection_medians
 from squeezefilm.measure.recordings.kinds import DetectionThresholds
 from squeezefilm.measure.recordings.read import read_recording
-from squeezefilm.perception.observer import Observer, load_observer
+from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 
 PUBLISHED = "bernard2020-detection.toml"

@@ -15,9 +15,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import squeezefilm as sf
-from squeezefilm.analysis.draws import Mixture, as_drawn
-from squeezefilm.analysis.uncertainty import evaluate, sobol_points
-from squeezefilm.perception.observer import load_observer
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.uncertainty.draws import Mixture, as_drawn
+from squeezefilm.physics.uncertainty.uncertainty import evaluate, sobol_points
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.simulated.chain_tables import chain_tables
 

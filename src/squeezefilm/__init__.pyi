@@ -11,38 +11,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from squeezefilm.analysis.analyze import Analysis
-    from squeezefilm.analysis.film.command import FilmAnswer
-    from squeezefilm.analysis.friction.command import FrictionAnalysis
-    from squeezefilm.analysis.plate.command import PlateAnalysis
-    from squeezefilm.analysis.plate.ring import RingAnalysis
-    from squeezefilm.analysis.sensitivities import Effort
-    from squeezefilm.analysis.uncertainty import UncertainFriction
-    from squeezefilm.bench.play import PlayResult
-    from squeezefilm.chain.friction_models import FrictionModel
-    from squeezefilm.chain.pad_place import FacePlace
-    from squeezefilm.chain.prediction import Prediction
-    from squeezefilm.chain.rendered_texture import RenderAnalysis
-    from squeezefilm.chain.wanted_voltage import WantedFriction
-    from squeezefilm.display import Display, NamedDisplay
-    from squeezefilm.display import load_display as load_display
-    from squeezefilm.distributions import Distribution
-    from squeezefilm.errors import SqueezefilmError as SqueezefilmError
-    from squeezefilm.film.periodic.profile import GapFunction, GapProfile
-    from squeezefilm.formats.trajectories import NamedMotion
-    from squeezefilm.measure.calibration.blind import BlindPrediction, Score
-    from squeezefilm.measure.calibration.folder import FolderCalibration
-    from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
-    from squeezefilm.measure.planned.fabricate import Fabrication
-    from squeezefilm.measure.recordings.read import check_recording as check_recording
-    from squeezefilm.measure.recordings.read import read_recording as read_recording
-    from squeezefilm.perception.observer import NamedObserver
-    from squeezefilm.plate.working_mode import PlateTheory
-    from squeezefilm.presets import display_names as display_names
-    from squeezefilm.presets import study_names as study_names
-    from squeezefilm.presets import texture_names as texture_names
-    from squeezefilm.progress import Pace, SayProgress
-    from squeezefilm.quantities import (
+    from squeezefilm.core.distributions import Distribution
+    from squeezefilm.core.errors import SqueezefilmError as SqueezefilmError
+    from squeezefilm.core.presets import display_names as display_names
+    from squeezefilm.core.presets import study_names as study_names
+    from squeezefilm.core.presets import texture_names as texture_names
+    from squeezefilm.core.progress import Pace, SayProgress
+    from squeezefilm.core.quantities import (
         Dimensionless,
         FloatArray,
         Hertz,
@@ -55,31 +30,56 @@ if TYPE_CHECKING:
         Second,
         Volt,
     )
-    from squeezefilm.render.motion.sensor import SensorModel
-    from squeezefilm.render.motion.stroke import Stroke as _Stroke
-    from squeezefilm.render.texture.coordinate import Coordinate, Length, Place
-    from squeezefilm.render.texture.gates import speed as speed
-    from squeezefilm.render.texture.image import Image as _Image
-    from squeezefilm.render.texture.image import Share
-    from squeezefilm.render.texture.levels import Amplitude as _Amplitude
-    from squeezefilm.render.texture.levels import FrictionShare, VibrationAmplitude
-    from squeezefilm.render.texture.levels import RelativeFriction as _RelativeFriction
-    from squeezefilm.render.texture.noise import Noise as _Noise
-    from squeezefilm.render.texture.noise import Octaves, Persistence, Seed, Spacing
-    from squeezefilm.render.texture.pattern import Pattern
-    from squeezefilm.render.texture.shapes import Band as _Band
-    from squeezefilm.render.texture.shapes import Bump as _Bump
-    from squeezefilm.render.texture.shapes import SineWave as _SineWave
-    from squeezefilm.render.texture.shapes import SquareWave as _SquareWave
-    from squeezefilm.report.subjects import plot as plot
-    from squeezefilm.report.subjects import write_mode as write_mode
-    from squeezefilm.report.subjects import write_report as write_report
-    from squeezefilm.search.design.found import DesignSearch
-    from squeezefilm.search.design.requirements import NamedRequirements
-    from squeezefilm.search.design.run import Glimpse
-    from squeezefilm.search.swept import Sweep
-    from squeezefilm.session.play.plan import PlayView
-    from squeezefilm.session.record.trace import read_trace as read_trace
+    from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.sensitivities import Effort
+    from squeezefilm.design.fabrication.fabricate import Fabrication
+    from squeezefilm.design.film.command import FilmAnswer
+    from squeezefilm.design.friction.command import FrictionAnalysis
+    from squeezefilm.design.plate.command import PlateAnalysis
+    from squeezefilm.design.plate.ring import RingAnalysis
+    from squeezefilm.design.search.found import DesignSearch
+    from squeezefilm.design.search.requirements import NamedRequirements
+    from squeezefilm.design.search.run import Glimpse
+    from squeezefilm.design.sweep.swept import Sweep
+    from squeezefilm.instruments.bench.play import PlayResult
+    from squeezefilm.instruments.session.play.plan import PlayView
+    from squeezefilm.instruments.session.record.trace import read_trace as read_trace
+    from squeezefilm.measure.calibration.blind import BlindPrediction, Score
+    from squeezefilm.measure.calibration.folder import FolderCalibration
+    from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
+    from squeezefilm.measure.recordings.read import check_recording as check_recording
+    from squeezefilm.measure.recordings.read import read_recording as read_recording
+    from squeezefilm.physics.chain.friction_models import FrictionModel
+    from squeezefilm.physics.chain.pad_place import FacePlace
+    from squeezefilm.physics.chain.prediction import Prediction
+    from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
+    from squeezefilm.physics.chain.wanted_voltage import WantedFriction
+    from squeezefilm.physics.display import Display, NamedDisplay
+    from squeezefilm.physics.display import load_display as load_display
+    from squeezefilm.physics.film.periodic.profile import GapFunction, GapProfile
+    from squeezefilm.physics.perception.observer import NamedObserver
+    from squeezefilm.physics.plate.working_mode import PlateTheory
+    from squeezefilm.physics.render.motion.sensor import SensorModel
+    from squeezefilm.physics.render.motion.stroke import Stroke as _Stroke
+    from squeezefilm.physics.render.texture.coordinate import Coordinate, Length, Place
+    from squeezefilm.physics.render.texture.gates import speed as speed
+    from squeezefilm.physics.render.texture.image import Image as _Image
+    from squeezefilm.physics.render.texture.image import Share
+    from squeezefilm.physics.render.texture.levels import Amplitude as _Amplitude
+    from squeezefilm.physics.render.texture.levels import FrictionShare, VibrationAmplitude
+    from squeezefilm.physics.render.texture.levels import RelativeFriction as _RelativeFriction
+    from squeezefilm.physics.render.texture.noise import Noise as _Noise
+    from squeezefilm.physics.render.texture.noise import Octaves, Persistence, Seed, Spacing
+    from squeezefilm.physics.render.texture.pattern import Pattern
+    from squeezefilm.physics.render.texture.shapes import Band as _Band
+    from squeezefilm.physics.render.texture.shapes import Bump as _Bump
+    from squeezefilm.physics.render.texture.shapes import SineWave as _SineWave
+    from squeezefilm.physics.render.texture.shapes import SquareWave as _SquareWave
+    from squeezefilm.physics.texture_files.texture_file import NamedTexture
+    from squeezefilm.physics.texture_files.texture_file import load_texture as load_texture
+    from squeezefilm.physics.texture_files.texture_file import save_texture as save_texture
+    from squeezefilm.physics.texture_files.trajectories import NamedMotion
+    from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
     from squeezefilm.study.adaptive.bayesian import AdaptiveDesign as _AdaptiveDesign
     from squeezefilm.study.adaptive.bayesian import BayesianAdaptive as BayesianAdaptive
     from squeezefilm.study.adaptive.bayesian import Interest
@@ -98,9 +98,9 @@ if TYPE_CHECKING:
     from squeezefilm.study.simulated.chain_tables import ChainTables
     from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.study.tasks.analyze import StudyAnalysis, Tell
-    from squeezefilm.texture_file import NamedTexture
-    from squeezefilm.texture_file import load_texture as load_texture
-    from squeezefilm.texture_file import save_texture as save_texture
+    from squeezefilm.subjects import plot as plot
+    from squeezefilm.subjects import write_mode as write_mode
+    from squeezefilm.subjects import write_report as write_report
     def replaced(display: NamedDisplay | str | Path, values: Mapping[str, float | str]) -> Display:
         """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``."""
     def with_finger(display: NamedDisplay | str | Path, finger: str | Path = ...) -> Display:

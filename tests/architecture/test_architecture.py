@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import squeezefilm
-from squeezefilm.quantities import CLOSED_FORMS
+from squeezefilm.core.quantities import CLOSED_FORMS
 
 ROOT = Path(__file__).parents[2]
 

@@ -14,9 +14,9 @@ import pytest
 
 import front_door_stub
 import squeezefilm as sf
-from squeezefilm.errors import QuantityError
-from squeezefilm.from_text import reads_text
-from squeezefilm.quantities import format_quantity, unit_of
+from squeezefilm.core.errors import QuantityError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.quantities import format_quantity, unit_of
 
 NAMES = (
     "AdaptiveDesign",
@@ -87,7 +87,8 @@ def test_a_name_that_is_not_there_is_refused_with_those_there_are() -> None:
 
 
 def test_no_name_hides_a_room() -> None:
-    # Importing squeezefilm.film puts the module `film` where a function of that name would be.
+    # Importing squeezefilm.physics.film puts the module `film` where a function of that name would
+    # be.
     assert not {one.name for one in pkgutil.iter_modules(sf.__path__)} & set(NAMES)
 
 

@@ -46,8 +46,11 @@ def test_every_name_of_ours_in_a_page_exists(page: Path) -> None:
 
 def test_a_name_that_does_not_exist_is_found(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
-    page.write_text("`film.gap` `film.gap.no_such` `film.no_such.f` `chain.touch.Touch.kept`")
-    assert _missing(page) == ["film.gap.no_such", "film.no_such.f"]
+    page.write_text(
+        "`physics.film.gap` `physics.film.gap.no_such` `physics.film.no_such.f` "
+        "`physics.chain.touch.Touch.kept`"
+    )
+    assert _missing(page) == ["physics.film.gap.no_such", "physics.film.no_such.f"]
 
 
 def test_every_path_of_where_to_start_exists() -> None:

@@ -27,53 +27,55 @@ WRITES = "opened to write"
 CHILD = "in the child process of `isolated_reading`"
 
 ALLOWED: Mapping[str, Mapping[str, str]] = {
-    "regular_file.py": {"os.open": "the reader itself", "json.loads": "the reader itself"},
-    "isolated_reading.py": {
+    "core/regular_file.py": {"os.open": "the reader itself", "json.loads": "the reader itself"},
+    "core/isolated_reading.py": {
         "open": "the pipe of its parent",
         "json.loads": "a line between the two processes",
     },
-    "kept/records.py": {"json.loads": "what `read_regular` read; any error counts as not there"},
-    "contact/sharing/film_panels.py": {"np.load": PACKAGE},
-    "kept/computed_by.py": {"os.open": "the package's source"},
+    "core/kept/records.py": {
+        "json.loads": "what `read_regular` read; any error counts as not there"
+    },
+    "physics/contact/sharing/film_panels.py": {"np.load": PACKAGE},
+    "core/kept/computed_by.py": {"os.open": "the package's source"},
     "measure/recordings/files/matlab.py": {"loadmat": CHILD},
     "measure/recordings/files/universal.py": {"pyuff.UFF": CHILD},
     "measure/recordings/files/instruments.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
     "measure/recordings/files/sound.py": {"wave.open": "bytes that `read_regular` read"},
     "measure/recordings/description.py": {"tomllib.loads": TOML},
-    "formats/pictures.py": {"Pillow.open": CHILD},
-    "report/actuators/skin_stretch_figures.py": {"Image.open": "bytes that Matplotlib just drew"},
-    "report/textures/gallery.py": {
+    "physics/texture_files/pictures.py": {"Pillow.open": CHILD},
+    "actuators/report/skin_stretch_figures.py": {"Image.open": "bytes that Matplotlib just drew"},
+    "design/textures/report/gallery.py": {
         "read_text": PACKAGE,
         "read_bytes": "a figure of the checkout's documentation",
         "Image.open": "a figure of the checkout's documentation",
     },
-    "report/plate/vtu.py": {"read_bytes": "a draft in a folder of its own"},
-    "report/study/session.py": {"path.open": WRITES},
-    "session/record/trace.py": {"mmap.mmap": "over the descriptor that `opened` gave"},
-    "session/record/trace_writer.py": {"os.open": WRITES},
-    "session/loop/process.py": {"mmap.mmap": "memory shared with its own child"},
-    "session/loop/worker.py": {
+    "design/plate/report/vtu.py": {"read_bytes": "a draft in a folder of its own"},
+    "study/report/session.py": {"path.open": WRITES},
+    "instruments/session/record/trace.py": {"mmap.mmap": "over the descriptor that `opened` gave"},
+    "instruments/session/record/trace_writer.py": {"os.open": WRITES},
+    "instruments/session/loop/process.py": {"mmap.mmap": "memory shared with its own child"},
+    "instruments/session/loop/worker.py": {
         "mmap.mmap": "memory shared with its parent",
         "pickle.load": "orders of its parent, by a pipe",
     },
-    "search/lines.py": {"place.open": WRITES, "open": WRITES},
-    "search/design/journal.py": {"file.open": "looked at by `read_regular` before"},
-    "search/cluster.py": {"pickle.loads": "an answer of the workers whom somebody named"},
-    "search/answers.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
-    "twin/plant.py": {"file.open": WRITES},
-    "twin/pty_server.py": {"os.open": "a terminal of its own"},
-    "results.py": {"os.open": WRITES},
+    "design/sweep/lines.py": {"place.open": WRITES, "open": WRITES},
+    "design/search/journal.py": {"file.open": "looked at by `read_regular` before"},
+    "design/sweep/cluster.py": {"pickle.loads": "an answer of the workers whom somebody named"},
+    "design/sweep/answers.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
+    "instruments/twin/plant.py": {"file.open": WRITES},
+    "instruments/twin/pty_server.py": {"os.open": "a terminal of its own"},
+    "core/results.py": {"os.open": WRITES},
     "lab/files.py": {"os.open": WRITES, "zipfile.ZipFile": "written, in memory"},
     "lab/designing/form.py": {"read_text": PACKAGE},
     "lab/searching/asked.py": {"tomllib.loads": TOML},
     "lab/wire.py": {"json.loads": "a message of a page, of limited length"},
     "lab/serve.py": {"webbrowser.open": "no file"},
-    "presets/materials.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
-    "display.py": {"read_text": PACKAGE},
-    "plausibility/bounds.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
-    "bench/loop_check.py": {"read_text": "/proc/stat, of the kernel"},
-    "config/load.py": {"tomllib.loads": TOML},
-    "config/written.py": {"tomllib.loads": TOML},
+    "core/presets/materials.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
+    "physics/display.py": {"read_text": PACKAGE},
+    "physics/plausibility/bounds.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
+    "instruments/bench/loop_check.py": {"read_text": "/proc/stat, of the kernel"},
+    "core/config/load.py": {"tomllib.loads": TOML},
+    "core/config/written.py": {"tomllib.loads": TOML},
     "actuators/described.py": {"tomllib.loads": TOML},
     "cli/__init__.py": {"os.open": "/dev/null, to write"},
     "study/design/trials.py": {"json.loads": ROW},
@@ -127,7 +129,7 @@ def test_nothing_else_opens_files_for_reading() -> None:
                 used.add((place, key))
             else:
                 unknown.append(f"{place}:{line}: {name}")
-    assert unknown == [], "read files with squeezefilm.regular_file, or give the reason here"
+    assert unknown == [], "read files with squeezefilm.core.regular_file, or give the reason here"
     stale = {(place, key) for place, keys in ALLOWED.items() for key in keys} - used
     assert stale == set(), "nothing there opens a file in this way any more"
 
@@ -139,7 +141,7 @@ def test_an_opening_is_found_however_it_is_written() -> None:
 
 def test_files_are_written_whole_by_one_function() -> None:
     """`write_whole` leaves nothing cut behind; these write to a folder or a record of their own."""
-    own = {"bench/play.py", "report/textures/gallery.py"}
+    own = {"instruments/bench/play.py", "design/textures/report/gallery.py"}
     writers = set()
     for path in SOURCE.rglob("*.py"):
         source = path.read_text(encoding="utf-8")

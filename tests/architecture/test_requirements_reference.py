@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from squeezefilm import config
-from squeezefilm.plate.layout import GlueLayer
-from squeezefilm.quantities import format_quantity, unit_of
-from squeezefilm.search.design import requirements as wanted
-from squeezefilm.search.design import shapes, stock
+from squeezefilm.core import config
+from squeezefilm.core.quantities import format_quantity, unit_of
+from squeezefilm.design.search import requirements as wanted
+from squeezefilm.design.search import shapes, stock
+from squeezefilm.physics.plate.layout import GlueLayer
 
 DOCS = Path(__file__).parents[2] / "docs"
 TEXT = (DOCS / "reference" / "requirements.md").read_text(encoding="utf-8")

@@ -51,15 +51,16 @@ def test_nobody_imports_a_private_name_of_another_module() -> None:
 
 def test_private_names_are_seen_however_they_are_reached() -> None:
     source = """
-from squeezefilm import __version__, presets
-from squeezefilm.film.gap import _hidden
-import squeezefilm.film.gas as slip
+from squeezefilm import __version__
+from squeezefilm.core import presets
+from squeezefilm.physics.film.gap import _hidden
+import squeezefilm.physics.film.gas as slip
 presets._resolved, slip._law, self._mine, presets.names
 """
     assert import_graph.read_imports(source).private == {
-        "squeezefilm.film.gap._hidden",
-        "squeezefilm.presets._resolved",
-        "squeezefilm.film.gas._law",
+        "squeezefilm.physics.film.gap._hidden",
+        "squeezefilm.core.presets._resolved",
+        "squeezefilm.physics.film.gas._law",
     }
 
 

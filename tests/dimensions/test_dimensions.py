@@ -18,7 +18,7 @@ import pint
 import pytest
 
 import squeezefilm
-from squeezefilm.quantities import (
+from squeezefilm.core.quantities import (
     CLOSED_FORMS,
     Dimensionless,
     Hertz,
@@ -34,7 +34,7 @@ from squeezefilm.quantities import (
 pint_units: Any = pint.UnitRegistry()
 
 MISPRINTS = {
-    "squeezefilm.film.gap.squeeze_number_printed": "eq 4 has l0 where l0² belongs",
+    "squeezefilm.physics.film.gap.squeeze_number_printed": "eq 4 has l0 where l0² belongs",
 }
 
 # A number small enough for every formula's range (ε, δ, Kn, Poisson's ratio …).
@@ -54,22 +54,22 @@ DEFAULT_VALUES: dict[str, float] = {
 MINIMUM = {
     f"squeezefilm.{name}"
     for name in (
-        "film.gap.film_thickness",
-        "film.gap.squeeze_number",
-        "film.gap.squeeze_number_printed",
-        "film.gap.frequency_for_squeeze_number",
-        "film.closed.limits.paper_mean_pressure",
-        "film.closed.limits.paper_mean_pressure_printed",
-        "film.closed.linear.relative_stiffness",
-        "film.closed.linear.relative_damping",
-        "film.validity.reduced_reynolds_number",
-        "film.validity.knudsen_number",
-        "film.validity.crest_squeeze_number",
-        "contact.sharing.paper.relative_friction_from_pressure",
-        "contact.asperities.exponential_pressure",
-        "contact.finger.fingerpad.skin_displacement_per_friction",
-        "contact.sliding.skin_vibration.texture_frequency",
-        "plate.beam.modes.euler_bernoulli_frequency",
+        "physics.film.gap.film_thickness",
+        "physics.film.gap.squeeze_number",
+        "physics.film.gap.squeeze_number_printed",
+        "physics.film.gap.frequency_for_squeeze_number",
+        "physics.film.closed.limits.paper_mean_pressure",
+        "physics.film.closed.limits.paper_mean_pressure_printed",
+        "physics.film.closed.linear.relative_stiffness",
+        "physics.film.closed.linear.relative_damping",
+        "physics.film.validity.reduced_reynolds_number",
+        "physics.film.validity.knudsen_number",
+        "physics.film.validity.crest_squeeze_number",
+        "physics.contact.sharing.paper.relative_friction_from_pressure",
+        "physics.contact.asperities.exponential_pressure",
+        "physics.contact.finger.fingerpad.skin_displacement_per_friction",
+        "physics.contact.sliding.skin_vibration.texture_frequency",
+        "physics.plate.beam.modes.euler_bernoulli_frequency",
     )
 }
 
@@ -91,9 +91,13 @@ SHIPPED = {name: form for name, form in CLOSED_FORMS.items() if name.startswith(
 def pint_unit(unit: Unit) -> Any:
     kilogram, metre, second, ampere, kelvin, radian = unit.dimension
     return (
-        pint_units.kilogram**kilogram * pint_units.metre**metre * pint_units.second**second
-        * pint_units.ampere**ampere * pint_units.kelvin**kelvin * pint_units.radian**radian
-    )  # fmt: skip
+        pint_units.kilogram**kilogram
+        * pint_units.metre**metre
+        * pint_units.second**second
+        * pint_units.ampere**ampere
+        * pint_units.kelvin**kelvin
+        * pint_units.radian**radian
+    )
 
 
 def example(name: str, parameter: inspect.Parameter, hint: Any) -> Any:
@@ -152,10 +156,13 @@ def test_misprint_is_caught(name: str) -> None:
 
 
 def test_printed_equation_4_is_caught_for_its_missing_length() -> None:
-    name = "squeezefilm.film.gap.squeeze_number_printed"
+    name = "squeezefilm.physics.film.gap.squeeze_number_printed"
     with pytest.raises(DimensionMismatchError, match=r"promises 1 and returns 1 / \[length\]"):
         check(name, SHIPPED[name])
-    check("squeezefilm.film.gap.squeeze_number", SHIPPED["squeezefilm.film.gap.squeeze_number"])
+    check(
+        "squeezefilm.physics.film.gap.squeeze_number",
+        SHIPPED["squeezefilm.physics.film.gap.squeeze_number"],
+    )
 
 
 def test_the_test_itself_catches_wrong_formulas() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from tests.e2e.program import PROGRAM, run, run_program
 
-from squeezefilm import presets
+from squeezefilm.core import presets
 
 
 def test_help_names_the_verbs() -> None:

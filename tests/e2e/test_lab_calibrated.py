@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from squeezefilm.calibration_record import CalibrationRecord, ComparedAnswer, UsedRecording
-from squeezefilm.config.write import text_of
-from squeezefilm.display import load_display
+from squeezefilm.core.calibration_record import CalibrationRecord, ComparedAnswer, UsedRecording
+from squeezefilm.core.config.write import text_of
+from squeezefilm.physics.display import load_display
 
 from .test_lab_areas import CUT_OFF
 from .test_lab_pages import CONTRAST, keep, opened

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from tests.unit.study.scripted import CONSENT, Script, gratings
 
-from squeezefilm.session.record.trace import read_trace
+from squeezefilm.instruments.session.record.trace import read_trace
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
 from squeezefilm.study.conduct.study_device import NoDevice

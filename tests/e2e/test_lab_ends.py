@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.presets import resolve_requirements
+from squeezefilm.core.presets import resolve_requirements
 
 from .conftest import RunningLab
 from .test_lab_lan import experimenters_page

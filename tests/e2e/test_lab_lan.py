@@ -19,7 +19,7 @@ from websockets.asyncio.client import connect as connect_in_one_thread
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.lab.lan import certificate, lan_listener
 
 from .conftest import RunningLab, Start

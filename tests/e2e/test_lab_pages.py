@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from squeezefilm.display import load_display
-from squeezefilm.formats.trajectories import read_trajectory
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.texture_files.trajectories import read_trajectory
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 from tests.unit.lab.searching.small import TEXT
 
-from squeezefilm import presets
+from squeezefilm.core import presets
 
 from .conftest import RunningLab
 from .test_lab_areas import CUT_OFF

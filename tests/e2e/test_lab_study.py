@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from squeezefilm.quantities import Second
+from squeezefilm.core.quantities import Second
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.record.store import StudyStore
 

@@ -8,7 +8,7 @@ from pathlib import Path, PureWindowsPath
 
 import pytest
 
-from squeezefilm import presets
+from squeezefilm.core import presets
 from squeezefilm.lab.server import is_named
 
 WITHOUT_POSIX = """
@@ -45,8 +45,8 @@ IMPORTS = """
 for one in pkgutil.walk_packages(squeezefilm.__path__, "squeezefilm."):
     if not one.name.endswith("__main__"):
         importlib.import_module(one.name)
-from squeezefilm.errors import InputError
-from squeezefilm.twin.pty_server import running_twin
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.twin.pty_server import running_twin
 try:
     with running_twin("biet2008-plate"):
         raise SystemExit("a twin started")

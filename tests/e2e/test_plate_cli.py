@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from tests.e2e.program import run
 
-from squeezefilm import presets
+from squeezefilm.core import presets
 
 SHARED_KEYS = {
     "display", "mode", "frequency_Hz", "frequency_error_Hz", "amplitude_per_volt_m_per_V",

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from tests.e2e.program import PROGRAM
 
-from squeezefilm.formats.traces import table_from_csv
-from squeezefilm.session.record.trace import read_trace
+from squeezefilm.core.formats.traces import table_from_csv
+from squeezefilm.instruments.session.record.trace import read_trace
 
 pytestmark = pytest.mark.skipif(
     sys.platform == "win32", reason="a twin's port is a pseudo-terminal, which needs POSIX"
@@ -81,9 +81,9 @@ def test_a_texture_is_played_on_a_twin_and_judged(tmp_path: Path) -> None:
 def test_what_cannot_be_played_is_said(
     words: tuple[str, ...], said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from squeezefilm.bench import play as play_command
-    from squeezefilm.errors import SqueezefilmError
-    from squeezefilm.texture_file import load_texture
+    from squeezefilm.core.errors import SqueezefilmError
+    from squeezefilm.instruments.bench import play as play_command
+    from squeezefilm.physics.texture_files.texture_file import load_texture
 
     names = {"--drive": "drive", "--compensate": "compensation", "--sensor": "sensor",
              "--mode": "mode"}  # fmt: skip

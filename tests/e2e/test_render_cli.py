@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from tests.e2e.program import run
 from tests.pictures import picture_bytes
-from tests.unit.formats.read_parquet import table_in_parquet
-from tests.unit.formats.read_sound import read_sound
+from tests.unit.core.formats.read_parquet import table_in_parquet
+from tests.unit.core.formats.read_sound import read_sound
 
-from squeezefilm import presets
-from squeezefilm.formats.hjif import friction_along
-from squeezefilm.formats.traces import table_from_csv
+from squeezefilm.core import presets
+from squeezefilm.core.formats.traces import table_from_csv
+from squeezefilm.physics.texture_files.hjif import friction_along
 
 STATOR = ("--display", "biet2008-stator")
 GRATING = "biet2008-square-4mm"

@@ -22,9 +22,9 @@ FIGURES = ("layout", "mode", "area", "response", "band")
     params=["biet2008-plate", pytest.param("biet2008-stator", marks=pytest.mark.nightly)],
 )
 def report(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from squeezefilm.analysis.analyze import analyze
-    from squeezefilm.display import load_display
-    from squeezefilm.report.display.page import write_analysis
+    from squeezefilm.design.analysis.analyze import analyze
+    from squeezefilm.design.analysis.report.page import write_analysis
+    from squeezefilm.physics.display import load_display
 
     folder = tmp_path_factory.mktemp(str(request.param))
     return write_analysis(analyze(load_display(request.param), samples=8), folder)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from tests.e2e.program import run
 
-from squeezefilm import presets
+from squeezefilm.core import presets
 
 DESIGN = """
 name = "two-gratings"

@@ -14,12 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.config.write import text_of
-from squeezefilm.errors import DeviceError
-from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.session.loop import rows as column
-from squeezefilm.session.record.trace import read_trace
+from squeezefilm.core.config.write import text_of
+from squeezefilm.core.errors import DeviceError
+from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.record.trace import read_trace
+from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.conduct.sessions import (
@@ -32,7 +33,6 @@ from squeezefilm.study.conduct.study_device import NoDevice, StudyDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.twin.settings import PickupModel, TwinSettings
 
 pytestmark = [
     pytest.mark.realtime,
@@ -79,7 +79,7 @@ class Strokes:
 def twin_process(folder: Path, stroke: str) -> tuple[subprocess.Popen[str], str]:
     settings = folder / "twin.toml"
     settings.write_text(text_of(TwinSettings(sensor=LVDT_10_KHZ, pickup=PICKUP)), encoding="utf-8")
-    command = [sys.executable, "-m", "squeezefilm.twin.pty_server", DISPLAY]
+    command = [sys.executable, "-m", "squeezefilm.instruments.twin.pty_server", DISPLAY]
     process = subprocess.Popen(
         [*command, "--settings", str(settings), "--stroke", stroke],
         stdout=subprocess.PIPE, text=True,
@@ -200,7 +200,7 @@ KILLED = """
 import os, signal, sys, time
 from pathlib import Path
 from squeezefilm.study.conduct.played_device import SessionDevice
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.physics.perception.stimuli import Stimulus
 if __name__ == "__main__":
     device = SessionDevice("biet2008-plate", "twin", Path(sys.argv[1]))
     device.present(Stimulus("8 mm", 8e-3, "period", low=0.8), 1)

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import serial
 
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import Deframer
-from squeezefilm.errors import InputError
-from squeezefilm.twin.plant_kernel import COLUMNS
-from squeezefilm.twin.pty_server import main, running_twin
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Deframer
+from squeezefilm.instruments.twin.plant_kernel import COLUMNS
+from squeezefilm.instruments.twin.pty_server import main, running_twin
 
 pytestmark = [
     pytest.mark.realtime,
@@ -94,7 +94,7 @@ def test_what_cannot_start_says_why_and_leaves_nothing(tmp_path: Path) -> None:
 
 def test_sigterm_ends_it_cleanly_and_takes_the_link_away(tmp_path: Path) -> None:
     link, truth = tmp_path / "port", tmp_path / "truth.csv"
-    command = [sys.executable, "-m", "squeezefilm.twin.pty_server", DISPLAY]
+    command = [sys.executable, "-m", "squeezefilm.instruments.twin.pty_server", DISPLAY]
     command += ["--link", str(link), "--truth", str(truth), "--stroke", "none"]
     with subprocess.Popen(command, stdout=subprocess.PIPE) as twin:
         assert twin.stdout is not None
@@ -111,7 +111,7 @@ def test_sigterm_ends_it_cleanly_and_takes_the_link_away(tmp_path: Path) -> None
 @pytest.mark.skipif(sys.platform != "linux", reason="children are found in Linux's /proc")
 def test_it_dies_with_the_process_that_started_it() -> None:
     script = (
-        "import time\nfrom squeezefilm.twin.pty_server import running_twin\n"
+        "import time\nfrom squeezefilm.instruments.twin.pty_server import running_twin\n"
         f"with running_twin({DISPLAY!r}) as name:\n    print(name, flush=True)\n"
         "    time.sleep(600)\n"
     )

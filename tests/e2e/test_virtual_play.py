@@ -8,21 +8,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.bench.played_session import PlayedSession, judge_session
-from squeezefilm.bench.setup import KnownDevice, PlaySetup, play_setup
-from squeezefilm.display import Display, load_display
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
-from squeezefilm.session.play import simulated as bench
-from squeezefilm.session.play.plan import Ending
-from squeezefilm.session.play.player import Player
-from squeezefilm.session.play.real_time import PlayOutcome
-from squeezefilm.session.play.simulated import virtual_play
-from squeezefilm.session.record.trace import read_trace
-from squeezefilm.texture_file import load_texture
-from squeezefilm.twin.device import TwinDevice
-from squeezefilm.twin.hand import hand_from
-from squeezefilm.twin.settings import PickupModel, TwinSettings
-from squeezefilm.twin.working_point import WorkingPoint, working_point
+from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session
+from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
+from squeezefilm.instruments.session.play import simulated as bench
+from squeezefilm.instruments.session.play.plan import Ending
+from squeezefilm.instruments.session.play.player import Player
+from squeezefilm.instruments.session.play.real_time import PlayOutcome
+from squeezefilm.instruments.session.play.simulated import virtual_play
+from squeezefilm.instruments.session.record.trace import read_trace
+from squeezefilm.instruments.twin.device import TwinDevice
+from squeezefilm.instruments.twin.hand import hand_from
+from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
+from squeezefilm.physics.display import Display, load_display
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
+from squeezefilm.physics.texture_files.texture_file import load_texture
 
 
 @pytest.fixture(scope="module")
@@ -197,10 +197,10 @@ def test_a_session_without_a_pickup_is_judged_by_the_envelopes_model(
 
 
 def test_a_session_that_broke_at_once_is_told_and_shown(display: Display, tmp_path: Path) -> None:
-    from squeezefilm.bench.play import PlayResult
-    from squeezefilm.report.played.page import write_play
-    from squeezefilm.session.loop.rows import COLUMNS
-    from squeezefilm.session.record.trace_writer import TraceWriter
+    from squeezefilm.instruments.bench.play import PlayResult
+    from squeezefilm.instruments.report.page import write_play
+    from squeezefilm.instruments.session.loop.rows import COLUMNS
+    from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 
     setup = prepared(display)
     with TraceWriter(tmp_path / "trace.sqft", COLUMNS, {"drive": "serial:none"}) as writer:

@@ -2,6 +2,6 @@
 
 from tests.faults.playing_host import own_plan
 
-from squeezefilm.session.play.real_time import _compile
+from squeezefilm.instruments.session.play.real_time import _compile
 
 _compile(own_plan())

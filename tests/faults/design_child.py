@@ -12,13 +12,13 @@ import time
 from pathlib import Path
 from unittest import mock
 
-from tests.unit.search.design.made_up import formula, requirements
+from tests.unit.design.search.made_up import formula, requirements
 
-import squeezefilm.search.design.run as run
-from squeezefilm.search.design.candidate import Design, Evaluated, Level
-from squeezefilm.search.design.found import DesignSearch
-from squeezefilm.search.design.requirements import Requirements
-from squeezefilm.search.design.tolerance import Made
+import squeezefilm.design.search.run as run
+from squeezefilm.design.search.candidate import Design, Evaluated, Level
+from squeezefilm.design.search.found import DesignSearch
+from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.tolerance import Made
 
 
 def searched(folder: Path, pause: float = 0.0) -> DesignSearch:

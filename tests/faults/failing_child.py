@@ -18,11 +18,11 @@ from pathlib import Path
 import numpy as np
 from tests.faults.study_child import Device, Script, begin
 
-from squeezefilm.errors import SqueezefilmError
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.instruments.session.record.trace import read_trace
+from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 from squeezefilm.lab.studying.studies import Studies
-from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.session.record.trace import read_trace
-from squeezefilm.session.record.trace_writer import TraceWriter
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.deletion import delete_participant

@@ -25,20 +25,20 @@ from unittest import mock
 
 import numpy as np
 
-from squeezefilm.analysis.friction.command import friction_map
-from squeezefilm.chain import rendered_texture as render_command
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import Display, load_display
-from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
-from squeezefilm.film.periodic import batch
-from squeezefilm.film.periodic import film as periodic
-from squeezefilm.formats.trajectories import motion_from
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.ring import modes as annular
-from squeezefilm.plate.solid import solve as solve_modes
+from squeezefilm.core.errors import SqueezefilmError, SqueezefilmWarning
+from squeezefilm.design.friction.command import friction_map
+from squeezefilm.physics.chain import rendered_texture as render_command
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import Display, load_display
+from squeezefilm.physics.film.periodic import batch
+from squeezefilm.physics.film.periodic import film as periodic
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.ring import modes as annular
+from squeezefilm.physics.plate.solid import solve as solve_modes
+from squeezefilm.physics.texture_files.texture_file import load_texture
+from squeezefilm.physics.texture_files.trajectories import motion_from
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import load_design
-from squeezefilm.texture_file import load_texture
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tests.faults.mutations import mutated, mutated_stroke, preset_files

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from squeezefilm import presets
+from squeezefilm.core import presets
 
 _NUMBER = re.compile(r"(?<![\w.\"'-])[+-]?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?(?![\w.])")
 # A value of a line: a number at the beginning of a text, or a bare one after an equal sign.

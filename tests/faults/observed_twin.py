@@ -15,14 +15,14 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.wire.states import Fault
-from squeezefilm.display import load_display
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.twin.device import TwinDevice
-from squeezefilm.twin.hand import hand_from
-from squeezefilm.twin.pty_server import PtyServer
-from squeezefilm.twin.settings import PickupModel, TwinSettings
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.wire.states import Fault
+from squeezefilm.instruments.twin.device import TwinDevice
+from squeezefilm.instruments.twin.hand import hand_from
+from squeezefilm.instruments.twin.pty_server import PtyServer
+from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 
 
 class Observed(Machine):

@@ -10,14 +10,22 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from tests.unit.search.design.made_up import formula, requirements
+from tests.unit.design.search.made_up import formula, requirements
 from tests.unit.study.scripted import gratings, run_through
 
-from squeezefilm import presets
-from squeezefilm.display import load_display
-from squeezefilm.formats.traces import Table, csv_text, table_from_csv
-from squeezefilm.kept.folder import CACHE_VARIABLE
-from squeezefilm.kept.store import Kept as KeptResults
+from squeezefilm.core import presets
+from squeezefilm.core.formats.traces import Table, csv_text, table_from_csv
+from squeezefilm.core.kept.folder import CACHE_VARIABLE
+from squeezefilm.core.kept.store import Kept as KeptResults
+from squeezefilm.design.search.evolution import JOURNAL, Proposals
+from squeezefilm.design.search.store import FILE as DESIGNS
+from squeezefilm.design.search.store import DesignStore
+from squeezefilm.design.sweep.kept import FILE as ANSWERS
+from squeezefilm.design.sweep.kept import Kept
+from squeezefilm.design.sweep.points import Answer, Point
+from squeezefilm.design.sweep.report.compared import compared_rows
+from squeezefilm.instruments.session.record.trace import export_trace
+from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.lan import certificate
 from squeezefilm.measure.calibration.blind import (
@@ -27,22 +35,14 @@ from squeezefilm.measure.calibration.blind import (
     sealed,
 )
 from squeezefilm.measure.recordings.read import check_folder
-from squeezefilm.report.sweep.compared import compared_rows
-from squeezefilm.search.design.evolution import JOURNAL, Proposals
-from squeezefilm.search.design.store import FILE as DESIGNS
-from squeezefilm.search.design.store import DesignStore
-from squeezefilm.search.kept import FILE as ANSWERS
-from squeezefilm.search.kept import Kept
-from squeezefilm.search.points import Answer, Point
-from squeezefilm.session.record.trace import export_trace
-from squeezefilm.session.record.trace_writer import TraceWriter
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.texture_files.texture_file import load_texture
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import LIST, export_study
 from squeezefilm.study.record.merge import merge
 from squeezefilm.study.record.sittings import FILE as SITTINGS
 from squeezefilm.study.record.sittings import Sittings
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.texture_file import load_texture
 
 
 @dataclass(frozen=True)

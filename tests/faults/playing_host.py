@@ -11,17 +11,17 @@ import warnings
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.errors import DeviceError
-from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.render.program.lowering import lower
-from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.shapes import SquareWave
-from squeezefilm.session.loop.plan import DriveTable, LoopPlan
-from squeezefilm.session.play.plan import PlayPlan
-from squeezefilm.session.play.real_time import run_play
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.core.errors import DeviceError
+from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.play.plan import PlayPlan
+from squeezefilm.instruments.session.play.real_time import run_play
+from squeezefilm.physics.render.motion.estimator import MotionEstimator
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.program.lowering import lower
+from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.texture.levels import Amplitude
+from squeezefilm.physics.render.texture.shapes import SquareWave
 
 
 def own_plan() -> PlayPlan:

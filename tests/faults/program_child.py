@@ -6,10 +6,11 @@ from multiprocessing.connection import Connection
 
 from tests.e2e.program import run
 
-# What the verbs import when they are asked.
-import squeezefilm.analysis.friction.command
-import squeezefilm.chain.rendered_texture
 import squeezefilm.cli
+
+# What the verbs import when they are asked.
+import squeezefilm.design.friction.command
+import squeezefilm.physics.chain.rendered_texture
 import squeezefilm.study.design.plan  # noqa: F401
 
 

@@ -16,8 +16,8 @@ import sys
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from squeezefilm.errors import RecordError
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core.errors import RecordError
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion

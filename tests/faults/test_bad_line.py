@@ -9,11 +9,11 @@ from collections.abc import Iterable
 
 import pytest
 
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.machine.limits import DeviceLimits
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import Deframer
-from squeezefilm.device.wire.link import Link
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.machine.limits import DeviceLimits
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Deframer
+from squeezefilm.instruments.device.wire.link import Link
 
 RATES = (1e-4, 1e-3, 1e-2)
 """Bit error rates; bytes are dropped at 1 %, frames doubled and swapped at 2 % on top."""

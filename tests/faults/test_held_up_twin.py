@@ -13,14 +13,14 @@ from collections.abc import Iterator
 
 import pytest
 
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.states import Fault, State
-from squeezefilm.display import load_display
-from squeezefilm.twin import pty_server
-from squeezefilm.twin.device import TwinDevice
-from squeezefilm.twin.pty_server import PtyServer
-from squeezefilm.twin.settings import TwinSettings
-from squeezefilm.twin.working_point import WorkingPoint, working_point
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.twin import pty_server
+from squeezefilm.instruments.twin.device import TwinDevice
+from squeezefilm.instruments.twin.pty_server import PtyServer
+from squeezefilm.instruments.twin.settings import TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
+from squeezefilm.physics.display import load_display
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no ptys on Windows")
 

@@ -15,19 +15,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError, LoopError, SqueezefilmWarning
-from squeezefilm.quantities import FloatArray
-from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.render.program.lowering import lower
-from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.shapes import SquareWave
-from squeezefilm.session.loop import rows as column
-from squeezefilm.session.loop.pacing import MARGIN
-from squeezefilm.session.loop.plan import DriveTable, LoopPlan
-from squeezefilm.session.loop.process import LoopProcess
-from squeezefilm.session.loop.ring import ring_waiting
+from squeezefilm.core.errors import InputError, LoopError, SqueezefilmWarning
+from squeezefilm.core.quantities import FloatArray
+from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop.pacing import MARGIN
+from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.process import LoopProcess
+from squeezefilm.instruments.session.loop.ring import ring_waiting
+from squeezefilm.physics.render.motion.estimator import MotionEstimator
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.program.lowering import lower
+from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.texture.levels import Amplitude
+from squeezefilm.physics.render.texture.shapes import SquareWave
 
 pytestmark = pytest.mark.realtime
 # Far beyond what any of it takes; a limit for a test that hangs.
@@ -169,7 +169,7 @@ def test_a_killed_loop_is_noticed_and_what_it_wrote_is_kept() -> None:
 
 HOST = """
 import os, sys, time
-from squeezefilm.session.loop.process import LoopProcess
+from squeezefilm.instruments.session.loop.process import LoopProcess
 sys.path.insert(0, sys.argv[1])
 from test_loop_process import PLAN
 loop = LoopProcess(PLAN, priority=None)
@@ -204,7 +204,7 @@ import ctypes, resource, sys, warnings
 # Neither a capability (24: drop from the bounding set, 23: CAP_SYS_NICE) nor a limit allows it.
 ctypes.CDLL(None).prctl(24, 23, 0, 0, 0)
 resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
-from squeezefilm.session.loop.process import LoopProcess
+from squeezefilm.instruments.session.loop.process import LoopProcess
 sys.path.insert(0, sys.argv[1])
 from test_loop_process import PLAN
 with warnings.catch_warnings(record=True) as caught:

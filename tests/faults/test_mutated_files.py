@@ -33,12 +33,12 @@ from tests.faults.mutants import (
 from tests.faults.mutations import mutated
 from tests.faults.program_child import program
 
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import load_display
-from squeezefilm.errors import SqueezefilmError
-from squeezefilm.hard_limits import RENDER_STEPS, SOLID_MEMORY
-from squeezefilm.plate.elements import box_model
-from squeezefilm.presets import path as preset_path
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.hard_limits import RENDER_STEPS, SOLID_MEMORY
+from squeezefilm.core.presets import path as preset_path
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.elements import box_model
 
 SEED = 14
 CHILD = Path(__file__).with_name("mutants.py")

@@ -20,7 +20,7 @@ import pytest
 from tests.faults.mutations import damage_file
 from tests.faults.own_files import OWN_FILES, OwnFile
 
-from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
+from squeezefilm.core.errors import SqueezefilmError, SqueezefilmWarning
 
 if os.name != "posix":
     pytest.skip("pipes and alarms of POSIX", allow_module_level=True)

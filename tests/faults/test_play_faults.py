@@ -19,9 +19,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.device.wire.states import Fault
-from squeezefilm.session.loop import rows as column
-from squeezefilm.session.record.trace import read_trace
+from squeezefilm.instruments.device.wire.states import Fault
+from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.record.trace import read_trace
 
 pytestmark = [
     pytest.mark.realtime,

@@ -12,17 +12,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError, RecordError
-from squeezefilm.session.record import trace_file
-from squeezefilm.session.record.trace import Trace, read_trace
-from squeezefilm.session.record.trace_writer import TraceWriter
+from squeezefilm.core.errors import InputError, RecordError
+from squeezefilm.instruments.session.record import trace_file
+from squeezefilm.instruments.session.record.trace import Trace, read_trace
+from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 
 COLUMNS = ("tick", "x_m", "level_V")
 
 WRITER = """
 import os, sys
 import numpy as np
-from squeezefilm.session.record.trace_writer import TraceWriter
+from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 
 path, seed = sys.argv[1], int(sys.argv[2])
 random = np.random.default_rng(seed)
@@ -179,8 +179,8 @@ def test_a_file_that_is_not_there_is_the_callers_mistake(tmp_path: Path) -> None
 LIMITED = """
 import resource, sys
 import numpy as np
-from squeezefilm.errors import RecordError
-from squeezefilm.session.record.trace_writer import TraceWriter
+from squeezefilm.core.errors import RecordError
+from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
 writer = TraceWriter(sys.argv[1], ("tick", "x_m", "level_V"), {})

@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.session.loop import shared
-from squeezefilm.session.loop.ring import ring_take
+from squeezefilm.instruments.session.loop import shared
+from squeezefilm.instruments.session.loop.ring import ring_take
 
 WRITER = """
 import mmap, sys
 import numpy as np
-from squeezefilm.session.loop import shared
-from squeezefilm.session.loop.ring import ring_put_all
+from squeezefilm.instruments.session.loop import shared
+from squeezefilm.instruments.session.loop.ring import ring_put_all
 
 total = int(sys.argv[2])
 with open(sys.argv[1], "r+b") as file:

@@ -12,14 +12,14 @@ from types import TracebackType
 import numpy as np
 import pytest
 
-from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.machine.playing import CLOCK
-from squeezefilm.device.wire.link import Link
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.device.wire.states import Fault, State
-from squeezefilm.device.wire.streams import SerialStream, open_stream
-from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.instruments.device.host import DeviceHost
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.machine.playing import CLOCK
+from squeezefilm.instruments.device.wire.link import Link
+from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.device.wire.streams import SerialStream, open_stream
 
 LIMITS = Limits(40.0, 20e3, 40.0, 0.0, 20e3, 60e3)
 

@@ -16,7 +16,7 @@ import pytest
 from tests.faults.forked import Forked
 from tests.faults.study_child import run
 
-from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
@@ -227,7 +227,7 @@ def test_a_full_disk_acknowledges_nothing_and_the_run_goes_on(tmp_path: Path) ->
 
 
 def test_a_database_that_may_not_grow_acknowledges_nothing(tmp_path: Path) -> None:
-    from squeezefilm.errors import RecordError
+    from squeezefilm.core.errors import RecordError
     from squeezefilm.study.conduct.run import Response, StudyRun
     from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
     from squeezefilm.study.conduct.study_device import NoDevice

@@ -4,12 +4,12 @@ import random
 
 import pytest
 
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.machine.playing import CLOCK
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import Deframer
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.device.wire.states import Fault
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.machine.playing import CLOCK
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Deframer
+from squeezefilm.instruments.device.wire.states import Fault
 
 # The slowest ramp that limits may have: 10 ms from the top.
 SLOWEST = Limits(60.0, 6000.0, 60.0, 0.0, 20e3, 60e3, insulation="glass")

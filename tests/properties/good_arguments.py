@@ -13,19 +13,19 @@ from typing import Any, Literal
 
 import numpy as np
 
+from squeezefilm.actuators.control.force_law import ForceLaw
 from squeezefilm.actuators.motor.assembled import Working
 from squeezefilm.actuators.motor.description import Motor
-from squeezefilm.contact.sharing.pad import PadPoints
-from squeezefilm.control.force_law import ForceLaw
+from squeezefilm.core.quantities import unit_of
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
-from squeezefilm.plate.parts import Sector
-from squeezefilm.plate.shear.section import ShearLayout, ShearSection
-from squeezefilm.plate.solid.modes import PlateModes
-from squeezefilm.plate.sound import RadiatingSurface
-from squeezefilm.quantities import unit_of
-from squeezefilm.render.program.lowering import Program
-from squeezefilm.render.texture.composition import Texture
-from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.physics.contact.sharing.pad import PadPoints
+from squeezefilm.physics.plate.parts import Sector
+from squeezefilm.physics.plate.shear.section import ShearLayout, ShearSection
+from squeezefilm.physics.plate.solid.modes import PlateModes
+from squeezefilm.physics.plate.sound import RadiatingSurface
+from squeezefilm.physics.render.program.lowering import Program
+from squeezefilm.physics.render.texture.composition import Texture
+from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
 
 from .made_objects import (
     MADE,
@@ -168,66 +168,66 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "actuators.motor.closed_loop.track_force": {"wanted": np.array([0.5, 0.5]), "speed": 0.01},
     "actuators.motor.description.Motor": Later(lambda: fields_of(made(Motor))),
-    "control.force_law.ForceLaw": Later(lambda: fields_of(made(ForceLaw))),
-    "plate.electronics.amplifier_check": {"slew_rate": 1e6, "current": 0.01},
-    "contact.finger.load.finger_impedance": {"stiffness_per_area": 1e10 + 1e9j},
-    "contact.sliding.dry_friction.SpeedFriction": {
+    "actuators.control.force_law.ForceLaw": Later(lambda: fields_of(made(ForceLaw))),
+    "physics.plate.electronics.amplifier_check": {"slew_rate": 1e6, "current": 0.01},
+    "physics.contact.finger.load.finger_impedance": {"stiffness_per_area": 1e10 + 1e9j},
+    "physics.contact.sliding.dry_friction.SpeedFriction": {
         "speed": np.array([0.0, 0.1]),
         "coefficient": np.array([0.2, 0.5]),
     },
-    "contact.sliding.skin_vibration.skin_vibration": {"fundamental": 50.0, "start": 0.02},
-    "contact.sliding.skin_vibration.line_amplitudes": {
+    "physics.contact.sliding.skin_vibration.skin_vibration": {"fundamental": 50.0, "start": 0.02},
+    "physics.contact.sliding.skin_vibration.line_amplitudes": {
         "signals": np.cos(np.arange(640.0)),
         "time_step": 1e-3,
         "lines": np.array([100.0]),
     },
-    "film.line_grid.gap_table": {"gap": still_gap, "X": _GRID, "T": _GRID},
-    "film.transient.settling.settle_to_periodic": {"gap": still_gap},
-    "film.transient.march.solve_transient": {
+    "physics.film.line_grid.gap_table": {"gap": still_gap, "X": _GRID, "T": _GRID},
+    "physics.film.transient.settling.settle_to_periodic": {"gap": still_gap},
+    "physics.film.transient.march.solve_transient": {
         "gap": still_gap,
         "end": 1.0,
         "steps": 32,
         "cells": 16,
     },
-    "film.planar.film.solve_planar": {
+    "physics.film.planar.film.solve_planar": {
         "shape": "rectangle",
         "gap": planar_gap,
         "squeeze_number": 10.0,
     },
-    "film.gap.PaperGap.wave_phase": {"X": _GRID},
-    "film.gap.PaperGap.ridge_phase": {"X": _GRID},
-    "film.planar.gap.PlanarGap.__call__": {"X": _GRID, "Y": _GRID, "T": _GRID},
-    "formats.hjif.friction_along": {"document": Later(hjif_document)},
-    "formats.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
-    "formats.drawing.Layer": {"colour": 7},
-    "formats.drawing.Polyline": {"layer": "BOARD", "points": ((0.0, 0.0), (1e-3, 0.0))},
-    "formats.drawing.rectangle": {"layer": "BOARD"},
-    "formats.drawing.Arc": {"layer": "BOARD"},
-    "formats.drawing.Text": {"text": "a board"},
-    "formats.drawing.Drawing": {"layers": {}},
-    "formats.stl.stl_bytes": {"triangles": np.zeros((2, 3, 3)), "title": "a board"},
-    "formats.image_file.ImageFile": {"file": "picture.png"},
-    "formats.traces.Table": {"columns": {"time_s": _GRID}},
-    "formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
-    "materials.PiezoConstants": Later(lambda: fields_of(PZT.full_constants)),
-    "materials.Piezoceramic": {
+    "physics.film.gap.PaperGap.wave_phase": {"X": _GRID},
+    "physics.film.gap.PaperGap.ridge_phase": {"X": _GRID},
+    "physics.film.planar.gap.PlanarGap.__call__": {"X": _GRID, "Y": _GRID, "T": _GRID},
+    "physics.texture_files.hjif.friction_along": {"document": Later(hjif_document)},
+    "physics.texture_files.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
+    "core.formats.drawing.Layer": {"colour": 7},
+    "core.formats.drawing.Polyline": {"layer": "BOARD", "points": ((0.0, 0.0), (1e-3, 0.0))},
+    "core.formats.drawing.rectangle": {"layer": "BOARD"},
+    "core.formats.drawing.Arc": {"layer": "BOARD"},
+    "core.formats.drawing.Text": {"text": "a board"},
+    "core.formats.drawing.Drawing": {"layers": {}},
+    "core.formats.stl.stl_bytes": {"triangles": np.zeros((2, 3, 3)), "title": "a board"},
+    "physics.texture_files.image_file.ImageFile": {"file": "picture.png"},
+    "core.formats.traces.Table": {"columns": {"time_s": _GRID}},
+    "core.formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
+    "core.materials.PiezoConstants": Later(lambda: fields_of(PZT.full_constants)),
+    "core.materials.Piezoceramic": {
         "in_plane_poisson_ratio": 0.29,
         "in_plane_stiffness": 68e9,
         "charge_coefficient": -247e-12,
     },
-    "plate.ring.modes.bending_mode": {"diameters": 0, "circles": 1},
-    "plate.ring.modes.bending_frequency": {"diameters": 2, "degree": 3},
-    "plate.ring.modes.annular_modes": {"harmonic": 1, "degree": 3, "count": 1},
-    "plate.ring.modes.annular_admittance": {"harmonics": (0,), "degree": 3, "modes": 2},
-    "plate.ring.ceramic_disc.CeramicDisc": {"diameter": 20e-3},
-    "plate.ring.ceramic_disc.disc_admittance": {
+    "physics.plate.ring.modes.bending_mode": {"diameters": 0, "circles": 1},
+    "physics.plate.ring.modes.bending_frequency": {"diameters": 2, "degree": 3},
+    "physics.plate.ring.modes.annular_modes": {"harmonic": 1, "degree": 3, "count": 1},
+    "physics.plate.ring.modes.annular_admittance": {"harmonics": (0,), "degree": 3, "modes": 2},
+    "physics.plate.ring.ceramic_disc.CeramicDisc": {"diameter": 20e-3},
+    "physics.plate.ring.ceramic_disc.disc_admittance": {
         "constants": np.array([120e9, 75e9, 75e9, 110e9, 21e9, -5.0, 16.0, 12.0, 8e-9, 7e-9]) + 0j,
         "frequency": np.array([60e3, 70e3]),
     },
-    "plate.ring.pair.crest_speed": {"travelling": 1e-6},
-    "plate.solid.screening.screened_modes": {"band": (30e3, 60e3)},
-    "plate.parts.Sector": {"inner_radius": 1e-3, "outer_radius": 2e-3},
-    "plate.parts.Part": {
+    "physics.plate.ring.pair.crest_speed": {"travelling": 1e-6},
+    "physics.plate.solid.screening.screened_modes": {"band": (30e3, 60e3)},
+    "physics.plate.parts.Sector": {"inner_radius": 1e-3, "outer_radius": 2e-3},
+    "physics.plate.parts.Part": {
         "kind": "glue",
         "number": 1,
         "material": "epoxy",
@@ -235,18 +235,22 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "bottom": 0.0,
         "top": 1e-3,
     },
-    "plate.ring.section.RingLayer": {
+    "physics.plate.ring.section.RingLayer": {
         "inner_radius": 1e-3,
         "outer_radius": 10e-3,
         "bottom": 0.0,
         "top": 1e-3,
     },
-    "plate.ring.section.AnnularSection": {"layers": Later(lambda: disc_section().layers)},
-    "plate.ring.section.SectorDrive": {"sectors": ((0.0, 1.0, 1),)},
-    "plate.beam.modes.BeamMode.deflection_at": {"x": WAYS},
-    "plate.beam.modes.BeamMode.rotation_at": {"x": WAYS},
-    "plate.laminate.Laminate.moment_arm": {"layer": 0},
-    "plate.layout.RectangularPlate": {"width": 10e-3, "thickness": 2e-3, "patches": PLATE.patches},
+    "physics.plate.ring.section.AnnularSection": {"layers": Later(lambda: disc_section().layers)},
+    "physics.plate.ring.section.SectorDrive": {"sectors": ((0.0, 1.0, 1),)},
+    "physics.plate.beam.modes.BeamMode.deflection_at": {"x": WAYS},
+    "physics.plate.beam.modes.BeamMode.rotation_at": {"x": WAYS},
+    "physics.plate.laminate.Laminate.moment_arm": {"layer": 0},
+    "physics.plate.layout.RectangularPlate": {
+        "width": 10e-3,
+        "thickness": 2e-3,
+        "patches": PLATE.patches,
+    },
     "plate.layout.AnnularStator": {
         "mean_diameter": 53.6e-3,
         "radial_width": 12e-3,
@@ -257,36 +261,47 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "ceramic_outer_diameter": 15e-3,
         "ceramic_thickness": 0.5e-3,
     },
-    "plate.loaded_mode.LoadedMode": {"load_ratio": 0.01 + 0.01j},
-    "plate.loaded_mode.loaded_mode": {"stiffness_per_area": 1e6 + 1e5j},
-    "plate.solid.modes.check_band": _BAND,
-    "plate.solid.reduced.resolved_frequency": _BAND,
-    "plate.solid.mesh.wave_number": {"frequency": 30e3},
-    "plate.solid.mesh.plate_model": {"frequency": 30e3},
-    "plate.solid.modes.PlateModes.index": {"label": Later(lambda: made(PlateModes).labels[0])},
-    "plate.solid.modes.PlateModes.field": {"mode": 0, "x": WAYS, "y": WAYS},
-    "plate.solid.modes.PlateModes.nodal_positions": {"mode": 0},
-    "plate.solid.modes.PlateModes.half_wavelength": {"mode": 0},
-    "plate.solid.response.HarmonicResponse.largest": {"at": 0},
-    "plate.solid.resonances.label_name": {"label": (4, 0)},
-    "plate.solid.response.harmonic_response": {"frequencies": np.array([30e3, 31e3])},
-    "plate.beam.response.BeamResponse.amplitude_at": {"position": 10e-3},
-    "plate.beam.response.BeamResponse.transfer": {"frequency": np.array([30e3]), "position": WAYS},
-    "plate.ring.response.ring_response": {"frequencies": np.array([30e3]), "harmonics": (0,)},
-    "plate.shear.modes.shear_modes": {"near": 30e3, "count": 1, "degree": 3},
-    "plate.shear.modes.shear_mode": {"near": 60e3, "degree": 3, "nodal_lines": (4, 0)},
-    "plate.shear.section.ShearLayout.parity_of": {"nodal_lines": (8, 0)},
-    "plate.shear.section.ShearSection": Later(lambda: fields_of(made(ShearSection))),
-    "plate.shear.section.ShearLayout": Later(lambda: fields_of(made(ShearLayout))),
-    "plate.sound.rectangular_surface": _RADIATOR,
-    "plate.sound.smooth_surface": {
+    "physics.plate.loaded_mode.LoadedMode": {"load_ratio": 0.01 + 0.01j},
+    "physics.plate.loaded_mode.loaded_mode": {"stiffness_per_area": 1e6 + 1e5j},
+    "physics.plate.solid.modes.check_band": _BAND,
+    "physics.plate.solid.reduced.resolved_frequency": _BAND,
+    "physics.plate.solid.mesh.wave_number": {"frequency": 30e3},
+    "physics.plate.solid.mesh.plate_model": {"frequency": 30e3},
+    "physics.plate.solid.modes.PlateModes.index": {
+        "label": Later(lambda: made(PlateModes).labels[0])
+    },
+    "physics.plate.solid.modes.PlateModes.field": {"mode": 0, "x": WAYS, "y": WAYS},
+    "physics.plate.solid.modes.PlateModes.nodal_positions": {"mode": 0},
+    "physics.plate.solid.modes.PlateModes.half_wavelength": {"mode": 0},
+    "physics.plate.solid.response.HarmonicResponse.largest": {"at": 0},
+    "physics.plate.solid.resonances.label_name": {"label": (4, 0)},
+    "physics.plate.solid.response.harmonic_response": {"frequencies": np.array([30e3, 31e3])},
+    "physics.plate.beam.response.BeamResponse.amplitude_at": {"position": 10e-3},
+    "physics.plate.beam.response.BeamResponse.transfer": {
+        "frequency": np.array([30e3]),
+        "position": WAYS,
+    },
+    "physics.plate.ring.response.ring_response": {
+        "frequencies": np.array([30e3]),
+        "harmonics": (0,),
+    },
+    "physics.plate.shear.modes.shear_modes": {"near": 30e3, "count": 1, "degree": 3},
+    "physics.plate.shear.modes.shear_mode": {"near": 60e3, "degree": 3, "nodal_lines": (4, 0)},
+    "physics.plate.shear.section.ShearLayout.parity_of": {"nodal_lines": (8, 0)},
+    "physics.plate.shear.section.ShearSection": Later(lambda: fields_of(made(ShearSection))),
+    "physics.plate.shear.section.ShearLayout": Later(lambda: fields_of(made(ShearLayout))),
+    "physics.plate.sound.rectangular_surface": _RADIATOR,
+    "physics.plate.sound.smooth_surface": {
         "sides": (0.02, 0.01),
         "velocity": lambda x, y: np.ones((x.size, y.size)) + 0j,
         "wave": 0.01,
     },
-    "plate.sound.ring_surface": {"radius": np.linspace(0, 0.02, 9), "velocity": np.ones(9) + 0j},
-    "plate.sound.RadiatingSurface": Later(lambda: fields_of(made(RadiatingSurface))),
-    "plate.solid.response.HarmonicResponse.motion": {"at": 0},
+    "physics.plate.sound.ring_surface": {
+        "radius": np.linspace(0, 0.02, 9),
+        "velocity": np.ones(9) + 0j,
+    },
+    "physics.plate.sound.RadiatingSurface": Later(lambda: fields_of(made(RadiatingSurface))),
+    "physics.plate.solid.response.HarmonicResponse.motion": {"at": 0},
     "actuators.skin_stretch.slip.held_forces": {
         "compliance": np.eye(3) * 1e-3,
         "wanted": np.array([1e-4, 1e-3, 0.0]),
@@ -323,37 +338,45 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "y": WAYS,
         "displacement": np.ones(9) + 1j,
     },
-    "search.sweep.SweepRequest": {"display": "biet2008-plate"},
-    "chain.pad_place.pad_place": {"place": (5e-3, 5e-3)},
-    "chain.pad_place.place_words": {"place": (5e-3, 5e-3)},
-    "chain.pad_place.met_by_pads": {"points": PadPoints(*[WAYS] * 5)},
-    "plate.sound.sound_pressure": {"points": np.array([[0.0, 0.0, 0.3]])},
-    "plate.sound.pressure_level": {"pressure": np.array([1.0 + 1j])},
-    "plate.solid.solve.solve_modes": {"count": 1, "near": 60e3},
-    "plate.solid.size.solve_size": {"label": (4, 0), "frequency": 60e3},
-    "plate.solid.size.band_seconds": {"highest": 60e3},
-    "plate.ring.stator.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
-    "plate.ring.stator.fit_stator": {"degree": 3},
-    "chain.prediction.predict": {"theory": "timoshenko", "model": "paper2008", "place": None},
-    "chain.wanted_voltage.voltage_for_friction": {
+    "design.sweep.sweep.SweepRequest": {"display": "biet2008-plate"},
+    "physics.chain.pad_place.pad_place": {"place": (5e-3, 5e-3)},
+    "physics.chain.pad_place.place_words": {"place": (5e-3, 5e-3)},
+    "physics.chain.pad_place.met_by_pads": {"points": PadPoints(*[WAYS] * 5)},
+    "physics.plate.sound.sound_pressure": {"points": np.array([[0.0, 0.0, 0.3]])},
+    "physics.plate.sound.pressure_level": {"pressure": np.array([1.0 + 1j])},
+    "physics.plate.solid.solve.solve_modes": {"count": 1, "near": 60e3},
+    "physics.plate.solid.size.solve_size": {"label": (4, 0), "frequency": 60e3},
+    "physics.plate.solid.size.band_seconds": {"highest": 60e3},
+    "physics.plate.ring.stator.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
+    "physics.plate.ring.stator.fit_stator": {"degree": 3},
+    "physics.chain.prediction.predict": {
         "theory": "timoshenko",
         "model": "paper2008",
         "place": None,
     },
-    "render.resonator.square_swing.least_cycle": {"swing": 1e-6},
-    "render.texture.composition.Sequence": {
+    "physics.chain.wanted_voltage.voltage_for_friction": {
+        "theory": "timoshenko",
+        "model": "paper2008",
+        "place": None,
+    },
+    "physics.render.resonator.square_swing.least_cycle": {"swing": 1e-6},
+    "physics.render.texture.composition.Sequence": {
         "textures": Later(lambda: (made(RelativeFriction),) * 2),
         "edges": (1e-3,),
     },
-    "render.texture.composition.Sum": {"textures": Later(lambda: (made(RelativeFriction),) * 2)},
-    "render.texture.composition.Composable.then": {"other": Later(lambda: made(RelativeFriction))},
-    "render.texture.coordinate.require_fade": {"value": 1e-4, "at_most": 1e-3},
-    "render.fidelity.survival.fidelity_table": {
+    "physics.render.texture.composition.Sum": {
+        "textures": Later(lambda: (made(RelativeFriction),) * 2)
+    },
+    "physics.render.texture.composition.Composable.then": {
+        "other": Later(lambda: made(RelativeFriction))
+    },
+    "physics.render.texture.coordinate.require_fade": {"value": 1e-4, "at_most": 1e-3},
+    "physics.render.fidelity.survival.fidelity_table": {
         **_FALL,
         "spatial_periods": (2e-3,),
         "speeds": (1.0,),
     },
-    "calibration_record.ComparedAnswer": {
+    "core.calibration_record.ComparedAnswer": {
         "said": "mass",
         "measured": "0.1 kg",
         "error": 0.01,
@@ -362,44 +385,44 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "relative_friction": 0.5,
         "vibration_amplitude": 1e-6,
     },
-    "render.motion.finger_path.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
-    "render.program.inverse.FrictionInverse.from_function": _FALL,
-    "render.program.inverse.FrictionInverse.over_speeds": {
+    "physics.render.motion.finger_path.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
+    "physics.render.program.inverse.FrictionInverse.from_function": _FALL,
+    "physics.render.program.inverse.FrictionInverse.over_speeds": {
         "law": falling_over_speeds,
         "amplitude": 1e-6 * np.arange(4),
         "speed": np.array([0.01, 0.1, 1.0]),
         "nominal_speed": 0.1,
         "known": falling_over_speeds(1e-6 * np.arange(4), np.array([0.01, 0.1, 1.0])),
     },
-    "render.program.made_for.MadeForSpeed.of": {"law": falling_friction},
-    "render.texture.levels.Amplitude.constant": {"value": 1e-6},
-    "render.texture.levels.RelativeFriction": {"low": 0.4, "high": 0.8},
-    "render.texture.levels.FrictionReduction": {"low": 0.4, "high": 0.8},
-    "render.texture.gates.SpeedGate": {"above": 0.05, "below": 0.2},
-    "render.texture.gates.Periodic": {"frequency": 50.0},
-    "render.texture.image.Image": {"values": ((0.0, 1.0), (1.0, 0.0))},
-    "render.texture.image.Image.from_array": {"values": np.full((4, 4), 0.5)},
-    "render.texture.noise.mixed": {"value": 5},
-    "render.texture.noise.line_noise": {"u": _GRID, "state": 1},
-    "render.texture.noise.field_noise": {"u": _GRID, "w": _GRID, "state": 1},
-    "render.program.lowering.Program": {"array": Later(lambda: made(Program).array)},
-    "render.program.lowering.checked": {"array": Later(lambda: made(Program).array)},
-    "render.program.lowering.lower": {
+    "physics.render.program.made_for.MadeForSpeed.of": {"law": falling_friction},
+    "physics.render.texture.levels.Amplitude.constant": {"value": 1e-6},
+    "physics.render.texture.levels.RelativeFriction": {"low": 0.4, "high": 0.8},
+    "physics.render.texture.levels.FrictionReduction": {"low": 0.4, "high": 0.8},
+    "physics.render.texture.gates.SpeedGate": {"above": 0.05, "below": 0.2},
+    "physics.render.texture.gates.Periodic": {"frequency": 50.0},
+    "physics.render.texture.image.Image": {"values": ((0.0, 1.0), (1.0, 0.0))},
+    "physics.render.texture.image.Image.from_array": {"values": np.full((4, 4), 0.5)},
+    "physics.render.texture.noise.mixed": {"value": 5},
+    "physics.render.texture.noise.line_noise": {"u": _GRID, "state": 1},
+    "physics.render.texture.noise.field_noise": {"u": _GRID, "w": _GRID, "state": 1},
+    "physics.render.program.lowering.Program": {"array": Later(lambda: made(Program).array)},
+    "physics.render.program.lowering.checked": {"array": Later(lambda: made(Program).array)},
+    "physics.render.program.lowering.lower": {
         "texture": Later(lambda: Amplitude(SINE, 0.0, 1e-6)),
         "largest_amplitude": 2e-6,
     },
-    "render.fidelity.rendered_stroke.rendered_stroke": {
+    "physics.render.fidelity.rendered_stroke.rendered_stroke": {
         **_FALL,
         "texture": Later(lambda: made(Texture)),
     },
-    "render.program.renderer.render": _SERIES,
-    "render.program.renderer.evaluate": _SERIES,
-    "render.program.renderer.Renderer.tick": {"t": 0.001},
-    "render.motion.sensor.SensorModel": {"rate": 1e3, "noise": 1e-6},
-    "render.motion.sensor.sensor_stream": {"position": np.cos, "duration": 0.02},
-    "render.fidelity.trace.friction_trace": _FALL,
-    "render.program.wave.WaveCompensation": {"factors": (1.0, 1.0, 1.0, 1.0)},
-    "render.program.wave.WaveCompensation.from_ripple": {
+    "physics.render.program.renderer.render": _SERIES,
+    "physics.render.program.renderer.evaluate": _SERIES,
+    "physics.render.program.renderer.Renderer.tick": {"t": 0.001},
+    "physics.render.motion.sensor.SensorModel": {"rate": 1e3, "noise": 1e-6},
+    "physics.render.motion.sensor.sensor_stream": {"position": np.cos, "duration": 0.02},
+    "physics.render.fidelity.trace.friction_trace": _FALL,
+    "physics.render.program.wave.WaveCompensation": {"factors": (1.0, 1.0, 1.0, 1.0)},
+    "physics.render.program.wave.WaveCompensation.from_ripple": {
         "position": _WAVE,
         "relative_friction": np.full(8, 0.7),
     },

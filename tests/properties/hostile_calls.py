@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
+from squeezefilm.core.errors import SqueezefilmError, SqueezefilmWarning
 
 from .good_arguments import good_arguments, invoke
 from .public_calls import NAMES_NOT_CALLED, PublicCall, public_calls

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from squeezefilm.actuators.control.force_law import ForceLaw, ForceState
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
 from squeezefilm.actuators.motor.description import Cradle, Foot, FootContact, Motor
 from squeezefilm.actuators.motor.stator import FaceMode
@@ -17,94 +18,102 @@ from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
 from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip
 from squeezefilm.actuators.skin_stretch.tissue import Tissue
-from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.pad_place import PadPlace
-from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.sharing.balance import LoadSharing, share_load
-from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.contact.sharing.pad import FrictionRipple, PadPosture
-from squeezefilm.contact.sliding.dry_friction import (
+from squeezefilm.core.distributions import Normal, Uniform
+from squeezefilm.core.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
+from squeezefilm.core.progress import Deadline
+from squeezefilm.core.quantities import Unit
+from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.chain.pad_place import PadPlace
+from squeezefilm.physics.contact.asperities import AsperityLaw
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import Finger
+from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.sharing.balance import LoadSharing, share_load
+from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
+from squeezefilm.physics.contact.sharing.pad import FrictionRipple, PadPosture
+from squeezefilm.physics.contact.sliding.dry_friction import (
     DryFriction,
     FrictionProfile,
     Occlusion,
     SpeedFriction,
 )
-from squeezefilm.contact.sliding.march import Sliding, slide
-from squeezefilm.control.force_law import ForceLaw, ForceState
-from squeezefilm.display import Display, Surface, load_display
-from squeezefilm.distributions import Normal, Uniform
-from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.periodic.balance import VibratedFilm
-from squeezefilm.film.periodic.profile import GapProfile, flexural_profile
-from squeezefilm.film.planar.gap import PlanarGap
-from squeezefilm.formats.hjif import ReferenceDevice, hjif_of
-from squeezefilm.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
-from squeezefilm.plate.beam.modes import BeamMode
-from squeezefilm.plate.beam.response import BeamResponse, beam_response
-from squeezefilm.plate.circuit import DrivenResponse, EquivalentCircuit
-from squeezefilm.plate.electronics import AMPLIFIERS, Amplifier
-from squeezefilm.plate.elements.box_model import Medium, isotropic_solid
-from squeezefilm.plate.heat.states import HeatSource
-from squeezefilm.plate.heat.thermal import Thermal
-from squeezefilm.plate.laminate import Laminate, Layer, plate_laminate
-from squeezefilm.plate.layout import Actuator, CeramicPatch, DiscPlate, RectangularPlate
-from squeezefilm.plate.loaded_mode import LoadedMode
-from squeezefilm.plate.ring.body import RingBody
-from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
-from squeezefilm.plate.ring.modes import AnnularMode, bending_mode
-from squeezefilm.plate.ring.response import RingResponse, ring_response
-from squeezefilm.plate.ring.section import (
+from squeezefilm.physics.contact.sliding.march import Sliding, slide
+from squeezefilm.physics.display import Display, Surface, load_display
+from squeezefilm.physics.film.gap import PaperGap
+from squeezefilm.physics.film.periodic.balance import VibratedFilm
+from squeezefilm.physics.film.periodic.profile import GapProfile, flexural_profile
+from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.plate.beam.modes import BeamMode
+from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.physics.plate.circuit import DrivenResponse, EquivalentCircuit
+from squeezefilm.physics.plate.electronics import AMPLIFIERS, Amplifier
+from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid
+from squeezefilm.physics.plate.heat.states import HeatSource
+from squeezefilm.physics.plate.heat.thermal import Thermal
+from squeezefilm.physics.plate.laminate import Laminate, Layer, plate_laminate
+from squeezefilm.physics.plate.layout import Actuator, CeramicPatch, DiscPlate, RectangularPlate
+from squeezefilm.physics.plate.loaded_mode import LoadedMode
+from squeezefilm.physics.plate.ring.body import RingBody
+from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
+from squeezefilm.physics.plate.ring.modes import AnnularMode, bending_mode
+from squeezefilm.physics.plate.ring.response import RingResponse, ring_response
+from squeezefilm.physics.plate.ring.section import (
     AnnularSection,
     RingLayer,
     SectorDrive,
     bonded_disc,
     full_drive,
 )
-from squeezefilm.plate.ring.stator import StatorAssumptions, StatorFit, fit_stator
-from squeezefilm.plate.shear.modes import ShearMode, shear_modes
-from squeezefilm.plate.shear.section import (
+from squeezefilm.physics.plate.ring.stator import StatorAssumptions, StatorFit, fit_stator
+from squeezefilm.physics.plate.shear.modes import ShearMode, shear_modes
+from squeezefilm.physics.plate.shear.section import (
     ShearLayout,
     ShearSection,
     isotropic_section,
     shear_layout,
 )
-from squeezefilm.plate.solid.modes import PlateModes
-from squeezefilm.plate.solid.response import HarmonicResponse, SurfaceLoad, harmonic_response
-from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.solid.working import SolidMode, solid_mode
-from squeezefilm.plate.sound import RadiatingSurface, rectangular_surface
-from squeezefilm.plate.surface_shape import (
+from squeezefilm.physics.plate.solid.modes import PlateModes
+from squeezefilm.physics.plate.solid.response import (
+    HarmonicResponse,
+    SurfaceLoad,
+    harmonic_response,
+)
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.working import SolidMode, solid_mode
+from squeezefilm.physics.plate.sound import RadiatingSurface, rectangular_surface
+from squeezefilm.physics.plate.surface_shape import (
     BeamSurface,
     DiscSurface,
     SurfaceShape,
     TrackSurface,
     surface_shape,
 )
-from squeezefilm.plate.working_mode import WorkingMode, working_mode
-from squeezefilm.progress import Deadline
-from squeezefilm.quantities import Unit
-from squeezefilm.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.render.motion.finger_path import FingerPath, OverPath
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
-from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke, Trajectory
-from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import Program, lower
-from squeezefilm.render.program.made_for import MadeForSpeed
-from squeezefilm.render.program.renderer import Played, Renderer
-from squeezefilm.render.program.wave import WaveCompensation
-from squeezefilm.render.resonator.compensation import (
+from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
+from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
+from squeezefilm.physics.render.motion.finger_path import FingerPath, OverPath
+from squeezefilm.physics.render.motion.sensor import (
+    LVDT_10_KHZ,
+    SensorModel,
+    SensorStream,
+    sensor_stream,
+)
+from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke, Trajectory
+from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.lowering import Program, lower
+from squeezefilm.physics.render.program.made_for import MadeForSpeed
+from squeezefilm.physics.render.program.renderer import Played, Renderer
+from squeezefilm.physics.render.program.wave import WaveCompensation
+from squeezefilm.physics.render.resonator.compensation import (
     CompensatedDrive,
     DrivenEnvelope,
     compensated_drive,
 )
-from squeezefilm.render.texture.composition import Composable, Texture
-from squeezefilm.render.texture.coordinate import AlongX, AlongY, Coordinate
-from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.render.texture.pattern import Part, Pattern
-from squeezefilm.render.texture.shapes import SineWave, SquareWave
+from squeezefilm.physics.render.texture.composition import Composable, Texture
+from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY, Coordinate
+from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.physics.render.texture.pattern import Part, Pattern
+from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
+from squeezefilm.physics.texture_files.hjif import ReferenceDevice, hjif_of
 
 BRASS = ElasticMaterial("brass", 100e9, 0.35, 8500.0, 200.0)
 PZT = Piezoceramic("PZT", 67.9e9, 0.29, 23e9, 7700.0, -247e-12, 1900.0, 60.0)

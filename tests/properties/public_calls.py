@@ -18,16 +18,31 @@ from typing import Any
 import numpy as np
 
 import squeezefilm
-from squeezefilm.quantities import unit_of
+from squeezefilm.core.quantities import unit_of
 
 ROOMS = {
-    "film", "plate", "contact", "render", "chain.friction", "chain.prediction", "chain.touch",
-    "chain.pad_place", "actuators.skin_stretch", "actuators.motor", "control",
-    "materials",
-    "quantities", "distributions", "formats", "calibration_record",
-    "measure.recordings.kinds", "measure.fits.circuit.branches", "search.sweep",
-    "measure.fits.ceramic.ceramic_prior", "measure.fits.vibration.driven_shape",
-}  # fmt: skip
+    "physics.film",
+    "physics.plate",
+    "physics.contact",
+    "physics.render",
+    "physics.chain.friction",
+    "physics.chain.prediction",
+    "physics.chain.touch",
+    "physics.chain.pad_place",
+    "actuators.skin_stretch",
+    "actuators.motor",
+    "actuators.control",
+    "core.materials",
+    "core.quantities",
+    "core.distributions",
+    "core.formats",
+    "core.calibration_record",
+    "measure.recordings.kinds",
+    "measure.fits.circuit.branches",
+    "design.sweep.sweep",
+    "measure.fits.ceramic.ceramic_prior",
+    "measure.fits.vibration.driven_shape",
+}
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 _NUMBERS = (int, float, _REAL_ARRAY)
 
@@ -42,148 +57,151 @@ NOT_CALLED = {
     actuators.motor.curves.ModelsCompared.difference
     actuators.motor.closed_loop.TrackedForce actuators.motor.closed_loop.TrackedForce.mean_error
     actuators.motor.stator.FaceMode
-    plate.electronics.Amplifier
-    plate.electronics.ElectricalLoad plate.electronics.RingAdmittance
-    film.periodic.solution.Asked film.periodic.solution.Found
-    contact.sharing.pad.PadFriction
-    contact.sharing.balance.LoadSharing
-    contact.sliding.skin_vibration.SkinVibration
-    contact.sliding.march.Sliding
-    film.periodic.balance.LoadBalance
-    film.periodic.batch.FilmBatch film.periodic.solution.FilmSolution
-    film.planar.film.FilmPlanar film.transient.settling.FilmSettled
-    film.transient.march.FilmTransient film.transient.march.MovedFilm
-    film.validity.FilmValidity film.validity.ValidityCheck
-    formats.hjif.HjifExport plate.ring.modes.AnnularMode
-    plate.solid.resonances.DrivenMode
-    plate.beam.modes.BeamMode plate.solid.modes.PlateModes plate.solid.response.HarmonicResponse
-    plate.heat.thermal.ThermalBody plate.heat.warming.Warming plate.heat.states.WarmState
-    plate.solid.volume.PlateVolume plate.beam.response.BeamResponse plate.ring.body.RingBody
-    plate.ring.response.RingResponse
-    plate.shear.modes.ShearMode plate.shear.working.ShearWorking
-    plate.solid.working.SolidMode plate.exposure.ExposureGuidance
-    plate.sound.SoundField plate.working_mode.ModeLine plate.working_mode.WorkingMode
-    plate.surface_shape.BeamSurface plate.surface_shape.DiscSurface
-    plate.surface_shape.SolvedSurface plate.surface_shape.SurfaceShape
-    plate.surface_shape.TrackSurface
-    plate.ring.stator.StatorFit
-    chain.prediction.Prediction render.resonator.compensation.CompensatedDrive
-    render.fidelity.report.FidelityReport render.motion.estimator.MotionCounts
-    render.motion.estimator.MotionEstimate render.fidelity.rendered_stroke.RenderedStroke
-    render.program.renderer.Counters render.program.renderer.Rendered chain.touch.Touch
+    physics.plate.electronics.Amplifier
+    physics.plate.electronics.ElectricalLoad physics.plate.electronics.RingAdmittance
+    physics.film.periodic.solution.Asked physics.film.periodic.solution.Found
+    physics.contact.sharing.pad.PadFriction
+    physics.contact.sharing.balance.LoadSharing
+    physics.contact.sliding.skin_vibration.SkinVibration
+    physics.contact.sliding.march.Sliding
+    physics.film.periodic.balance.LoadBalance
+    physics.film.periodic.batch.FilmBatch physics.film.periodic.solution.FilmSolution
+    physics.film.planar.film.FilmPlanar physics.film.transient.settling.FilmSettled
+    physics.film.transient.march.FilmTransient physics.film.transient.march.MovedFilm
+    physics.film.validity.FilmValidity physics.film.validity.ValidityCheck
+    physics.texture_files.hjif.HjifExport physics.plate.ring.modes.AnnularMode
+    physics.plate.solid.resonances.DrivenMode
+    physics.plate.beam.modes.BeamMode physics.plate.solid.modes.PlateModes
+    physics.plate.solid.response.HarmonicResponse physics.plate.heat.thermal.ThermalBody
+    physics.plate.heat.warming.Warming physics.plate.heat.states.WarmState
+    physics.plate.solid.volume.PlateVolume physics.plate.beam.response.BeamResponse
+    physics.plate.ring.body.RingBody physics.plate.ring.response.RingResponse
+    physics.plate.shear.modes.ShearMode physics.plate.shear.working.ShearWorking
+    physics.plate.solid.working.SolidMode physics.plate.exposure.ExposureGuidance
+    physics.plate.sound.SoundField physics.plate.working_mode.ModeLine
+    physics.plate.working_mode.WorkingMode physics.plate.surface_shape.BeamSurface
+    physics.plate.surface_shape.DiscSurface physics.plate.surface_shape.SolvedSurface
+    physics.plate.surface_shape.SurfaceShape physics.plate.surface_shape.TrackSurface
+    physics.plate.ring.stator.StatorFit physics.chain.prediction.Prediction
+    physics.render.resonator.compensation.CompensatedDrive
+    physics.render.fidelity.report.FidelityReport physics.render.motion.estimator.MotionCounts
+    physics.render.motion.estimator.MotionEstimate
+    physics.render.fidelity.rendered_stroke.RenderedStroke physics.render.program.renderer.Counters
+    physics.render.program.renderer.Rendered physics.chain.touch.Touch
     """,
     "inside a solver: meshes, matrices and indices, made by calls that are checked": """
     measure.fits.circuit.branches.Layout measure.fits.circuit.branches.Layout.branch
     measure.fits.circuit.branches.circuit_curve measure.fits.circuit.branches.relative_motion
     measure.fits.circuit.branches.start_at
-    contact.asperities.cubics contact.sharing.balance.require_balanced
-    plate.solid.size.SolveSize.require_within
+    physics.contact.asperities.cubics physics.contact.sharing.balance.require_balanced
+    physics.plate.solid.size.SolveSize.require_within
     actuators.motor.in_time.resting
-    plate.elements.slab_count.require_countable
-    plate.heat.states.WarmCase.states plate.heat.states.WarmCase.time_to_fall
-    film.periodic.batch.check_film film.periodic.batch.solve_all film.line_grid.LineGrid
-    film.line_grid.edge_graded film.line_grid.edge_layer film.line_grid.gap_table
-    film.line_grid.line_grid film.line_grid.mean_over film.line_grid.refined_line
-    film.line_grid.uniform_gap film.periodic.nested.load_times film.periodic.nested.force_harmonics
-    film.periodic.nested.levels_of film.periodic.nested.refine film.periodic.nested.steadied
-    film.periodic.small.fill_small
-    film.periodic.small.reduced film.periodic.solution.extrapolated_field
-    film.closed.small.small_vibration film.closed.small.small_pressure
-    film.closed.small.flow_factor film.closed.small.SmallVibration film.planar.balance.Balance
-    film.planar.balance.Balancer film.planar.balance.Balancer.solve film.planar.balance.Film
-    film.planar.balance.derivative film.planar.balance.resampled film.planar.balance.times
-    film.planar.cut.cut_ellipse_grid film.planar.gap.gap_values
-    film.planar.gap.require_periodic film.planar.grid.PlanarGrid film.planar.grid.disc_grid
-    film.planar.grid.ellipse_grid film.planar.grid.graded_line
-    film.planar.grid.rectangle_grid film.planar.ladder.Climb film.planar.ladder.Extrapolated
-    film.planar.ladder.Ladder film.planar.ladder.Ladder.grid film.planar.ladder.climb_to
-    film.periodic.profile.GapProfile.grid film.periodic.profile.sampled_grid
-    film.periodic.resolution.first_guess
-    film.periodic.resolution.refined film.periodic.resolution.collocation_times film.gas.slip_law
-    plate.ring.elements.HarmonicSystem
-    plate.ring.elements.HarmonicSystem.field plate.ring.elements.RingMesh
-    plate.ring.elements.harmonic_system plate.ring.ceramic_disc.DiscSystem
-    plate.ring.ceramic_disc.disc_system plate.elements.block_ldl.PartialLDL
-    plate.elements.block_ldl.partial_ldl plate.elements.mirrored_element.MirroredElement
-    plate.elements.slab_cells.Cell plate.elements.slab_cells.Group
-    plate.elements.slab_cells.Group.inside plate.elements.slab_cells.Group.node
-    plate.elements.slab_cells.mirrors
-    plate.elements.box_model.BoxModel
-    plate.elements.box_model.Electrode
-    plate.elements.box_model.Foundation plate.elements.box_model.Medium
-    plate.elements.box_model.Medium.gradient_matrix plate.elements.box_model.kept_products
-    plate.elements.box_model.held_components plate.elements.box_model.require_aspect
-    plate.elements.cross_section.slice_codes plate.elements.block_ldl.LDLSteps
-    plate.solid.electrode_circuits.tied_electrodes
-    plate.solid.coarse_modes.CoarseModes plate.solid.coarse_modes.chosen_modes
-    plate.solid.coarse_modes.class_fits plate.solid.coarse_modes.coarse_modes
-    plate.solid.guess.estimated_frequency plate.elements.cross_section.CrossSection
-    plate.elements.cross_section.cross_section plate.solid.electrode_circuits.open_values
-    plate.solid.electrode_circuits.shunted_frequencies plate.solid.refined_modes.extrapolated_class
-    plate.elements.krylov.modes_below plate.elements.krylov.modes_near
-    plate.elements.krylov.prolonged plate.elements.krylov.with_open_electrodes
-    plate.elements.lobatto.LineMesh
-    plate.elements.lobatto.LineMesh.interpolation
-    plate.elements.lobatto.LineMesh.located
-    plate.elements.lobatto.hierarchic_values
-    plate.elements.lobatto.lagrange_basis plate.elements.lobatto.line_matrices
-    plate.elements.lobatto.lobatto_nodes
-    plate.solid.mode_table.collected_modes plate.solid.mode_table.energy_shares_of
-    plate.elements.lobatto.gauss_points plate.ring.elements.graded_edges
-    plate.elements.lobatto.lagrange plate.elements.sparse_modes.nearest_modes
-    plate.elements.sparse_modes.entries plate.elements.sparse_modes.gathered
-    plate.elements.sparse_modes.shifted_inverse plate.ring.elements.node_coordinates
-    plate.solid.model.PlateModel plate.solid.resonances.driven_modes
-    plate.solid.resonances.antinode plate.solid.screening.forbidden_by
-    plate.solid.layers.Resolution plate.solid.layers.merged
-    plate.solid.layers.nearest plate.solid.layers.snapped
-    plate.solid.mesh.plate_model plate.solid.mesh.wave_number
-    plate.solid.model.PlateModel.evaluation
-    plate.solid.model.PlateModel.field plate.solid.model.PlateModel.force
-    plate.solid.modes.label_of plate.elements.nodal_lines.profiles plate.solid.modes.surface_shapes
-    plate.elements.nodal_lines.zero_crossings plate.solid.symmetry.mirror_map
-    plate.solid.reduced.ReducedClass
-    plate.solid.reduced.harmonic_solution plate.elements.krylov.orthonormal
-    plate.elements.box_model.require_half_wave
-    plate.solid.reduced.reduced_class plate.solid.reduced.resolved_frequency
-    plate.solid.reduced.reduced_model plate.solid.solve.solve_for_response
-    plate.solid.reduced.surface_values plate.solid.refined_modes.RefinedModes
-    plate.solid.refined_modes.extrapolated plate.solid.refined_modes.refined_modes
-    plate.solid.refined_modes.with_label plate.shear.elements.Axis
-    plate.shear.elements.ShearSystem plate.shear.elements.ShearSystem.deflection
-    plate.shear.elements.make_axis plate.shear.elements.shear_system
-    plate.solid.guess.bare_frequency plate.solid.guess.screened_frequency
-    plate.elements.nodal_lines.line_counts
-    plate.beam.modes.scaled_mode plate.beam.modes.wave_numbers
-    plate.beam.pieces.pieced_beam_mode
-    plate.shear.section.ShearLayout.mirrored
-    plate.elements.slab_factor.SlabFactor plate.elements.slabs.Slabs.grid
-    plate.elements.slabs.Slabs.mass_times
-    plate.elements.slabs.Slabs.places plate.elements.slabs.Slabs.stiffness_times
-    plate.elements.slabs.Slabs.weighted_sections render.opcodes.Assembler.emit
-    render.opcodes.Assembler.table render.texture.coordinate.require_fade
-    render.texture.noise.field_noise
-    render.texture.noise.line_noise film.periodic.resolution.resolution_of
-    film.periodic.solution.assembled
+    physics.plate.elements.slab_count.require_countable
+    physics.plate.heat.states.WarmCase.states physics.plate.heat.states.WarmCase.time_to_fall
+    physics.film.periodic.batch.check_film physics.film.periodic.batch.solve_all
+    physics.film.line_grid.LineGrid physics.film.line_grid.edge_graded
+    physics.film.line_grid.edge_layer physics.film.line_grid.gap_table
+    physics.film.line_grid.line_grid physics.film.line_grid.mean_over
+    physics.film.line_grid.refined_line physics.film.line_grid.uniform_gap
+    physics.film.periodic.nested.load_times physics.film.periodic.nested.force_harmonics
+    physics.film.periodic.nested.levels_of physics.film.periodic.nested.refine
+    physics.film.periodic.nested.steadied physics.film.periodic.small.fill_small
+    physics.film.periodic.small.reduced physics.film.periodic.solution.extrapolated_field
+    physics.film.closed.small.small_vibration physics.film.closed.small.small_pressure
+    physics.film.closed.small.flow_factor physics.film.closed.small.SmallVibration
+    physics.film.planar.balance.Balance physics.film.planar.balance.Balancer
+    physics.film.planar.balance.Balancer.solve physics.film.planar.balance.Film
+    physics.film.planar.balance.derivative physics.film.planar.balance.resampled
+    physics.film.planar.balance.times physics.film.planar.cut.cut_ellipse_grid
+    physics.film.planar.gap.gap_values physics.film.planar.gap.require_periodic
+    physics.film.planar.grid.PlanarGrid physics.film.planar.grid.disc_grid
+    physics.film.planar.grid.ellipse_grid physics.film.planar.grid.graded_line
+    physics.film.planar.grid.rectangle_grid physics.film.planar.ladder.Climb
+    physics.film.planar.ladder.Extrapolated physics.film.planar.ladder.Ladder
+    physics.film.planar.ladder.Ladder.grid physics.film.planar.ladder.climb_to
+    physics.film.periodic.profile.GapProfile.grid physics.film.periodic.profile.sampled_grid
+    physics.film.periodic.resolution.first_guess physics.film.periodic.resolution.refined
+    physics.film.periodic.resolution.collocation_times physics.film.gas.slip_law
+    physics.plate.ring.elements.HarmonicSystem physics.plate.ring.elements.HarmonicSystem.field
+    physics.plate.ring.elements.RingMesh physics.plate.ring.elements.harmonic_system
+    physics.plate.ring.ceramic_disc.DiscSystem physics.plate.ring.ceramic_disc.disc_system
+    physics.plate.elements.block_ldl.PartialLDL physics.plate.elements.block_ldl.partial_ldl
+    physics.plate.elements.mirrored_element.MirroredElement physics.plate.elements.slab_cells.Cell
+    physics.plate.elements.slab_cells.Group physics.plate.elements.slab_cells.Group.inside
+    physics.plate.elements.slab_cells.Group.node physics.plate.elements.slab_cells.mirrors
+    physics.plate.elements.box_model.BoxModel physics.plate.elements.box_model.Electrode
+    physics.plate.elements.box_model.Foundation physics.plate.elements.box_model.Medium
+    physics.plate.elements.box_model.Medium.gradient_matrix
+    physics.plate.elements.box_model.kept_products physics.plate.elements.box_model.held_components
+    physics.plate.elements.box_model.require_aspect physics.plate.elements.cross_section.slice_codes
+    physics.plate.elements.block_ldl.LDLSteps physics.plate.solid.electrode_circuits.tied_electrodes
+    physics.plate.solid.coarse_modes.CoarseModes physics.plate.solid.coarse_modes.chosen_modes
+    physics.plate.solid.coarse_modes.class_fits physics.plate.solid.coarse_modes.coarse_modes
+    physics.plate.solid.guess.estimated_frequency physics.plate.elements.cross_section.CrossSection
+    physics.plate.elements.cross_section.cross_section
+    physics.plate.solid.electrode_circuits.open_values
+    physics.plate.solid.electrode_circuits.shunted_frequencies
+    physics.plate.solid.refined_modes.extrapolated_class physics.plate.elements.krylov.modes_below
+    physics.plate.elements.krylov.modes_near physics.plate.elements.krylov.prolonged
+    physics.plate.elements.krylov.with_open_electrodes physics.plate.elements.lobatto.LineMesh
+    physics.plate.elements.lobatto.LineMesh.interpolation
+    physics.plate.elements.lobatto.LineMesh.located physics.plate.elements.lobatto.hierarchic_values
+    physics.plate.elements.lobatto.lagrange_basis physics.plate.elements.lobatto.line_matrices
+    physics.plate.elements.lobatto.lobatto_nodes physics.plate.solid.mode_table.collected_modes
+    physics.plate.solid.mode_table.energy_shares_of physics.plate.elements.lobatto.gauss_points
+    physics.plate.ring.elements.graded_edges physics.plate.elements.lobatto.lagrange
+    physics.plate.elements.sparse_modes.nearest_modes physics.plate.elements.sparse_modes.entries
+    physics.plate.elements.sparse_modes.gathered physics.plate.elements.sparse_modes.shifted_inverse
+    physics.plate.ring.elements.node_coordinates physics.plate.solid.model.PlateModel
+    physics.plate.solid.resonances.driven_modes physics.plate.solid.resonances.antinode
+    physics.plate.solid.screening.forbidden_by physics.plate.solid.layers.Resolution
+    physics.plate.solid.layers.merged physics.plate.solid.layers.nearest
+    physics.plate.solid.layers.snapped physics.plate.solid.mesh.plate_model
+    physics.plate.solid.mesh.wave_number physics.plate.solid.model.PlateModel.evaluation
+    physics.plate.solid.model.PlateModel.field physics.plate.solid.model.PlateModel.force
+    physics.plate.solid.modes.label_of physics.plate.elements.nodal_lines.profiles
+    physics.plate.solid.modes.surface_shapes physics.plate.elements.nodal_lines.zero_crossings
+    physics.plate.solid.symmetry.mirror_map physics.plate.solid.reduced.ReducedClass
+    physics.plate.solid.reduced.harmonic_solution physics.plate.elements.krylov.orthonormal
+    physics.plate.elements.box_model.require_half_wave physics.plate.solid.reduced.reduced_class
+    physics.plate.solid.reduced.resolved_frequency physics.plate.solid.reduced.reduced_model
+    physics.plate.solid.solve.solve_for_response physics.plate.solid.reduced.surface_values
+    physics.plate.solid.refined_modes.RefinedModes physics.plate.solid.refined_modes.extrapolated
+    physics.plate.solid.refined_modes.refined_modes physics.plate.solid.refined_modes.with_label
+    physics.plate.shear.elements.Axis physics.plate.shear.elements.ShearSystem
+    physics.plate.shear.elements.ShearSystem.deflection physics.plate.shear.elements.make_axis
+    physics.plate.shear.elements.shear_system physics.plate.solid.guess.bare_frequency
+    physics.plate.solid.guess.screened_frequency physics.plate.elements.nodal_lines.line_counts
+    physics.plate.beam.modes.scaled_mode physics.plate.beam.modes.wave_numbers
+    physics.plate.beam.pieces.pieced_beam_mode physics.plate.shear.section.ShearLayout.mirrored
+    physics.plate.elements.slab_factor.SlabFactor physics.plate.elements.slabs.Slabs.grid
+    physics.plate.elements.slabs.Slabs.mass_times
+    physics.plate.elements.slabs.Slabs.places physics.plate.elements.slabs.Slabs.stiffness_times
+    physics.plate.elements.slabs.Slabs.weighted_sections physics.render.opcodes.Assembler.emit
+    physics.render.opcodes.Assembler.table physics.render.texture.coordinate.require_fade
+    physics.render.texture.noise.field_noise
+    physics.render.texture.noise.line_noise physics.film.periodic.resolution.resolution_of
+    physics.film.periodic.solution.assembled
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """
-    contact.sharing.gas_table.FilmTable.build
-    contact.sharing.film_panels.Panel.at contact.sharing.film_panels.Panel.films
-    contact.sharing.film_panels.Panel.octave_solved contact.sharing.film_panels.Panel.solved
-    plate.solid.volume.PlateVolume.displacement plate.solid.volume.PlateVolume.potential
-    plate.solid.volume.harmonic_fields plate.solid.volume.mode_fields
-    plate.solid.volume.plate_volume render.texture.coordinate.Coordinate.at
-    render.texture.coordinate.FromPoint.at render.fidelity.report.fidelity_report
-    render.fidelity.report.strongest_lines
-    render.fidelity.trace.friction_of render.fidelity.trace.per_sample
-    render.motion.estimator.MotionCounts.of render.program.renderer.counters_of
+    physics.contact.sharing.gas_table.FilmTable.build
+    physics.contact.sharing.film_panels.Panel.at physics.contact.sharing.film_panels.Panel.films
+    physics.contact.sharing.film_panels.Panel.octave_solved
+    physics.contact.sharing.film_panels.Panel.solved
+    physics.plate.solid.volume.PlateVolume.displacement
+    physics.plate.solid.volume.PlateVolume.potential physics.plate.solid.volume.harmonic_fields
+    physics.plate.solid.volume.mode_fields physics.plate.solid.volume.plate_volume
+    physics.render.texture.coordinate.Coordinate.at physics.render.texture.coordinate.FromPoint.at
+    physics.render.fidelity.report.fidelity_report physics.render.fidelity.report.strongest_lines
+    physics.render.fidelity.trace.friction_of physics.render.fidelity.trace.per_sample
+    physics.render.motion.estimator.MotionCounts.of physics.render.program.renderer.counters_of
     """,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": """
-    render.program.renderer.Renderer.tick
+    physics.render.program.renderer.Renderer.tick
     """,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
-    quantities.require.require quantities.units.format_quantity
-    quantities.units.typed_quantity
+    core.quantities.require.require core.quantities.units.format_quantity
+    core.quantities.units.typed_quantity
     """,
 }
 """The public calls for which no good call is made here, by the reason. A new one must be named."""

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.nonlinear import inverse_of
 from squeezefilm.study.identification.confusion import ConfusionMatrix

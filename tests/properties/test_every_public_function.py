@@ -22,7 +22,7 @@ from .good_arguments import (
     constructor_of,
     good_arguments,
     wanted_values,
-)  # fmt: skip
+)
 from .hostile_calls import HOSTILE, fault
 from .public_calls import NAMES_NOT_CALLED, NOT_CALLED, public_calls
 
@@ -40,20 +40,36 @@ LEFT_OUT = {
 
 # Calls that neither solve nor need something solved: what the default run draws from.
 QUICK = (
-    "contact.asperities.AsperityLaw", "contact.sliding.dry_friction", "contact.finger.",
-    "contact.finger.fingerpad",
-    "contact.skin.",
-    "distributions", "film.gap",
-    "film.closed.limits", "film.closed.linear", "film.planar.gap", "film.validity.knudsen_number",
-    "formats.wav", "formats.pictures", "materials", "plate.beam.modes.euler", "plate.laminate",
-    "plate.layout", "plate.loaded_mode", "plate.ring.pair", "plate.exposure.exposure_guidance",
-    "plate.working_mode.resonance_factor", "render.resonator.envelope.e",
-    "render.resonator.envelope.f",
-    "render.texture.levels", "render.motion.estimator.MotionModel",
-    "render.texture.pattern",
-    "render.motion.sensor.SensorModel", "render.motion.stroke",
-    "render.program.wave.wave_factor",
-)  # fmt: skip
+    "physics.contact.asperities.AsperityLaw",
+    "physics.contact.sliding.dry_friction",
+    "physics.contact.finger.",
+    "physics.contact.finger.fingerpad",
+    "physics.contact.skin.",
+    "core.distributions",
+    "physics.film.gap",
+    "physics.film.closed.limits",
+    "physics.film.closed.linear",
+    "physics.film.planar.gap",
+    "physics.film.validity.knudsen_number",
+    "core.formats.wav",
+    "physics.texture_files.pictures",
+    "core.materials",
+    "physics.plate.beam.modes.euler",
+    "physics.plate.laminate",
+    "physics.plate.layout",
+    "physics.plate.loaded_mode",
+    "physics.plate.ring.pair",
+    "physics.plate.exposure.exposure_guidance",
+    "physics.plate.working_mode.resonance_factor",
+    "physics.render.resonator.envelope.e",
+    "physics.render.resonator.envelope.f",
+    "physics.render.texture.levels",
+    "physics.render.motion.estimator.MotionModel",
+    "physics.render.texture.pattern",
+    "physics.render.motion.sensor.SensorModel",
+    "physics.render.motion.stroke",
+    "physics.render.program.wave.wave_factor",
+)
 
 
 def test_every_public_call_is_attacked_or_left_out_by_name_for_a_reason() -> None:
@@ -93,11 +109,24 @@ def test_a_sample_of_hostile_calls_ends_in_a_typed_error_or_finite_numbers() -> 
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     "prefix",
-    ["actuators", "control", "measure", "search",
-     "calibration_record", "contact", "distributions", "film", "formats", "chain.friction",
-     "materials", "plate", "chain.prediction",
-     "render", "chain.touch"],
-)  # fmt: skip
+    [
+        "actuators",
+        "actuators.control",
+        "measure",
+        "design.sweep",
+        "core.calibration_record",
+        "physics.contact",
+        "core.distributions",
+        "physics.film",
+        "core.formats",
+        "physics.chain.friction",
+        "core.materials",
+        "physics.plate",
+        "physics.chain.prediction",
+        "physics.render",
+        "physics.chain.touch",
+    ],
+)
 def test_every_hostile_call_ends_in_a_typed_error_or_finite_numbers(prefix: str) -> None:
     seed = secrets.randbits(32)
     print(f"seed {seed}")

@@ -6,10 +6,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.film.gas import SLIP_LAWS
-from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.periodic.film import solve_profile, solve_uniform
-from squeezefilm.film.periodic.profile import flexural_profile
+from squeezefilm.physics.film.gas import SLIP_LAWS
+from squeezefilm.physics.film.periodic.batch import solve_films
+from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
+from squeezefilm.physics.film.periodic.profile import flexural_profile
 
 sigmas = st.floats(-2.0, 4.0).map(lambda power: 10.0**power)
 excursions = st.floats(0.02, 0.95)

@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 import squeezefilm
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 
 from .public_calls import annotations_of, is_number
 

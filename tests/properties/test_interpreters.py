@@ -14,20 +14,20 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.errors import InputError
-from squeezefilm.render import opcodes
-from squeezefilm.render.program.inverse import FrictionInverse
-from squeezefilm.render.program.lowering import Program, lower
-from squeezefilm.render.program.renderer import evaluate, render
-from squeezefilm.render.program.wave import WaveCompensation
-from squeezefilm.render.texture.composition import Composable
-from squeezefilm.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.render.texture.noise import mixed
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.render import opcodes
+from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.lowering import Program, lower
+from squeezefilm.physics.render.program.renderer import evaluate, render
+from squeezefilm.physics.render.program.wave import WaveCompensation
+from squeezefilm.physics.render.texture.composition import Composable
+from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.physics.render.texture.noise import mixed
 
 from .texture_strategies import any_textures
 
 RUNNER = Path(__file__).with_name("run_renderer.mjs")
-MODULE = files("squeezefilm.render").joinpath("static/renderer.js")
+MODULE = files("squeezefilm.physics.render").joinpath("static/renderer.js")
 INVERSE = FrictionInverse.from_function(lambda a: 0.3 + 0.7 * np.exp(-((a / 2e-6) ** 2)), 4e-6)
 
 

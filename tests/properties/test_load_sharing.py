@@ -6,11 +6,11 @@ import numpy as np
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.sharing.balance import share_load, share_load_tied
-from squeezefilm.contact.sharing.gas_table import film_table
-from squeezefilm.film.periodic.film import solve_uniform
-from squeezefilm.materials import Gas
+from squeezefilm.core.materials import Gas
+from squeezefilm.physics.contact.asperities import AsperityLaw
+from squeezefilm.physics.contact.sharing.balance import share_load, share_load_tied
+from squeezefilm.physics.contact.sharing.gas_table import film_table
+from squeezefilm.physics.film.periodic.film import solve_uniform
 
 GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)
 

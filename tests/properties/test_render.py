@@ -6,16 +6,16 @@ import numpy as np
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.resonator.envelope import (
+from squeezefilm.physics.render.motion.stroke import Stroke
+from squeezefilm.physics.render.resonator.envelope import (
     envelope_response,
     fastest_speed,
     finest_period,
     sine_swing_kept,
     square_swing_kept,
 )
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.shapes import SineWave, SquareWave
+from squeezefilm.physics.render.texture.levels import Amplitude
+from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 
 periods = st.floats(1e-4, 0.05)
 speeds = st.floats(1e-3, 1.0)

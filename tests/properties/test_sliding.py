@@ -8,10 +8,10 @@ import numpy as np
 from hypothesis import given, reject
 from hypothesis import strategies as st
 
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.sliding.dry_friction import DryFriction, SpeedFriction
-from squeezefilm.contact.sliding.march import Sliding, slide
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
+from squeezefilm.physics.contact.sliding.march import Sliding, slide
 
 SAMPLES = 200
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.render.texture.composition import AT_REST, Composable
-from squeezefilm.render.texture.coordinate import AlongDirection, AlongY
-from squeezefilm.render.texture.pattern import Pattern
-from squeezefilm.render.texture.shapes import Constant, SineWave, SquareWave
+from squeezefilm.physics.render.texture.composition import AT_REST, Composable
+from squeezefilm.physics.render.texture.coordinate import AlongDirection, AlongY
+from squeezefilm.physics.render.texture.pattern import Pattern
+from squeezefilm.physics.render.texture.shapes import Constant, SineWave, SquareWave
 
 from .texture_strategies import (
     any_textures,

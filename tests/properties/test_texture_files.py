@@ -3,11 +3,15 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squeezefilm.config.schema import family
-from squeezefilm.render.texture.composition import Composable
-from squeezefilm.render.texture.coordinate import Coordinate
-from squeezefilm.render.texture.pattern import Pattern
-from squeezefilm.texture_file import TextureFile, texture_from_text, texture_text
+from squeezefilm.core.config.schema import family
+from squeezefilm.physics.render.texture.composition import Composable
+from squeezefilm.physics.render.texture.coordinate import Coordinate
+from squeezefilm.physics.render.texture.pattern import Pattern
+from squeezefilm.physics.texture_files.texture_file import (
+    TextureFile,
+    texture_from_text,
+    texture_text,
+)
 
 from .texture_strategies import any_textures
 

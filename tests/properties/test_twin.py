@@ -8,18 +8,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import Deframer
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.device.wire.states import State
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
-from squeezefilm.render.motion.sensor import SensorModel, sensor_stream
-from squeezefilm.twin.device import TwinDevice
-from squeezefilm.twin.hand import hand_from
-from squeezefilm.twin.plant import Plant
-from squeezefilm.twin.settings import PickupModel, PlateDrift, TwinSettings
-from squeezefilm.twin.working_point import WorkingPoint, working_point
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Deframer
+from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.twin.device import TwinDevice
+from squeezefilm.instruments.twin.hand import hand_from
+from squeezefilm.instruments.twin.plant import Plant
+from squeezefilm.instruments.twin.settings import PickupModel, PlateDrift, TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_stream
 
 SETTINGS = TwinSettings(truth_period=100e-6, seed=9)
 LIMITS = Limits(20.0, 10_000.0, 20.0, 100.0, 20e3, 30e3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from squeezefilm.render.texture.composition import (
+from squeezefilm.physics.render.texture.composition import (
     Composable,
     Masked,
     Product,
@@ -13,18 +13,18 @@ from squeezefilm.render.texture.composition import (
     Sequence,
     Sum,
 )
-from squeezefilm.render.texture.coordinate import (
+from squeezefilm.physics.render.texture.coordinate import (
     X_AXIS,
     AlongDirection,
     AlongY,
     Coordinate,
     FromPoint,
 )
-from squeezefilm.render.texture.gates import Attack, Decay, Periodic, SpeedGate
-from squeezefilm.render.texture.image import Image
-from squeezefilm.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
-from squeezefilm.render.texture.noise import Noise, NoiseField
-from squeezefilm.render.texture.pattern import (
+from squeezefilm.physics.render.texture.gates import Attack, Decay, Periodic, SpeedGate
+from squeezefilm.physics.render.texture.image import Image
+from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
+from squeezefilm.physics.render.texture.noise import Noise, NoiseField
+from squeezefilm.physics.render.texture.pattern import (
     Complement,
     Greatest,
     Least,
@@ -32,7 +32,7 @@ from squeezefilm.render.texture.pattern import (
     SpeedScaled,
     Times,
 )
-from squeezefilm.render.texture.shapes import (
+from squeezefilm.physics.render.texture.shapes import (
     Band,
     Bump,
     Constant,

@@ -6,10 +6,10 @@ import random
 import struct
 from dataclasses import dataclass, field
 
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import Frame
-from squeezefilm.device.wire.safety import Limits
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Frame
 
 LIMITS = Limits(
     voltage=60.0,

@@ -12,11 +12,11 @@ import struct
 from collections import Counter
 from dataclasses import astuple
 
-from squeezefilm.device.machine.device import TICK_PERIOD, Machine
-from squeezefilm.device.machine.limits import DeviceLimits
-from squeezefilm.device.machine.playing import Mode
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import Deframer
+from squeezefilm.instruments.device.machine.device import TICK_PERIOD, Machine
+from squeezefilm.instruments.device.machine.limits import DeviceLimits
+from squeezefilm.instruments.device.machine.playing import Mode
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Deframer
 
 from .adversary import LIMITS, Adversary
 from .test_frames import FINGER, check_the_session

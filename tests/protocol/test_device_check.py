@@ -9,17 +9,17 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.bench import loop_check
-from squeezefilm.bench.check import DeviceCheck, check_device
-from squeezefilm.bench.conversation import Conversation
-from squeezefilm.bench.loop_check import loop_result
-from squeezefilm.device.machine import device
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import Frame
-from squeezefilm.device.wire.states import Reason
-from squeezefilm.errors import DeviceError
-from squeezefilm.session.loop.lateness import CLASSES, Lateness, lateness_class
+from squeezefilm.core.errors import DeviceError
+from squeezefilm.instruments.bench import loop_check
+from squeezefilm.instruments.bench.check import DeviceCheck, check_device
+from squeezefilm.instruments.bench.conversation import Conversation
+from squeezefilm.instruments.bench.loop_check import loop_result
+from squeezefilm.instruments.device.machine import device
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Frame
+from squeezefilm.instruments.device.wire.states import Reason
+from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
 
 FREQUENCY = 30_000.0
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from squeezefilm.device.machine.limits import NO_LEVEL, level_of
-from squeezefilm.device.machine.playing import Mode
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import LONGEST_PAYLOAD, Frame, cobs_encode
-from squeezefilm.device.wire.states import State
+from squeezefilm.instruments.device.machine.limits import NO_LEVEL, level_of
+from squeezefilm.instruments.device.machine.playing import Mode
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import LONGEST_PAYLOAD, Frame, cobs_encode
+from squeezefilm.instruments.device.wire.states import State
 
 from .builds import Library, Sanitized
 from .recording import (

@@ -11,9 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import (
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import (
     LONGEST_PAYLOAD,
     Deframer,
     Frame,
@@ -21,7 +22,6 @@ from squeezefilm.device.wire.frames import (
     cobs_encode,
     frame_from_bytes,
 )
-from squeezefilm.errors import InputError
 
 PAGE = Path(__file__).parents[2] / "docs" / "development" / "protocol.md"
 

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.serial_ports import SerialDrive
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.link import Link
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.device.wire.states import State
-from squeezefilm.errors import InputError
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.device.host import DeviceHost
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.serial_ports import SerialDrive
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.link import Link
+from squeezefilm.instruments.device.wire.states import State
 
 from .wire import Wire
 

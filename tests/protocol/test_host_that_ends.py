@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.wire.link import Link
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.device.wire.states import Fault, State
-from squeezefilm.errors import DeviceError
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.core.errors import DeviceError
+from squeezefilm.instruments.device.host import DeviceHost
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.wire.link import Link
+from squeezefilm.instruments.device.wire.states import Fault, State
 
 from .wire import TICK, Wire
 

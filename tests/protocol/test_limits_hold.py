@@ -8,10 +8,10 @@ from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule, run_state_machine_as_test
 
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import Deframer
-from squeezefilm.device.wire.states import Fault, State
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Deframer
+from squeezefilm.instruments.device.wire.states import Fault, State
 
 from .adversary import Adversary
 

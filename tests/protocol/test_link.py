@@ -8,16 +8,16 @@ import random
 import numpy as np
 import pytest
 
-from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.machine.limits import DeviceLimits
-from squeezefilm.device.ports import Drive
-from squeezefilm.device.serial_ports import SerialDrive
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.link import Link
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.device.wire.states import Fault, State
-from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.instruments.device.host import DeviceHost
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.machine.limits import DeviceLimits
+from squeezefilm.instruments.device.ports import Drive
+from squeezefilm.instruments.device.serial_ports import SerialDrive
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.link import Link
+from squeezefilm.instruments.device.wire.states import Fault, State
 
 from .adversary import LIMITS
 from .wire import Faults, Wire

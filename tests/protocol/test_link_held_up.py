@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.link import Link
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.link import Link
 
 
 @dataclass

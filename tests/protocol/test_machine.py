@@ -5,12 +5,12 @@ import struct
 
 import pytest
 
-from squeezefilm.device.machine.device import Machine, next_token
-from squeezefilm.device.machine.limits import DeviceLimits, level_of
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.frames import Frame, frame_from_bytes
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.device.wire.states import Fault, Reason, State
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.instruments.device.machine.device import Machine, next_token
+from squeezefilm.instruments.device.machine.limits import DeviceLimits, level_of
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Frame, frame_from_bytes
+from squeezefilm.instruments.device.wire.states import Fault, Reason, State
 
 from .adversary import LIMITS
 

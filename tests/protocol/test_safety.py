@@ -6,10 +6,11 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.device.machine.limits import level_of
-from squeezefilm.device.wire.messages import limits_message
-from squeezefilm.device.wire.safety import Limits, require_safe_drive
-from squeezefilm.errors import InputError
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.device.machine.limits import level_of
+from squeezefilm.instruments.device.wire.messages import limits_message
+from squeezefilm.instruments.device.wire.safety import require_safe_drive
 
 from .adversary import LIMITS
 

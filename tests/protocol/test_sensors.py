@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from squeezefilm.device.ports import FingerSample, Sensor
-from squeezefilm.device.replay import ReplaySensor
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.device.ports import FingerSample, Sensor
+from squeezefilm.instruments.device.replay import ReplaySensor
 
 
 def test_a_recording_comes_when_its_time_has_come() -> None:

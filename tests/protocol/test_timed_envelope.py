@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from squeezefilm.device.machine.playing import CLOCK
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.safety import Limits
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.instruments.device.machine.playing import CLOCK
+from squeezefilm.instruments.device.wire import messages as m
 
 from .builds import Library
 from .recording import Recording

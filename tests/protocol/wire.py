@@ -5,9 +5,9 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, field
 
-from squeezefilm.device.machine.device import Machine
-from squeezefilm.device.machine.playing import CLOCK
-from squeezefilm.errors import DeviceError
+from squeezefilm.core.errors import DeviceError
+from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.machine.playing import CLOCK
 
 TICK = 100
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import SqueezefilmError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.measure.fits.circuit.branches import Layout, circuit_curve
 from squeezefilm.measure.fits.circuit.impedance import (
     ImpedanceFit,

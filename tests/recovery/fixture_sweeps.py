@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy import stats
 
-from squeezefilm.errors import SqueezefilmError
+from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 
 from .circuit_sweeps import MadeSweep, Random, compared, made_sweep

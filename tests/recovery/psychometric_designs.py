@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.quantities import FloatArray
+from squeezefilm.core.quantities import FloatArray
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.rerun import Procedure, rerun_intervals
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule

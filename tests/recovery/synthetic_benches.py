@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import Display, load_display
 from squeezefilm.measure.calibration.discrepancy import KINDS, scales_of
 from squeezefilm.measure.calibration.friction_likelihood import GRID, FrictionLikelihood, Touching
 from squeezefilm.measure.calibration.friction_posterior import (
@@ -30,6 +28,8 @@ from squeezefilm.measure.calibration.plate_posterior import (
 from squeezefilm.measure.calibration.priors import NormalScores, calibration_parameters
 from squeezefilm.measure.calibration.solved_answers import FRICTION, Asked
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import Display, load_display
 
 NOISE = {
     "parallel_resonance_frequency": 5e-4,

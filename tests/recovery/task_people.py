@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import ndtr
 
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design

@@ -14,7 +14,7 @@ from scipy.stats import chisquare
 
 from squeezefilm.measure.calibration.priors import with_calibrated
 from squeezefilm.measure.calibration.solved_answers import Asked, solved_answers
-from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.layout import RectangularPlate
 
 from .synthetic_benches import (
     Fingers,

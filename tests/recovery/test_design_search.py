@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from scipy.stats import qmc, spearmanr
 
-from squeezefilm.search.design.candidate import Evaluated, design_of, evaluate
-from squeezefilm.search.design.correction import learned
-from squeezefilm.search.design.requirements import load_requirements
-from squeezefilm.search.design.run import search_designs
-from squeezefilm.search.tasks import Lost
-from squeezefilm.search.workers import workers
+from squeezefilm.design.search.candidate import Evaluated, design_of, evaluate
+from squeezefilm.design.search.correction import learned
+from squeezefilm.design.search.requirements import load_requirements
+from squeezefilm.design.search.run import search_designs
+from squeezefilm.design.sweep.tasks import Lost
+from squeezefilm.design.sweep.workers import workers
 
 JOBS = os.cpu_count() or 1
 

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.perception.observer import load_observer
-from squeezefilm.perception.percepts import Apparatus
-from squeezefilm.perception.senses import Candidates
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.percepts import Apparatus
+from squeezefilm.physics.perception.senses import Candidates
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.identification.power import above_0, distinction_scores
 from squeezefilm.study.simulated import planned_contrast, planned_power

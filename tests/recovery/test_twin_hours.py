@@ -10,14 +10,14 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from squeezefilm.device.machine.playing import CLOCK
-from squeezefilm.device.wire import messages as m
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.device.wire.states import State
-from squeezefilm.display import load_display
-from squeezefilm.twin.device import TwinDevice
-from squeezefilm.twin.hand import hand_from
-from squeezefilm.twin.settings import PlateDrift, TwinSettings
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.instruments.device.machine.playing import CLOCK
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.twin.device import TwinDevice
+from squeezefilm.instruments.twin.hand import hand_from
+from squeezefilm.instruments.twin.settings import PlateDrift, TwinSettings
+from squeezefilm.physics.display import load_display
 
 SECOND = 1_000_000
 CYCLE = 120 * SECOND  # there and, a minute later, back

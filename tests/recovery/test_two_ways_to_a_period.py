@@ -7,7 +7,7 @@ import dataclasses
 
 import pytest
 
-from squeezefilm.perception.observer import load_observer
+from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.simulated.answers import SimulatedAnswers, simulate_participants
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from squeezefilm.analysis.plate.sensitivity import with_glue
-from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
+from squeezefilm.design.plate.sensitivity import with_glue
+from squeezefilm.physics.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
 
 
 def _with_one(

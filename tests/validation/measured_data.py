@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 ROOT = Path(__file__).parents[2]
 

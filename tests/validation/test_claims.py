@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.analysis.claims.command import ClaimResult, judge, reproduce
-from squeezefilm.analysis.claims.contact import DIRECTION_VALUES
-from squeezefilm.analysis.claims.record import Claim, read_claims
-from squeezefilm.analysis.claims.values import CLAIM_VALUES, ClaimValue
-from squeezefilm.errors import ConfigError
+from squeezefilm.core.errors import ConfigError
+from squeezefilm.design.analysis.published_claims import Claim, read_claims
+from squeezefilm.validation.command import ClaimResult, judge, reproduce
+from squeezefilm.validation.contact import DIRECTION_VALUES
+from squeezefilm.validation.values import CLAIM_VALUES, ClaimValue
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import load_display
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import load_display
 
 PAGE = Path(__file__).parents[2] / "docs" / "explanation" / "models.md"
 FORCES = (0.1, 0.5, 1.0, 2.0)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from predict_disc import DIAMETER, FILE, MASS, PREDICTED, THICKNESS
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.ceramic.bar import bar_constants
 from squeezefilm.measure.fits.ceramic.disc import disc_by_mass, disc_constants
 from squeezefilm.measure.fits.ceramic.disc_prediction import predict_radial_mode

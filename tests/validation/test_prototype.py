@@ -4,23 +4,23 @@ import dataclasses
 
 import pytest
 
-from squeezefilm.analysis.claims.paper_plate import (
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.design.plate.sensitivity import plate_sensitivity, usual_changes
+from squeezefilm.validation.paper_plate import (
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,
     paper_plate,
     paper_points,
 )
-from squeezefilm.analysis.plate.sensitivity import plate_sensitivity, usual_changes
-from squeezefilm.errors import SqueezefilmError
-from squeezefilm.measure.prototype import explanations as prototype
-from squeezefilm.measure.prototype.explanations import (
+from squeezefilm.validation.prototype import explanations as prototype
+from squeezefilm.validation.prototype.explanations import (
     MEASUREMENTS,
     Explanation,
     PrototypeStudy,
     prototype_study,
 )
-from squeezefilm.report.claims.page import prototype_sections
-from squeezefilm.report.claims.prototype import (
+from squeezefilm.validation.report.page import prototype_sections
+from squeezefilm.validation.report.prototype import (
     identifiability,
     prototype_markdown,
     sentences,

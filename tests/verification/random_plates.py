@@ -5,14 +5,14 @@ import dataclasses
 
 import numpy as np
 
-from squeezefilm.errors import InputError
-from squeezefilm.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.plate.elements.slabs import Slabs
-from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
-from squeezefilm.plate.solid.guess import estimated_frequency
-from squeezefilm.plate.solid.layers import Resolution
-from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.symmetry import all_classes
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.physics.plate.elements.slabs import Slabs
+from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
+from squeezefilm.physics.plate.solid.guess import estimated_frequency
+from squeezefilm.physics.plate.solid.layers import Resolution
+from squeezefilm.physics.plate.solid.mesh import plate_model
+from squeezefilm.physics.plate.solid.symmetry import all_classes
 
 SUBSTRATES = (
     ElasticMaterial("copper-beryllium", 123e9, 0.30, 8250),

@@ -1,6 +1,6 @@
 """Foam around the rim of a plate, for those who ask how a plate lies on it."""
 
-from squeezefilm.plate.layout import Face, FoamSupport
+from squeezefilm.physics.plate.layout import Face, FoamSupport
 
 
 def rim_supports(

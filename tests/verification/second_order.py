@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import cont2discrete, lfilter, ss2tf
 
-from squeezefilm.quantities import FloatArray
-from squeezefilm.render.resonator.carrier import carrier_block
+from squeezefilm.core.quantities import FloatArray
+from squeezefilm.physics.render.resonator.carrier import carrier_block
 
 
 class Carried(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import eigsh
 
-from squeezefilm.plate.elements.box_model import BoxModel
+from squeezefilm.physics.plate.elements.box_model import BoxModel
 
 Outer = Literal["shorted", "bare"] | list[list[tuple[int, int]]]
 """What becomes of the outer faces: all at zero volts, without any metal, or groups of (electrode,

@@ -12,19 +12,24 @@ import pytest
 from scipy.linalg import eigh, expm
 from tests.verification.random_plates import random_plate
 
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError, OutOfRangeError
-from squeezefilm.plate.beam.modes import (
+from squeezefilm.core.errors import InputError, OutOfRangeError
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.beam.modes import (
     euler_bernoulli_frequency,
     euler_bernoulli_half_wavelength,
     free_beam_mode,
     timoshenko_frequency,
 )
-from squeezefilm.plate.beam.pieces import Piece, beam_pieces, pieced_beam_mode, stressed_span
-from squeezefilm.plate.beam.response import BeamResponse, beam_response
-from squeezefilm.plate.laminate import Laminate, Layer, laminate, plate_laminate
-from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.physics.plate.beam.pieces import (
+    Piece,
+    beam_pieces,
+    pieced_beam_mode,
+    stressed_span,
+)
+from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.physics.plate.laminate import Laminate, Layer, laminate, plate_laminate
+from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.physics.plate.working_mode import working_mode
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,7 @@
 """How far a beam is from plates solved in three dimensions: a campaign, which prints what it found.
 
-What is told of a beam's doubt (`plausibility.expected`, `chain.chosen_mode`) rests on this.
+What is told of a beam's doubt (`physics.plausibility.expected`, `physics.chain.chosen_mode`) rests
+on this.
 """
 
 from collections.abc import Callable
@@ -9,11 +10,11 @@ import numpy as np
 import pytest
 from tests.verification.random_plates import random_glass, random_plate, screened_plate
 
-from squeezefilm.errors import SqueezefilmError
-from squeezefilm.plate.beam import pieces
-from squeezefilm.plate.beam.response import beam_response
-from squeezefilm.plate.layout import RectangularPlate, turned
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.physics.plate.beam import pieces
+from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate.layout import RectangularPlate, turned
+from squeezefilm.physics.plate.working_mode import working_mode
 
 LEAST_DRIVEN = 1e-9
 """The amplitude (m/V) below which a plate's ceramics cancel, and a ratio says nothing."""

@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 from scipy.special import jv
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.materials import VACUUM_PERMITTIVITY
-from squeezefilm.plate.elements.box_model import Medium
-from squeezefilm.plate.ring.ceramic_disc import (
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, InputError
+from squeezefilm.core.materials import VACUUM_PERMITTIVITY
+from squeezefilm.physics.plate.elements.box_model import Medium
+from squeezefilm.physics.plate.ring.ceramic_disc import (
     CONSTANTS,
     CeramicDisc,
     disc_admittance,
     disc_system,
     weak_constants,
 )
-from squeezefilm.plate.ring.modes import annular_admittance, annular_modes
-from squeezefilm.plate.ring.section import AnnularSection, RingLayer, full_drive
+from squeezefilm.physics.plate.ring.modes import annular_admittance, annular_modes
+from squeezefilm.physics.plate.ring.section import AnnularSection, RingLayer, full_drive
 
 DISC = CeramicDisc(35e-3, 2e-3, 7743.0)
 S = (16.4e-12, -5.74e-12, -7.22e-12, 18.8e-12, 47.5e-12)

@@ -9,19 +9,19 @@ import pytest
 from scipy.optimize import minimize
 from tests.verification.second_order import carried
 
-from squeezefilm.render.resonator import kernel
-from squeezefilm.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator import kernel
+from squeezefilm.physics.render.resonator.compensation import (
     DrivenEnvelope,
     compensated_drive,
     preview_work,
 )
-from squeezefilm.render.resonator.envelope import (
+from squeezefilm.physics.render.resonator.envelope import (
     envelope_response,
     envelope_time_constant,
     finest_period,
 )
-from squeezefilm.render.resonator.envelope import square_swing_kept as bare_swing
-from squeezefilm.render.resonator.square_swing import (
+from squeezefilm.physics.render.resonator.envelope import square_swing_kept as bare_swing
+from squeezefilm.physics.render.resonator.square_swing import (
     fastest_compensated_speed,
     least_cycle,
     square_swing_compensated,

@@ -7,9 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import load_display
+from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import load_display
 
 # By theory what a solid would be solved for.
 DISPLAYS = {

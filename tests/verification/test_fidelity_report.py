@@ -8,17 +8,17 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.quantities import FloatArray
-from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
-from squeezefilm.render.fidelity.report import fidelity_report
-from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SENSORS, SensorModel
-from squeezefilm.render.motion.stroke import MinimumJerkStroke, Stroke
-from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.resonator.envelope import sine_swing_kept
-from squeezefilm.render.resonator.square_swing import square_swing_compensated
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.shapes import SineWave, SquareWave
+from squeezefilm.core.quantities import FloatArray
+from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
+from squeezefilm.physics.render.fidelity.report import fidelity_report
+from squeezefilm.physics.render.motion.estimator import MotionEstimator
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SENSORS, SensorModel
+from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
+from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import sine_swing_kept
+from squeezefilm.physics.render.resonator.square_swing import square_swing_compensated
+from squeezefilm.physics.render.texture.levels import Amplitude
+from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 
 LIMIT, TAU = 1e-6, 0.57e-3
 FREE = DrivenEnvelope(TAU, TAU, 100 * LIMIT, braking=True)

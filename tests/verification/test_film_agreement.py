@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
-from squeezefilm.film.gas import FilmGas
-from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.periodic.film import solve_profile, solve_uniform
-from squeezefilm.film.periodic.profile import flexural_profile
-from squeezefilm.film.planar.film import solve_planar
-from squeezefilm.film.planar.gap import PlanarGap
-from squeezefilm.film.transient.settling import settle_to_periodic
+from squeezefilm.physics.film.closed.linear import relative_damping, relative_stiffness
+from squeezefilm.physics.film.gas import FilmGas
+from squeezefilm.physics.film.line_grid import uniform_gap
+from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
+from squeezefilm.physics.film.periodic.profile import flexural_profile
+from squeezefilm.physics.film.planar.film import solve_planar
+from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.transient.settling import settle_to_periodic
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,11 @@ from scipy.optimize import brentq
 from scipy.special import ive
 from tests.verification.trapped_film import trapped_load
 
-from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError
-from squeezefilm.film.closed import limits, linear
-from squeezefilm.film.closed.small import small_vibration
-from squeezefilm.film.gap import PaperGap
-from squeezefilm.film.gas import slip_law
+from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError
+from squeezefilm.physics.film.closed import limits, linear
+from squeezefilm.physics.film.closed.small import small_vibration
+from squeezefilm.physics.film.gap import PaperGap
+from squeezefilm.physics.film.gas import slip_law
 
 EVERY_SIGMA = np.geomspace(1e-12, 1e12, 200)
 

@@ -2,7 +2,7 @@
 
 Films are drawn at random: strips, discs, and profiles that are ridged, tilted, or any function. The
 truth is the same film to a hundredth of the tolerance. Margins of the estimate were set on other
-draws (`film.periodic.nested`).
+draws (`physics.film.periodic.nested`).
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from squeezefilm.errors import GeometryError
-from squeezefilm.film.periodic.film import solve_profile, solve_uniform
-from squeezefilm.film.periodic.profile import GapProfile, flexural_profile
-from squeezefilm.film.periodic.solution import FilmSolution
+from squeezefilm.core.errors import GeometryError
+from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
+from squeezefilm.physics.film.periodic.profile import GapProfile, flexural_profile
+from squeezefilm.physics.film.periodic.solution import FilmSolution
 
 KINDS = ("strip", "disc", "ridged", "tilted", "function")
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from tests.verification.trapped_film import trapped_load
 
-from squeezefilm.film.gas import Aim, Gas
-from squeezefilm.film.periodic.balance import VibratedFilm, mean_gap_for_load
-from squeezefilm.film.periodic.batch import solve_films
-from squeezefilm.film.periodic.film import solve_profile, solve_uniform
-from squeezefilm.film.periodic.kernel import newton
-from squeezefilm.film.periodic.profile import flexural_profile
-from squeezefilm.film.periodic.records import Cells, Gap, Room
-from squeezefilm.film.periodic.resolution import collocation_times
+from squeezefilm.physics.film.gas import Aim, Gas
+from squeezefilm.physics.film.periodic.balance import VibratedFilm, mean_gap_for_load
+from squeezefilm.physics.film.periodic.batch import solve_films
+from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
+from squeezefilm.physics.film.periodic.kernel import newton
+from squeezefilm.physics.film.periodic.profile import flexural_profile
+from squeezefilm.physics.film.periodic.records import Cells, Gap, Room
+from squeezefilm.physics.film.periodic.resolution import collocation_times
 
 STRIP_LOADS = {
     (0.1, 1.0): 1.000108, (0.1, 10.0): 1.005188, (0.1, 100.0): 1.010778,
@@ -175,7 +175,7 @@ def test_infinite_sigma_under_a_wavy_gap():
 
 def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     """The over-pressure on one grid, without extrapolation."""
-    from squeezefilm.film.periodic import uniform as u
+    from squeezefilm.physics.film.periodic import uniform as u
 
     times = collocation_times(nt)
     ntp = times.row

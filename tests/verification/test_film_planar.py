@@ -7,16 +7,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from squeezefilm.errors import ConvergenceError, GeometryError, InputError
-from squeezefilm.film.gas import FilmGas, Gas
-from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.planar.balance import Balancer, Film, derivative, resampled
-from squeezefilm.film.planar.cut import cut_ellipse_grid
-from squeezefilm.film.planar.film import solve_planar
-from squeezefilm.film.planar.gap import PlanarGap
-from squeezefilm.film.planar.grid import disc_grid, ellipse_grid, graded_line, rectangle_grid
-from squeezefilm.film.transient.settling import settle_to_periodic
-from squeezefilm.hard_limits import PLANAR_MEMORY
+from squeezefilm.core.errors import ConvergenceError, GeometryError, InputError
+from squeezefilm.core.hard_limits import PLANAR_MEMORY
+from squeezefilm.physics.film.gas import FilmGas, Gas
+from squeezefilm.physics.film.line_grid import uniform_gap
+from squeezefilm.physics.film.planar.balance import Balancer, Film, derivative, resampled
+from squeezefilm.physics.film.planar.cut import cut_ellipse_grid
+from squeezefilm.physics.film.planar.film import solve_planar
+from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.planar.grid import (
+    disc_grid,
+    ellipse_grid,
+    graded_line,
+    rectangle_grid,
+)
+from squeezefilm.physics.film.transient.settling import settle_to_periodic
 
 
 def plane(shape, squeeze_number, excursion, aspect=1.0, *, tolerance=5e-3, **waves):
@@ -351,7 +356,7 @@ def test_ridges_that_reach_the_surface_are_refused():
 
 def test_a_tolerance_out_of_reach_raises_with_the_best_state(monkeypatch):
     lower = replace(PLANAR_MEMORY, most=2e6)
-    monkeypatch.setattr("squeezefilm.film.planar.ladder.PLANAR_MEMORY", lower)
+    monkeypatch.setattr("squeezefilm.physics.film.planar.ladder.PLANAR_MEMORY", lower)
     with pytest.raises(ConvergenceError, match="memory") as caught:
         plane("ellipse", 10.0, 0.5, 1.5, tolerance=1e-5)
     assert caught.value.partial.over_pressure == pytest.approx(0.22470, rel=5e-3)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.errors import ConvergenceError, GeometryError, InputError
-from squeezefilm.film.gas import FilmGas
-from squeezefilm.film.line_grid import uniform_gap
-from squeezefilm.film.transient.march import solve_transient
-from squeezefilm.film.transient.settling import settle_to_periodic
+from squeezefilm.core.errors import ConvergenceError, GeometryError, InputError
+from squeezefilm.physics.film.gas import FilmGas
+from squeezefilm.physics.film.line_grid import uniform_gap
+from squeezefilm.physics.film.transient.march import solve_transient
+from squeezefilm.physics.film.transient.settling import settle_to_periodic
 
 STRIP = {
     (0.1, 1.0): 1.000108, (0.1, 10.0): 1.005188, (0.1, 100.0): 1.010778,

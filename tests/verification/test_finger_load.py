@@ -9,17 +9,17 @@ import pytest
 from scipy.integrate import solve_ivp
 from tests.finger_stiffness import finger_stiffness, interface_stiffness
 
-from squeezefilm.chain.friction import friction_law
-from squeezefilm.chain.prediction import predict
-from squeezefilm.chain.touch import load_ratios, touch
-from squeezefilm.contact.finger.load import finger_impedance
-from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.display import Display, load_display
-from squeezefilm.errors import InputError
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.loaded_mode import loaded_mode
-from squeezefilm.plate.working_mode import WorkingMode, working_mode
-from squeezefilm.presets import friction_folder
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.presets import friction_folder
+from squeezefilm.physics.chain.friction import friction_law
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.chain.touch import load_ratios, touch
+from squeezefilm.physics.contact.finger.load import finger_impedance
+from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.display import Display, load_display
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.loaded_mode import loaded_mode
+from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
 
 F0, Q, MASS = 34e3, 100.0, 0.02
 OMEGA0 = 2 * np.pi * F0

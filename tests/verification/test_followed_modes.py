@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import squeezefilm as sf
-from squeezefilm.analysis.parameters import with_values
-from squeezefilm.materials import ElasticMaterial
-from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.core.materials import ElasticMaterial
+from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.uncertainty.parameters import with_values
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 from scipy import stats
 from scipy.special import digamma
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification import information as estimators
 from squeezefilm.study.identification.information import (
     ESTIMATORS,

@@ -18,7 +18,7 @@ TESTS = Path(__file__).parents[1]
 
 # One file for each family of kernels that compiles within a minute or so.
 SAMPLE = {
-    "envelope and its inverse": "unit/render/resonator/test_compensation.py",
+    "envelope and its inverse": "unit/physics/render/resonator/test_compensation.py",
     "programs of textures": "properties/test_interpreters.py",
     "sliding": "properties/test_sliding.py",
     "load sharing": "properties/test_load_sharing.py",

@@ -10,25 +10,30 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from squeezefilm.chain.friction import friction_law
-from squeezefilm.contact.asperities import (
+from squeezefilm.core.errors import InputError, OutOfRangeError, UnreachableError
+from squeezefilm.core.materials import Gas
+from squeezefilm.physics.chain.friction import friction_law
+from squeezefilm.physics.contact.asperities import (
     AsperityLaw,
     CompiledAsperities,
     gaussian_overlap,
 )
-from squeezefilm.contact.finger.fingertip import Finger
-from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.contact.sharing.balance import share_load, share_load_tied
-from squeezefilm.contact.sharing.film_panels import DEEPEST_EXCURSION
-from squeezefilm.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.contact.sharing.pad import PadPosture, friction_ripple, pad_friction, pad_points
-from squeezefilm.contact.sharing.paper import relative_friction
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError, OutOfRangeError, UnreachableError
-from squeezefilm.film.closed.linear import relative_damping, relative_stiffness
-from squeezefilm.film.gap import PaperGap, squeeze_number
-from squeezefilm.film.periodic.film import solve_uniform
-from squeezefilm.materials import Gas
+from squeezefilm.physics.contact.finger.fingertip import Finger
+from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.sharing.balance import share_load, share_load_tied
+from squeezefilm.physics.contact.sharing.film_panels import DEEPEST_EXCURSION
+from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
+from squeezefilm.physics.contact.sharing.pad import (
+    PadPosture,
+    friction_ripple,
+    pad_friction,
+    pad_points,
+)
+from squeezefilm.physics.contact.sharing.paper import relative_friction
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.film.closed.linear import relative_damping, relative_stiffness
+from squeezefilm.physics.film.gap import PaperGap, squeeze_number
+from squeezefilm.physics.film.periodic.film import solve_uniform
 
 GAS = Gas(1.85e-5, 1e5, 1.2, 67e-9)
 LAW = AsperityLaw()
@@ -220,7 +225,7 @@ def test_the_gaussian_overlap_is_its_integral() -> None:
 
 @pytest.mark.parametrize("heights", ["exponential", "gaussian"])
 def test_period_means_agree_with_quadrature_and_with_the_compiled_code(heights: str) -> None:
-    from squeezefilm.contact.asperity_kernel import asperity_mean
+    from squeezefilm.physics.contact.asperity_kernel import asperity_mean
 
     law = AsperityLaw(heights=heights)  # type: ignore[arg-type]
     assert isinstance(law.compiled(), CompiledAsperities)
@@ -265,8 +270,8 @@ def test_the_mean_of_the_exponential_law_holds_for_swings_of_many_decay_lengths(
 @pytest.mark.parametrize("stiffness", [0.0, 4e11])
 def test_no_energy_is_created(table: FilmTable, damping: float, stiffness: float) -> None:
     # What the plate puts in per period, Im(p̂ ā), is what film and skin take: asperities keep none.
-    from squeezefilm.contact.asperity_kernel import asperity_mean
-    from squeezefilm.contact.sharing.kernel import film_value
+    from squeezefilm.physics.contact.asperity_kernel import asperity_mean
+    from squeezefilm.physics.contact.sharing.kernel import film_value
 
     skin = Skin(stiffness_per_area=stiffness, damping_per_area=damping)
     a = 1.5e-6

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from tests.finger_stiffness import finger_stiffness, interface_stiffness
 
-from squeezefilm.chain.friction import friction_law
-from squeezefilm.chain.touch import load_ratios, touch
-from squeezefilm.contact.asperities import AsperityLaw
-from squeezefilm.contact.finger.skin import Skin
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
-from squeezefilm.materials import Gas
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
-from squeezefilm.plate.solid.response import SurfaceLoad, harmonic_response
-from squeezefilm.plate.solid.working import solid_mode
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import Gas
+from squeezefilm.physics.chain.friction import friction_law
+from squeezefilm.physics.chain.touch import load_ratios, touch
+from squeezefilm.physics.contact.asperities import AsperityLaw
+from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave
+from squeezefilm.physics.plate.solid.response import SurfaceLoad, harmonic_response
+from squeezefilm.physics.plate.solid.working import solid_mode
+from squeezefilm.physics.plate.working_mode import working_mode
 
 AIR = Gas(1.85e-5, 1e5, 1.2, 67e-9)
 

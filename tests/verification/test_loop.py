@@ -14,33 +14,33 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from squeezefilm.chain.friction_table import FrictionTable
-from squeezefilm.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
-from squeezefilm.render.motion.estimator import MotionEstimator
-from squeezefilm.render.motion.sensor import (
+from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop.lateness import CLASSES, lateness_class
+from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.simulated import (
+    SimulatedLoop,
+    SimulatedRun,
+    run_ticks,
+    stream_samples,
+)
+from squeezefilm.physics.chain.friction_table import FrictionTable
+from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
+from squeezefilm.physics.render.motion.estimator import MotionEstimator
+from squeezefilm.physics.render.motion.sensor import (
     LVDT_10_KHZ,
     TOUCH_PANEL_60_HZ,
     TOUCH_PANEL_240_HZ,
     SensorModel,
     sensor_stream,
 )
-from squeezefilm.render.motion.stroke import MinimumJerkStroke
-from squeezefilm.render.program.lowering import lower
-from squeezefilm.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.render.texture.composition import Composable
-from squeezefilm.render.texture.gates import Periodic, SpeedGate
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.noise import Noise
-from squeezefilm.render.texture.shapes import SineWave, SquareWave
-from squeezefilm.session.loop import rows as column
-from squeezefilm.session.loop.lateness import CLASSES, lateness_class
-from squeezefilm.session.loop.plan import DriveTable, LoopPlan
-from squeezefilm.session.loop.simulated import (
-    SimulatedLoop,
-    SimulatedRun,
-    run_ticks,
-    stream_samples,
-)
+from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
+from squeezefilm.physics.render.program.lowering import lower
+from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.texture.composition import Composable
+from squeezefilm.physics.render.texture.gates import Periodic, SpeedGate
+from squeezefilm.physics.render.texture.levels import Amplitude
+from squeezefilm.physics.render.texture.noise import Noise
+from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 
 LIMIT, PER_VOLT = 1e-6, 1e-8
 TEXTURES: dict[str, Composable] = {

@@ -9,15 +9,20 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from squeezefilm.quantities import FloatArray
-from squeezefilm.render.motion import kernel
-from squeezefilm.render.motion.estimator import (
+from squeezefilm.core.quantities import FloatArray
+from squeezefilm.physics.render.motion import kernel
+from squeezefilm.physics.render.motion.estimator import (
     MotionEstimator,
     MotionModel,
     estimate_motion,
 )
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ, SensorModel, SensorStream, sensor_stream
-from squeezefilm.render.motion.stroke import MinimumJerkStroke
+from squeezefilm.physics.render.motion.sensor import (
+    LVDT_10_KHZ,
+    SensorModel,
+    SensorStream,
+    sensor_stream,
+)
+from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 
 MODELS = {
     "white acceleration": MotionModel(0.05, 0.0, acceleration_deviation=0.0),

@@ -6,12 +6,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.working import SolidMode
-from squeezefilm.plate.surface_shape import surface_shape
-from squeezefilm.plate.working_mode import ModeLine, working_mode
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.solid.working import SolidMode
+from squeezefilm.physics.plate.surface_shape import surface_shape
+from squeezefilm.physics.plate.working_mode import ModeLine, working_mode
 from verification.random_plates import affordable_plate
 
 NEAR = 0.1e-3

@@ -9,10 +9,10 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.display import Display, load_display
-from squeezefilm.perception.observer import Observer, load_observer
-from squeezefilm.perception.percepts import Apparatus
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.display import Display, load_display
+from squeezefilm.physics.perception.observer import Observer, load_observer
+from squeezefilm.physics.perception.percepts import Apparatus
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import SimulatedStudy, simulate_matches

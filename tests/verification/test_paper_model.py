@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.contact.sharing import paper
-from squeezefilm.errors import InputError, UnreachableError
-from squeezefilm.film.closed.limits import contact_mean_pressure, mean_pressure_profile
-from squeezefilm.film.gap import (
+from squeezefilm.core.errors import InputError, UnreachableError
+from squeezefilm.physics.contact.sharing import paper
+from squeezefilm.physics.film.closed.limits import contact_mean_pressure, mean_pressure_profile
+from squeezefilm.physics.film.gap import (
     PaperGap,
     frequency_for_squeeze_number,
     squeeze_number,

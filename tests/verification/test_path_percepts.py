@@ -8,15 +8,15 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
-from squeezefilm.perception.free_hand import free_exploration
-from squeezefilm.perception.observer import load_observer
-from squeezefilm.perception.path_percepts import PathPercept, path_percept
-from squeezefilm.perception.percepts import Apparatus, exploration, percept
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.render.motion.finger_path import FingerPath
-from squeezefilm.texture_file import TextureFile
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.perception.free_hand import free_exploration
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.path_percepts import PathPercept, path_percept
+from squeezefilm.physics.perception.percepts import Apparatus, exploration, percept
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.render.motion.finger_path import FingerPath
+from squeezefilm.physics.texture_files.texture_file import TextureFile
 
 PLATE, OBSERVER = load_display("biet2008-plate"), load_observer()
 FINGER = OBSERVER.median_finger()

@@ -13,23 +13,23 @@ from scipy.linalg import det
 from scipy.optimize import brentq
 from scipy.sparse.linalg import LinearOperator, eigsh, splu, spsolve
 
-from squeezefilm.errors import GeometryError, InputError, UnreachableError
-from squeezefilm.materials import ElasticMaterial
-from squeezefilm.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
-from squeezefilm.plate.layout import DiscPlate
-from squeezefilm.plate.ring.elements import harmonic_system
-from squeezefilm.plate.ring.materials import (
+from squeezefilm.core.errors import GeometryError, InputError, UnreachableError
+from squeezefilm.core.materials import ElasticMaterial
+from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
+from squeezefilm.physics.plate.layout import DiscPlate
+from squeezefilm.physics.plate.ring.elements import harmonic_system
+from squeezefilm.physics.plate.ring.materials import (
     soft_teeth,
     stiff_teeth,
 )
-from squeezefilm.plate.ring.modes import (
+from squeezefilm.physics.plate.ring.modes import (
     annular_admittance,
     annular_modes,
     bending_frequency,
     bending_mode,
     clamped_capacitance,
 )
-from squeezefilm.plate.ring.section import (
+from squeezefilm.physics.plate.ring.section import (
     AnnularSection,
     RingLayer,
     SectorDrive,
@@ -37,7 +37,7 @@ from squeezefilm.plate.ring.section import (
     bonded_disc,
     full_drive,
 )
-from squeezefilm.plate.ring.stator import (
+from squeezefilm.physics.plate.ring.stator import (
     HARD_PZT,
     PHOSPHOR_BRONZE,
     StatorAssumptions,

@@ -6,12 +6,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squeezefilm.errors import OutOfRangeError
-from squeezefilm.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
-from squeezefilm.plate.solid.layers import Resolution
-from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.response import harmonic_response
-from squeezefilm.plate.solid.solve import solve_modes
+from squeezefilm.core.errors import OutOfRangeError
+from squeezefilm.physics.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
+from squeezefilm.physics.plate.solid.layers import Resolution
+from squeezefilm.physics.plate.solid.mesh import plate_model
+from squeezefilm.physics.plate.solid.response import harmonic_response
+from squeezefilm.physics.plate.solid.solve import solve_modes
 
 from .test_plate_solid import monomorph, small
 from .test_solid_elements import FROM_D31, frequencies, monomorph_on_a_uniform_mesh

@@ -16,14 +16,18 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from squeezefilm.blas_threads import one_blas_thread
-from squeezefilm.plate.elements.krylov import modes_near, prolonged
-from squeezefilm.plate.elements.slab_factor import SlabFactor
-from squeezefilm.plate.solid.coarse_modes import coarse_modes
-from squeezefilm.plate.solid.electrode_circuits import open_values
-from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.refined_modes import effective_coupling, extrapolated, refined_modes
-from squeezefilm.plate.solid.symmetry import all_classes
+from squeezefilm.core.blas_threads import one_blas_thread
+from squeezefilm.physics.plate.elements.krylov import modes_near, prolonged
+from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.solid.coarse_modes import coarse_modes
+from squeezefilm.physics.plate.solid.electrode_circuits import open_values
+from squeezefilm.physics.plate.solid.mesh import plate_model
+from squeezefilm.physics.plate.solid.refined_modes import (
+    effective_coupling,
+    extrapolated,
+    refined_modes,
+)
+from squeezefilm.physics.plate.solid.symmetry import all_classes
 
 from .random_plates import (
     REFINED,

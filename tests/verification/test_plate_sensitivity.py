@@ -5,9 +5,10 @@ import dataclasses
 
 import pytest
 
-from squeezefilm.analysis.parameters import with_values
-from squeezefilm.analysis.plate.coarse_shift import CoarseShifts
-from squeezefilm.analysis.plate.sensitivity import (
+from squeezefilm.core.errors import OutOfRangeError
+from squeezefilm.core.materials import ElasticMaterial
+from squeezefilm.design.plate.coarse_shift import CoarseShifts
+from squeezefilm.design.plate.sensitivity import (
     SensitivityTable,
     plate_sensitivity,
     usual_changes,
@@ -15,12 +16,11 @@ from squeezefilm.analysis.plate.sensitivity import (
     with_glue,
     working_point,
 )
-from squeezefilm.display import load_display
-from squeezefilm.errors import OutOfRangeError
-from squeezefilm.materials import ElasticMaterial
-from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.working_mode import working_mode
+from squeezefilm.physics.uncertainty.parameters import with_values
 
 
 def _paper() -> RectangularPlate:

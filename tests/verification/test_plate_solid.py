@@ -10,31 +10,31 @@ import pytest
 from scipy.sparse.linalg import LinearOperator, gmres
 from tests.verification.rims import rim_supports
 
-from squeezefilm.display import load_display
-from squeezefilm.errors import ContradictionError, GeometryError, InputError, OutOfRangeError
-from squeezefilm.materials import ElasticMaterial, Piezoceramic, PiezoConstants
-from squeezefilm.plate.elements.slab_factor import SlabFactor
-from squeezefilm.plate.elements.slabs import Slabs
-from squeezefilm.plate.layout import (
+from squeezefilm.core.errors import ContradictionError, GeometryError, InputError, OutOfRangeError
+from squeezefilm.core.materials import ElasticMaterial, Piezoceramic, PiezoConstants
+from squeezefilm.core.presets import path as preset_path
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slabs import Slabs
+from squeezefilm.physics.plate.layout import (
     CeramicPatch,
     FoamSupport,
     GlueLayer,
     RectangularPlate,
 )
-from squeezefilm.plate.solid.layers import COARSE
-from squeezefilm.plate.solid.mesh import plate_model
-from squeezefilm.plate.solid.modes import tracked
-from squeezefilm.plate.solid.reduced import (
+from squeezefilm.physics.plate.solid.layers import COARSE
+from squeezefilm.physics.plate.solid.mesh import plate_model
+from squeezefilm.physics.plate.solid.modes import tracked
+from squeezefilm.physics.plate.solid.reduced import (
     class_drive,
     harmonic_solution,
     reduced_class,
     resolved_frequency,
     surface_values,
 )
-from squeezefilm.plate.solid.response import SurfaceLoad, harmonic_response
-from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.solid.symmetry import all_classes, drive_classes
-from squeezefilm.presets import path as preset_path
+from squeezefilm.physics.plate.solid.response import SurfaceLoad, harmonic_response
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.symmetry import all_classes, drive_classes
 
 # Raw on a graded grid of a prototype, about 0.03 % above the converged values (PLATES.md); the
 # modal force of the alternating drive in N/(V √kg), zero where symmetry makes it so.
@@ -239,7 +239,7 @@ def test_classes_of_symmetry_together_are_the_whole_plate() -> None:
     shift = (2 * np.pi * 17e3) ** 2
 
     def found(parity: tuple[object, object], count: int) -> list[float]:
-        from squeezefilm.plate.elements.krylov import modes_near
+        from squeezefilm.physics.plate.elements.krylov import modes_near
 
         slabs = Slabs(plate_model(plate, 30e3, COARSE, parity).model)  # type: ignore[arg-type]
         start = np.random.default_rng(0).standard_normal((slabs.unknowns, 4))

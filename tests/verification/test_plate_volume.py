@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from scipy.interpolate import RectBivariateSpline
 
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
-from squeezefilm.materials import ElasticMaterial
-from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
-from squeezefilm.plate.solid.modes import PlateModes
-from squeezefilm.plate.solid.response import HarmonicResponse, harmonic_response
-from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.solid.volume import harmonic_fields, mode_fields, plate_volume
-from squeezefilm.report.plate.vtu import LARGEST_DISPLACEMENT, write_vtu
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import ElasticMaterial
+from squeezefilm.design.plate.report.vtu import LARGEST_DISPLACEMENT, write_vtu
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
+from squeezefilm.physics.plate.solid.modes import PlateModes
+from squeezefilm.physics.plate.solid.response import HarmonicResponse, harmonic_response
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.volume import harmonic_fields, mode_fields, plate_volume
 
 Solved = tuple[PlateModes, HarmonicResponse]
 

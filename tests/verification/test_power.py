@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.information import even_errors, ordered_observer
 from squeezefilm.study.identification.power import DirichletParticipants, distinction, power_curve
 

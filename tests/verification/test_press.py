@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.plate.press import bending_stress, pressed_deflection, pressed_disc_deflection
+from squeezefilm.physics.plate.press import (
+    bending_stress,
+    pressed_deflection,
+    pressed_disc_deflection,
+)
 
 
 @pytest.mark.parametrize("poisson_ratio", [0.0, 0.2, 0.33])

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.render.fidelity.survival import fidelity_table, swing_kept
-from squeezefilm.render.fidelity.trace import friction_trace
-from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.resonator.envelope import (
+from squeezefilm.physics.render.fidelity.survival import fidelity_table, swing_kept
+from squeezefilm.physics.render.fidelity.trace import friction_trace
+from squeezefilm.physics.render.motion.stroke import Stroke
+from squeezefilm.physics.render.resonator.envelope import (
     envelope_bandwidth,
     envelope_response,
     envelope_time_constant,
@@ -16,8 +16,8 @@ from squeezefilm.render.resonator.envelope import (
     sine_swing_kept,
     square_swing_kept,
 )
-from squeezefilm.render.texture.levels import Amplitude
-from squeezefilm.render.texture.shapes import SineWave, SquareWave
+from squeezefilm.physics.render.texture.levels import Amplitude
+from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 
 LOW, HIGH = 0.2e-6, 2e-6
 

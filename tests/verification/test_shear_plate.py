@@ -8,16 +8,21 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
-from squeezefilm.materials import ElasticMaterial
-from squeezefilm.plate.beam.modes import free_beam_mode
-from squeezefilm.plate.elements.nodal_lines import zero_crossings
-from squeezefilm.plate.laminate import plate_laminate
-from squeezefilm.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.plate.shear.modes import MODELLING_ERROR, ShearMode, shear_mode, shear_modes
-from squeezefilm.plate.shear.section import ShearLayout, isotropic_section, shear_layout
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import ElasticMaterial
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.beam.modes import free_beam_mode
+from squeezefilm.physics.plate.elements.nodal_lines import zero_crossings
+from squeezefilm.physics.plate.laminate import plate_laminate
+from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.physics.plate.shear.modes import (
+    MODELLING_ERROR,
+    ShearMode,
+    shear_mode,
+    shear_modes,
+)
+from squeezefilm.physics.plate.shear.section import ShearLayout, isotropic_section, shear_layout
+from squeezefilm.physics.plate.working_mode import working_mode
 
 STEEL = ElasticMaterial("NAFEMS steel", 200e9, 0.3, 8000.0)
 

@@ -9,7 +9,7 @@ from squeezefilm.actuators.skin_stretch import triple_layer
 from squeezefilm.actuators.skin_stretch.bimorph import Bimorph
 from squeezefilm.actuators.skin_stretch.clamp_hold import ClampHold
 from squeezefilm.actuators.skin_stretch.solid_bender import solid_bender
-from squeezefilm.materials import ElasticMaterial, Piezoceramic, PiezoConstants
+from squeezefilm.core.materials import ElasticMaterial, Piezoceramic, PiezoConstants
 
 CONSTANTS = PiezoConstants(
     16.5e-12, -4.78e-12, -8.45e-12, 20.7e-12, 43.5e-12, 42.6e-12,

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from squeezefilm.contact.finger.fingerpad import (
+from squeezefilm.core.quantities import FloatArray
+from squeezefilm.physics.contact.finger.fingerpad import (
     FingerpadDynamics,
     skin_displacement_per_friction,
 )
-from squeezefilm.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
-from squeezefilm.contact.sliding.march import Sliding, slide
-from squeezefilm.quantities import FloatArray
+from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, FrictionProfile, Occlusion
+from squeezefilm.physics.contact.sliding.march import Sliding, slide
 
 STIFFNESS, MASS = 1000.0, 1.5e-4
 CRITICAL = 2 * math.sqrt(STIFFNESS * MASS)

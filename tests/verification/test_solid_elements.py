@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.errors import GeometryError
-from squeezefilm.materials import PiezoConstants, isotropic_stiffness
-from squeezefilm.plate.elements.box_model import BoxModel, Electrode, EndCondition, Medium
-from squeezefilm.plate.elements.krylov import modes_below, modes_near, with_open_electrodes
-from squeezefilm.plate.elements.lobatto import LineMesh
-from squeezefilm.plate.elements.slab_factor import SlabFactor
-from squeezefilm.plate.elements.slabs import Slabs
+from squeezefilm.core.errors import GeometryError
+from squeezefilm.core.materials import PiezoConstants, isotropic_stiffness
+from squeezefilm.physics.plate.elements.box_model import BoxModel, Electrode, EndCondition, Medium
+from squeezefilm.physics.plate.elements.krylov import modes_below, modes_near, with_open_electrodes
+from squeezefilm.physics.plate.elements.lobatto import LineMesh
+from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slabs import Slabs
 
 FREE: tuple[EndCondition, ...] = ("free", "free", "free", "free")
 VACUUM = 8.8541878128e-12

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy import special
 
-from squeezefilm.errors import InputError
-from squeezefilm.plate.exposure import GUIDANCE, exposure_guidance
-from squeezefilm.plate.sound import (
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.plate.exposure import GUIDANCE, exposure_guidance
+from squeezefilm.physics.plate.sound import (
     pressure_level,
     rectangular_surface,
     ring_surface,

@@ -8,17 +8,17 @@ import functools
 import numpy as np
 import pytest
 
-from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.chain.rendered_texture import render_texture
-from squeezefilm.display import load_display
-from squeezefilm.quantities import FloatArray
-from squeezefilm.render.motion.stroke import MinimumJerkStroke
-from squeezefilm.render.program.inverse import LOWEST_SPEED, FrictionInverse
-from squeezefilm.render.program.lowering import lower
-from squeezefilm.render.program.made_for import MadeForSpeed
-from squeezefilm.render.program.renderer import render
-from squeezefilm.render.texture.levels import RelativeFriction
-from squeezefilm.render.texture.shapes import SineWave
+from squeezefilm.core.quantities import FloatArray
+from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.chain.rendered_texture import render_texture
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
+from squeezefilm.physics.render.program.inverse import LOWEST_SPEED, FrictionInverse
+from squeezefilm.physics.render.program.lowering import lower
+from squeezefilm.physics.render.program.made_for import MadeForSpeed
+from squeezefilm.physics.render.program.renderer import render
+from squeezefilm.physics.render.texture.levels import RelativeFriction
+from squeezefilm.physics.render.texture.shapes import SineWave
 
 STATOR = load_display("biet2008-stator")
 # To a peak of 188 mm/s: from creeping to more than twice the speed of the prediction.

@@ -11,15 +11,15 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.contact.sliding.dry_friction import (
+from squeezefilm.core.quantities import FloatArray
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.sliding.dry_friction import (
     DryFriction,
     FrictionProfile,
     Occlusion,
     SpeedFriction,
 )
-from squeezefilm.contact.sliding.march import Sliding, slide
-from squeezefilm.quantities import FloatArray
+from squeezefilm.physics.contact.sliding.march import Sliding, slide
 
 PAD = FingerpadDynamics()
 RATE = 19_200.0

@@ -12,13 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import RegularGridInterpolator
 from tests.verification.second_order import carried
 
-from squeezefilm.chain.prediction import predict
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.display import load_display
-from squeezefilm.plate.working_mode import resonance_factor
-from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.render.resonator.envelope import envelope_time_constant
-from squeezefilm.twin.envelope_step import (
+from squeezefilm.instruments.twin.envelope_step import (
     Electrical,
     Fingers,
     Limits,
@@ -26,11 +20,17 @@ from squeezefilm.twin.envelope_step import (
     envelope_step,
     voltage_given,
 )
-from squeezefilm.twin.hand import Hand
-from squeezefilm.twin.plant import Plant
-from squeezefilm.twin.plant_kernel import COLUMNS
-from squeezefilm.twin.settings import Amplifier, PlateDrift, TwinSettings
-from squeezefilm.twin.working_point import WorkingPoint, working_point
+from squeezefilm.instruments.twin.hand import Hand
+from squeezefilm.instruments.twin.plant import Plant
+from squeezefilm.instruments.twin.plant_kernel import COLUMNS
+from squeezefilm.instruments.twin.settings import Amplifier, PlateDrift, TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.working_mode import resonance_factor
+from squeezefilm.physics.render.motion.stroke import Stroke
+from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
 
 STEADY = PlateDrift(temperature_coefficient=0.0)
 CALM = TwinSettings(drift=STEADY, truth_period=100e-6)

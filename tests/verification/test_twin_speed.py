@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 from scipy.interpolate import RegularGridInterpolator
 
-from squeezefilm.chain.friction import TABLE_SPEEDS, friction_law
-from squeezefilm.chain.prediction import predict
-from squeezefilm.contact.sliding.dry_friction import DryFriction, SpeedFriction
-from squeezefilm.contact.sliding.march import Sliding, slide
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
-from squeezefilm.render.motion.finger_path import FingerPath
-from squeezefilm.render.motion.stroke import Stroke
-from squeezefilm.twin import plant_kernel as k
-from squeezefilm.twin.hand import Hand, hand_from
-from squeezefilm.twin.plant import Plant
-from squeezefilm.twin.settings import PlateDrift, TwinSettings
-from squeezefilm.twin.working_point import WorkingPoint, working_point
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.twin import plant_kernel as k
+from squeezefilm.instruments.twin.hand import Hand, hand_from
+from squeezefilm.instruments.twin.plant import Plant
+from squeezefilm.instruments.twin.settings import PlateDrift, TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
+from squeezefilm.physics.chain.friction import TABLE_SPEEDS, friction_law
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
+from squeezefilm.physics.contact.sliding.march import Sliding, slide
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.render.motion.finger_path import FingerPath
+from squeezefilm.physics.render.motion.stroke import Stroke
 
 CALM = TwinSettings(
     drift=PlateDrift(temperature_coefficient=0.0), tick=50e-6, steps_per_tick=1, truth_period=50e-6

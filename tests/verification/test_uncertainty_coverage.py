@@ -9,15 +9,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.drawn import evaluate
-from squeezefilm.analysis.draws import Mixture, as_drawn, outcome_of
-from squeezefilm.analysis.free_amplitude import FreeAmplitude
-from squeezefilm.analysis.intervals import quantiles
-from squeezefilm.analysis.uncertainty import POINTS, SAMPLES, sobol_points
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import load_display
-from squeezefilm.errors import SqueezefilmError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.uncertainty.drawn import evaluate
+from squeezefilm.physics.uncertainty.draws import Mixture, as_drawn, outcome_of
+from squeezefilm.physics.uncertainty.free_amplitude import FreeAmplitude
+from squeezefilm.physics.uncertainty.intervals import quantiles
+from squeezefilm.physics.uncertainty.uncertainty import POINTS, SAMPLES, sobol_points
 
 
 def _mixture(name: str, force: float) -> Mixture:

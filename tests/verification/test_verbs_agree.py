@@ -10,25 +10,25 @@ import numpy as np
 import pytest
 from tests.verification.random_plates import random_glass, random_plate
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.analyze import Analysis, analyze
-from squeezefilm.analysis.plate.command import PlateAnalysis, solve_plate
-from squeezefilm.analysis.plate.modes import list_modes
-from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.chain.wanted_voltage import voltage_for_friction
-from squeezefilm.display import Display, load_display
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.design.analysis.analyze import Analysis, analyze
+from squeezefilm.design.analysis.report.rows import friction_rows, vibration_rows
+from squeezefilm.design.plate.command import PlateAnalysis, solve_plate
+from squeezefilm.design.plate.modes import list_modes
+from squeezefilm.design.search.criteria import numbers_of_prediction, numbers_of_solved
+from squeezefilm.design.search.requirements import load_requirements
+from squeezefilm.design.sweep.answers import numbers_of
+from squeezefilm.design.sweep.points import Point, answer_of
 from squeezefilm.lab.designing.form import preset_text
 from squeezefilm.lab.designing.numbers import WorkingPoint, designed, predicted
-from squeezefilm.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.plate.electronics import load_of_mode
-from squeezefilm.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
-from squeezefilm.plate.working_mode import CROWDED, working_mode
-from squeezefilm.report.display.rows import friction_rows, vibration_rows
-from squeezefilm.search.answers import numbers_of
-from squeezefilm.search.design.criteria import numbers_of_prediction, numbers_of_solved
-from squeezefilm.search.design.requirements import load_requirements
-from squeezefilm.search.points import Point, answer_of
+from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.chain.wanted_voltage import voltage_for_friction
+from squeezefilm.physics.display import Display, load_display
+from squeezefilm.physics.plate.electronics import load_of_mode
+from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
+from squeezefilm.physics.plate.working_mode import CROWDED, working_mode
 
 GLASS = ElasticMaterial("soda-lime glass", 72e9, 0.23, 2500)
 CERAMIC = Piezoceramic("PZT", 61e9, 0.31, 21e9, 7750, -171e-12, 1700, 75)

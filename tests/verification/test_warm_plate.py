@@ -6,12 +6,12 @@ from functools import lru_cache
 
 import pytest
 
-from squeezefilm.display import load_display
-from squeezefilm.plate.heat.thermal import Thermal
-from squeezefilm.plate.heat.warming import Warming, warming_of_mode
-from squeezefilm.twin.plant import Plant
-from squeezefilm.twin.settings import Amplifier, PlateDrift, TwinSettings
-from squeezefilm.twin.working_point import WorkingPoint, working_point
+from squeezefilm.instruments.twin.plant import Plant
+from squeezefilm.instruments.twin.settings import Amplifier, PlateDrift, TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.heat.thermal import Thermal
+from squeezefilm.physics.plate.heat.warming import Warming, warming_of_mode
 
 # A plate that is warm within seconds: what it settles to does not depend on its heat capacity.
 QUICK = 1.0

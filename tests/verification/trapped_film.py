@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from squeezefilm.quantities import FloatLike
+from squeezefilm.core.quantities import FloatLike
 
 
 def trapped_load(amplitude_ratio: FloatLike, n: float = 1.0) -> FloatLike:

@@ -12,13 +12,13 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from squeezefilm import presets
-from squeezefilm import quantities as si
-from squeezefilm.config.load import load_text
-from squeezefilm.config.scan import require_quick_toml
-from squeezefilm.errors import ConfigError, SqueezefilmError
-from squeezefilm.regular_file import read_toml_text
-from squeezefilm.results import Result
+from squeezefilm.core import presets
+from squeezefilm.core import quantities as si
+from squeezefilm.core.config.load import load_text
+from squeezefilm.core.config.scan import require_quick_toml
+from squeezefilm.core.errors import ConfigError, SqueezefilmError
+from squeezefilm.core.regular_file import read_toml_text
+from squeezefilm.core.results import Result
 
 KINDS: dict[str, tuple[str, str]] = {
     "motor": ("squeezefilm.actuators.motor.description", "MotorDescription"),
@@ -28,7 +28,7 @@ KINDS: dict[str, tuple[str, str]] = {
     ),
 }
 """By the table that a file has: the module and the dataclass that it is read into. What `analyze`
-says of a kind is in modules of this name, see `report.actuators.dispatch`."""
+says of a kind is in modules of this name, see `actuators.report.dispatch`."""
 
 
 def is_actuator(name_or_path: str | Path) -> bool:

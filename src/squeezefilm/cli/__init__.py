@@ -23,7 +23,7 @@ from squeezefilm.cli import felt  # noqa: F401 # isort: skip
 from squeezefilm.cli import study_file  # noqa: F401 # isort: skip
 from squeezefilm.cli import cache  # noqa: F401 # isort: skip
 from squeezefilm.cli.app import app
-from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
+from squeezefilm.core.errors import SqueezefilmError, SqueezefilmWarning
 
 # What a shell expects of a program that Ctrl-C ended.
 _INTERRUPTED = 130

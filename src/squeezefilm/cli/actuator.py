@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, get_args, get_type_hints
 
 from typer.models import OptionInfo
 
+from squeezefilm.actuators.report import dispatch
 from squeezefilm.cli.app import answer, read_option, working
-from squeezefilm.errors import InputError
-from squeezefilm.report.actuators import dispatch
-from squeezefilm.report.kit.folder import require_folder
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.kit.folder import require_folder
 
 if TYPE_CHECKING:
     from squeezefilm.cli.describe import AnalyzeOptions

@@ -14,11 +14,11 @@ import typer
 from typer.models import OptionInfo
 
 from squeezefilm import __version__
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 
 if TYPE_CHECKING:
-    from squeezefilm.display import Display
-    from squeezefilm.progress import SayProgress
+    from squeezefilm.core.progress import SayProgress
+    from squeezefilm.physics.display import Display
 
 app = typer.Typer(
     name="squeezefilm",
@@ -184,7 +184,7 @@ def _read(value: Any, name: str, marks: tuple[Any, ...]) -> Any:
     if not units or value is None:
         return value
 
-    from squeezefilm.quantities import Unit, parse_quantity
+    from squeezefilm.core.quantities import Unit, parse_quantity
 
     # Where an option has another name than its argument, typer holds it as a default.
     other = [mark.default for mark in marks if isinstance(mark, OptionInfo)] or [None]
@@ -197,7 +197,7 @@ def _read(value: Any, name: str, marks: tuple[Any, ...]) -> Any:
 
 def working(quiet: bool) -> AbstractContextManager[SayProgress]:
     """Where a verb tells its steps: at a terminal always, elsewhere unless it is to be quiet."""
-    from squeezefilm.report.kit import terminal
+    from squeezefilm.core.kit import terminal
 
     return terminal.progress(enabled=sys.stderr.isatty() or not quiet)
 
@@ -229,7 +229,7 @@ def to_be_solved(
     go without) is told on standard error; `quiet` as in `working`. A vibration of a given
     `amplitude` needs no voltage. Raises what `foreseen` raises.
     """
-    from squeezefilm.plausibility.foreseen import foreseen
+    from squeezefilm.physics.plausibility.foreseen import foreseen
 
     volts = read_option(voltage, "voltage", "V") if amplitude is None else 0.0
     seen = foreseen(target, volts)

@@ -32,10 +32,10 @@ def calibrate(
 ) -> None:
     """Learn a display's uncertain values from all recordings of a folder, and write the display
     that they make of it. A few minutes for eight values; stopped, it goes on where it was."""
+    from squeezefilm.core.kit.folder import require_folder
     from squeezefilm.measure.calibration.folder import calibrate_display
-    from squeezefilm.report.kit.folder import require_folder
-    from squeezefilm.report.measured.calibrated import show_calibration
-    from squeezefilm.report.measured.calibration_page import DISPLAY_FILE, write_calibration
+    from squeezefilm.measure.report.calibrated import show_calibration
+    from squeezefilm.measure.report.calibration_page import DISPLAY_FILE, write_calibration
 
     folder_too = out.suffix != ".toml"
     if folder_too:
@@ -67,9 +67,9 @@ def predict_unseen(
     as_json: AsJson = False,
 ) -> None:
     """Write what will be measured, with its interval and a hash, before it is."""
+    from squeezefilm.core.results import to_json
     from squeezefilm.measure.calibration.questions import predict_measurement, question
-    from squeezefilm.report.measured.calibrated import prediction_lines
-    from squeezefilm.results import to_json
+    from squeezefilm.measure.report.calibrated import prediction_lines
 
     for one in ask:
         question(one)  # refused before the display is looked at
@@ -97,10 +97,10 @@ def score(
 ) -> None:
     """Compare a prediction with what was then measured: error, inside its interval or not, and the
     logarithm of its density there."""
-    from squeezefilm.display import load_display
+    from squeezefilm.core.results import to_json
     from squeezefilm.measure.calibration.blind import keep_scores
     from squeezefilm.measure.calibration.folder import score_prediction
-    from squeezefilm.results import to_json
+    from squeezefilm.physics.display import load_display
 
     described = load_display(display)
     with working(as_json) as step:

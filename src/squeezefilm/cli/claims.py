@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from squeezefilm.cli.app import AsJson, answer, app, print_json, working, written_to
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 
 
 @app.command()
@@ -38,11 +38,11 @@ def reproduce(
     if data is not None:
         _measured_curves(data, out, as_json, write_docs)
         return
-    from squeezefilm.analysis.claims.command import reproduce as run
-    from squeezefilm.measure.prototype.explanations import prototype_study
-    from squeezefilm.report.claims.page import write_reproduction, write_validation_docs
-    from squeezefilm.report.claims.terminal import show_claims
-    from squeezefilm.report.kit.docs import checkout
+    from squeezefilm.core.kit.docs import checkout
+    from squeezefilm.validation.command import reproduce as run
+    from squeezefilm.validation.prototype.explanations import prototype_study
+    from squeezefilm.validation.report.page import write_reproduction, write_validation_docs
+    from squeezefilm.validation.report.terminal import show_claims
 
     if write_docs:
         # Minutes of work lie before the writing.
@@ -71,10 +71,10 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
     published = str(data) == "published" and not data.exists()
     if write_docs and not published:
         raise InputError("--write-docs writes a page of --data published, of no other data")
-    from squeezefilm import presets
+    from squeezefilm.core import presets
+    from squeezefilm.core.kit.docs import checkout
     from squeezefilm.measure.fits.friction.friction_folder import compare_folder
-    from squeezefilm.report.kit.docs import checkout
-    from squeezefilm.report.measured.curves import show_comparisons, write_comparisons
+    from squeezefilm.measure.report.curves import show_comparisons, write_comparisons
 
     if write_docs:
         # Minutes of work lie before the writing.
@@ -83,7 +83,7 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
         compared = compare_folder(presets.friction_folder() if published else data, step)
         written = None if out is None else write_comparisons(compared, out)
     if write_docs:
-        from squeezefilm.report.measured.friction_docs import write_friction_docs
+        from squeezefilm.measure.report.friction_docs import write_friction_docs
 
         typer.echo(f"wrote {write_friction_docs(compared)}", err=True)
     if as_json:

@@ -8,7 +8,6 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     Amplitude,
     AsJson,
@@ -34,13 +33,14 @@ from squeezefilm.cli.app import (
     working,
     written_to,
 )
-from squeezefilm.errors import InputError
+from squeezefilm.core.arguments import called_with
+from squeezefilm.core.errors import InputError
 
 
 @app.command()
 def presets(as_json: AsJson = False) -> None:
     """List the displays, motors and skin-stretch arrays that come with the package."""
-    from squeezefilm.report.kit.described import preset_list, show_presets
+    from squeezefilm.cli.described import preset_list, show_presets
 
     answer(as_json, preset_list(), show_presets)
 
@@ -49,7 +49,7 @@ def presets(as_json: AsJson = False) -> None:
 def show(target: Target, as_json: AsJson = False) -> None:
     """Show every value of a display, motor or skin-stretch array, with its source, what is assumed
     and what has no source."""
-    from squeezefilm.report.kit.described import display_values, show_values
+    from squeezefilm.cli.described import display_values, show_values
 
     answer(as_json, display_values(target), show_values)
 
@@ -62,7 +62,7 @@ def materials(
     as_json: AsJson = False,
 ) -> None:
     """List the materials that a display's file may name, with their sources."""
-    from squeezefilm.report.kit.described import material_list, show_materials
+    from squeezefilm.cli.described import material_list, show_materials
 
     answer(as_json, material_list(name), show_materials)
 
@@ -77,8 +77,8 @@ def new(
     force: Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")] = False,
 ) -> None:
     """Write a commented TOML file of your own, starting from a preset."""
-    from squeezefilm.display import new_display_file
-    from squeezefilm.presets import display_names
+    from squeezefilm.core.presets import display_names
+    from squeezefilm.physics.display import new_display_file
 
     if source is None:
         raise InputError(
@@ -156,12 +156,12 @@ def analyze(asked: AnalyzeOptions) -> None:
     skin-stretch array's file is analysed as such; of the options it takes --voltage, --out and
     --json."""
     from squeezefilm.actuators.described import is_actuator
-    from squeezefilm.loading import loading
+    from squeezefilm.core.loading import loading
 
     if is_actuator(asked.target):
         import_module("squeezefilm.cli.actuator").analyze_actuator(asked)
         return
-    from squeezefilm.blas_threads import one_blas_thread
+    from squeezefilm.core.blas_threads import one_blas_thread
 
     with loading():
         display = to_be_solved(
@@ -173,9 +173,13 @@ def analyze(asked: AnalyzeOptions) -> None:
         )
     with one_blas_thread(), working(asked.as_json) as step:
         with loading():
-            from squeezefilm.analysis.analyze import analyze as run
+            from squeezefilm.design.analysis.analyze import analyze as run
+            from squeezefilm.design.analysis.report.terminal import (
+                SHOWN,
+                SHOWN_WITH_ALL,
+                show_analysis,
+            )
             from squeezefilm.measure.fits.friction.person import with_finger
-            from squeezefilm.report.display.terminal import SHOWN, SHOWN_WITH_ALL, show_analysis
         display = with_finger(display, asked.finger)
         options = given(asked, leave="target finger out as_json")
         with_shifts = asked.sensitivities is not None
@@ -188,7 +192,7 @@ def analyze(asked: AnalyzeOptions) -> None:
             result.compute(shown, step)
         if asked.out is not None:
             with loading():
-                from squeezefilm.report.display.page import write_analysis
+                from squeezefilm.design.analysis.report.page import write_analysis
             written = write_analysis(result, asked.out, progress=step)
     show = partial(show_analysis, whole=asked.whole, sensitivities=with_shifts)
     answer(asked.as_json, result, show, report=written)
@@ -218,9 +222,9 @@ class FrictionOptions(PointOptions):
 @called_with(FrictionOptions)
 def friction(asked: FrictionOptions) -> None:
     """The friction a finger meets, how the load is shared, and how sure all of it is."""
-    from squeezefilm.analysis.friction.command import analyze_friction
+    from squeezefilm.design.friction.command import analyze_friction
+    from squeezefilm.design.friction.report.terminal import show_friction
     from squeezefilm.measure.fits.friction.person import with_finger
-    from squeezefilm.report.friction.terminal import show_friction
 
     display = to_be_solved(
         asked.target, asked.voltage, amplitude=asked.vibration_amplitude, quiet=asked.as_json
@@ -232,7 +236,7 @@ def friction(asked: FrictionOptions) -> None:
         )
         written = None
         if asked.out is not None:
-            from squeezefilm.report.friction.figures import write_friction
+            from squeezefilm.design.friction.report.figures import write_friction
 
             written = write_friction(result, asked.out)
     answer(asked.as_json, result, show_friction, figures=written)
@@ -277,14 +281,14 @@ class FilmOptions:
 @called_with(FilmOptions)
 def film(asked: FilmOptions) -> None:
     """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
-    from squeezefilm.analysis.film.command import FilmRequest, solve_film, sweep_film
-    from squeezefilm.report.plate.terminal import show_film
+    from squeezefilm.design.film.command import FilmRequest, solve_film, sweep_film
+    from squeezefilm.design.plate.report.terminal import show_film
 
     of_film = given(asked, leave="sweep out as_json")
     squeeze_number, excursion = of_film.pop("squeeze_number"), of_film.pop("excursion")
     with working(asked.as_json) as step:
         if asked.sweep:
-            from squeezefilm.report.film_map import write_film_map
+            from squeezefilm.design.film.report.film_map import write_film_map
 
             if asked.out is None:
                 raise InputError("--sweep draws a map into a folder; say which with --out DIR")
@@ -327,13 +331,13 @@ class PlateOptions:
 @called_with(PlateOptions)
 def plate(asked: PlateOptions) -> None:
     """Solve a plate, disc or stator in three dimensions: modes, amplitude per volt, admittance."""
-    from squeezefilm.analysis.plate.command import (
+    from squeezefilm.design.plate.command import (
         PlateAnalysis,
         parse_band,
         parse_mode,
         solve_plate,
     )
-    from squeezefilm.report.plate.terminal import show_plate
+    from squeezefilm.design.plate.report.terminal import show_plate
 
     display, out, vtu = to_be_solved(asked.target, quiet=asked.as_json), asked.out, asked.vtu
     budget = read_option(asked.budget, "budget", "s")
@@ -348,7 +352,7 @@ def plate(asked: PlateOptions) -> None:
         written = []
         result = solve_plate(display, mode=mode, band=band, progress=step, budget=budget)
         if out is not None or vtu is not None:
-            from squeezefilm.report.plate.plate import write_mode, write_plate
+            from squeezefilm.design.plate.report.plate import write_mode, write_plate
 
             step("figures")
             written += [] if out is None else [write_plate(result, out)]
@@ -384,10 +388,10 @@ class ModesOptions:
 @called_with(ModesOptions)
 def modes(asked: ModesOptions) -> None:
     """List the modes that the drive can move, in seconds, and suggest which to work in."""
-    from squeezefilm.analysis.plate.command import parse_band
-    from squeezefilm.analysis.plate.modes import DEFAULT_BAND, list_modes
-    from squeezefilm.display import load_display
-    from squeezefilm.report.plate.modes import show_mode_list
+    from squeezefilm.design.plate.command import parse_band
+    from squeezefilm.design.plate.modes import DEFAULT_BAND, list_modes
+    from squeezefilm.design.plate.report.modes import show_mode_list
+    from squeezefilm.physics.display import load_display
 
     display = load_display(asked.target)
     band = DEFAULT_BAND if asked.band is None else parse_band(asked.band)
@@ -396,7 +400,7 @@ def modes(asked: ModesOptions) -> None:
         result = list_modes(display, band, **options, progress=step)
         written = None
         if asked.out is not None:
-            from squeezefilm.report.plate.modes import write_modes
+            from squeezefilm.design.plate.report.modes import write_modes
 
             step("figures")
             written = write_modes(result, asked.out)

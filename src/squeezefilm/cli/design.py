@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     AsJson,
     Finger,
@@ -18,6 +17,7 @@ from squeezefilm.cli.app import (
     working,
     written_to,
 )
+from squeezefilm.core.arguments import called_with
 
 
 @dataclass(frozen=True)
@@ -77,14 +77,14 @@ def design(asked: DesignOptions) -> None:
     import os
     from dataclasses import replace
 
-    from squeezefilm import presets
     from squeezefilm.cli.fabrication import written_for
-    from squeezefilm.display import load_display
-    from squeezefilm.report.design.page import write_design
-    from squeezefilm.report.design.terminal import show_design, show_requirements
-    from squeezefilm.report.kit.folder import require_folder
-    from squeezefilm.search.design.requirements import load_requirements
-    from squeezefilm.search.design.run import SearchRequest, search_until_stopped
+    from squeezefilm.core import presets
+    from squeezefilm.core.kit.folder import require_folder
+    from squeezefilm.design.search.report.page import write_design
+    from squeezefilm.design.search.report.terminal import show_design, show_requirements
+    from squeezefilm.design.search.requirements import load_requirements
+    from squeezefilm.design.search.run import SearchRequest, search_until_stopped
+    from squeezefilm.physics.display import load_display
 
     if asked.requirements is None:
         if asked.as_json:

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from squeezefilm.cli.app import AsJson, Target, answer, app, to_be_solved, working, written_to
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 
 if TYPE_CHECKING:
-    from squeezefilm.display import Display
-    from squeezefilm.measure.planned.fabricate import Fabrication
-    from squeezefilm.progress import SayProgress
+    from squeezefilm.core.progress import SayProgress
+    from squeezefilm.design.fabrication.fabricate import Fabrication
+    from squeezefilm.physics.display import Display
 
 
 @app.command()
@@ -32,7 +32,7 @@ def fabricate(
     SVG), bodies (STL), electrodes and poling, bill of materials, drive electronics, and a test plan
     with what is expected."""
     from squeezefilm.actuators.described import is_actuator
-    from squeezefilm.loading import loading
+    from squeezefilm.core.loading import loading
 
     if is_actuator(target):
         raise InputError(
@@ -40,8 +40,8 @@ def fabricate(
             "squeezefilm presets lists those that come with the package"
         )
     with loading():
-        from squeezefilm.report.fabrication.page import show_fabrication
-        from squeezefilm.report.kit.folder import require_folder
+        from squeezefilm.core.kit.folder import require_folder
+        from squeezefilm.design.fabrication.report.page import show_fabrication
     folder = require_folder(out)
     display = to_be_solved(target, quiet=as_json)
     with working(as_json) as step:
@@ -53,9 +53,9 @@ def written_for(
     display: Display, folder: Path, *, quick: bool, step: SayProgress
 ) -> tuple[Fabrication, Path]:
     """What it takes to build a display, and the page of it in a folder."""
-    from squeezefilm.measure.planned.fabricate import fabricate as run
-    from squeezefilm.measure.planned.fabricate import sealed_already
-    from squeezefilm.report.fabrication.page import PREDICTION, write_fabrication
+    from squeezefilm.design.fabrication.fabricate import fabricate as run
+    from squeezefilm.design.fabrication.fabricate import sealed_already
+    from squeezefilm.design.fabrication.report.page import PREDICTION, write_fabrication
 
     blind = None if quick else sealed_already(folder / PREDICTION, display)
     made = run(display, intervals=not quick, blind=blind, progress=step)

@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import AsJson, In, print_json, read_option, working, written_to
 from squeezefilm.cli.study import Observer, study
+from squeezefilm.core.arguments import called_with
 
 
 @dataclass(frozen=True)
@@ -51,17 +51,17 @@ class FeltOptions:
 @called_with(FeltOptions)
 def felt(asked: FeltOptions) -> None:
     """Say what a finger's real path would have felt like, by an observer's senses; simulated."""
-    from squeezefilm.display import load_display
-    from squeezefilm.errors import InputError
-    from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report.kit.style import png
-    from squeezefilm.report.study.felt_path import show_all
-    from squeezefilm.report.subjects import plot
-    from squeezefilm.results import write_whole
+    from squeezefilm.core.errors import InputError
+    from squeezefilm.core.kit.style import png
+    from squeezefilm.core.results import write_whole
+    from squeezefilm.physics.display import load_display
+    from squeezefilm.physics.perception.observer import load_observer
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.record.store import StudyStore
+    from squeezefilm.study.report.felt_path import show_all
     from squeezefilm.study.simulated.felt_paths import FeltPath, felt_on_path
     from squeezefilm.study.simulated.felt_trials import felt_in_trial
+    from squeezefilm.subjects import plot
 
     people = load_observer(asked.observer)
     with working(asked.as_json) as step:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from squeezefilm.cli.app import AsJson, answer, app, print_json, working, written_to
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 
 if TYPE_CHECKING:
     from squeezefilm.measure.fits.by_kind import Fit
@@ -60,8 +60,8 @@ def check(
         check_recording,
         write_description,
     )
-    from squeezefilm.report.measured.page import write_checks
-    from squeezefilm.report.measured.terminal import show_folder
+    from squeezefilm.measure.report.page import write_checks
+    from squeezefilm.measure.report.terminal import show_folder
 
     if file.is_dir():
         if described is not None or write:
@@ -94,8 +94,8 @@ def fit(
     adequate. Exit code 1 if it is not."""
     from squeezefilm.measure.fits.by_kind import response_fit
     from squeezefilm.measure.recordings.read import check_recording
-    from squeezefilm.report.measured.page import fit_summary, write_fit
-    from squeezefilm.report.measured.terminal import show_fit
+    from squeezefilm.measure.report.page import fit_summary, write_fit
+    from squeezefilm.measure.report.terminal import show_fit
 
     with working(as_json) as step:
         found = check_recording(file, described)
@@ -115,8 +115,8 @@ def fit(
 
 def _fitted(found: RecordingCheck, display: str | None) -> Fit:
     """The fit of what was read; where it is refused, what is doubtful of the recording is said."""
-    from squeezefilm.display import load_display
     from squeezefilm.measure.fits.by_kind import fit_recording
+    from squeezefilm.physics.display import load_display
 
     plate = None if display is None else load_display(display)
     try:

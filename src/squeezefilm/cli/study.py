@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     AsJson,
     Finger,
@@ -21,6 +20,7 @@ from squeezefilm.cli.app import (
     working,
     written_to,
 )
+from squeezefilm.core.arguments import called_with
 
 
 @app.command()
@@ -42,7 +42,7 @@ def lab(
     ] = None,
 ) -> None:
     """Open the lab, a page on this computer: design, feel, drive and study."""
-    from squeezefilm.errors import optional
+    from squeezefilm.core.errors import optional
 
     with optional("lab", "the lab"):
         from squeezefilm.lab.serve import serve
@@ -87,10 +87,10 @@ def plan(
     as_json: AsJson = False,
 ) -> None:
     """Show a design: what is presented, how often, in which orders, and how long it takes."""
-    from squeezefilm.report.study.terminal import show_plan
     from squeezefilm.study.design.plan import plan_study
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.record.orders import write_orders
+    from squeezefilm.study.report.terminal import show_plan
 
     found = plan_study(load_design(design), participants, seed)
     written = [] if orders is None else write_orders(found, orders)
@@ -102,7 +102,7 @@ def plan(
 @study.command()
 def presets(as_json: AsJson = False) -> None:
     """List the studies that come with the package."""
-    from squeezefilm.presets import study_names
+    from squeezefilm.core.presets import study_names
     from squeezefilm.study.design.study_design import load_design
 
     listing = [{"name": name, "title": load_design(name).title} for name in study_names()]
@@ -115,8 +115,8 @@ def presets(as_json: AsJson = False) -> None:
 
 def drawing_by_two(out: Path | None) -> AbstractContextManager[object]:
     """A second process that draws its share of the pages in `out`; none where nothing is drawn."""
-    from squeezefilm.report.study.pictures import load_drawing
-    from squeezefilm.second_process import second_process
+    from squeezefilm.core.second_process import second_process
+    from squeezefilm.study.report.pictures import load_drawing
 
     return nullcontext() if out is None else second_process(load_drawing)
 
@@ -136,9 +136,9 @@ def simulate(
     as_json: AsJson = False,
 ) -> None:
     """Let simulated participants do a study; every number is simulated."""
-    from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report.study.terminal_analysis import show_simulated
+    from squeezefilm.physics.perception.observer import load_observer
     from squeezefilm.study.design.study_design import load_design
+    from squeezefilm.study.report.terminal_analysis import show_simulated
     from squeezefilm.study.simulated.answers import simulate_participants
     from squeezefilm.study.simulated.chain_tables import chain_tables
 
@@ -152,7 +152,7 @@ def simulate(
         found = simulate_participants(planned, people, participants, seed, tables, step)
         written = None
         if out is not None:
-            from squeezefilm.report.study.simulated_page import write_simulated
+            from squeezefilm.study.report.simulated_page import write_simulated
 
             written = write_simulated(found, out, step)
     answer(as_json, found, show_simulated, page=written)
@@ -199,16 +199,16 @@ class PowerOptions:
 def power(asked: PowerOptions) -> None:
     """How many people are needed to tell two stimuli or two displays apart, or to know a threshold,
     exponent or share of right answers as precisely as asked; by simulated participants."""
-    from squeezefilm.errors import InputError
-    from squeezefilm.perception.observer import load_observer
-    from squeezefilm.report.kit.style import png
-    from squeezefilm.report.study.terminal_analysis import show_power, show_precision
-    from squeezefilm.report.subjects import plot
-    from squeezefilm.results import write_whole
+    from squeezefilm.core.errors import InputError
+    from squeezefilm.core.kit.style import png
+    from squeezefilm.core.results import write_whole
+    from squeezefilm.physics.perception.observer import load_observer
     from squeezefilm.study.design.study_design import load_design
+    from squeezefilm.study.report.terminal_analysis import show_power, show_precision
     from squeezefilm.study.simulated.planned_contrast import planned_contrast
     from squeezefilm.study.simulated.planned_power import planned_power
     from squeezefilm.study.simulated.planned_precision import planned_precision
+    from squeezefilm.subjects import plot
 
     design, people = load_design(asked.design), load_observer(asked.observer)
     options = given(asked, leave="design observer first second against out as_json")
@@ -253,10 +253,10 @@ def gratings(
 ) -> None:
     """Write what a workshop needs to make the real gratings that a study compares with: drawing,
     DXF, widths with tolerances, and what the design calls period."""
-    from squeezefilm.report.study.boards import HEAD, board_rows, write_boards
-    from squeezefilm.report.study.terminal import show_boards
     from squeezefilm.study.design.boards import boards
     from squeezefilm.study.design.study_design import load_design
+    from squeezefilm.study.report.boards import HEAD, board_rows, write_boards
+    from squeezefilm.study.report.terminal import show_boards
 
     found = load_design(design)
     within = read_option(tolerance, "tolerance", "m")
@@ -278,7 +278,7 @@ def rehearse(
 ) -> None:
     """Let simulated participants do every trial of a study's file, to try analysis and exports;
     stopped or killed, it goes on where it stopped when it is asked again."""
-    from squeezefilm.perception.observer import load_observer
+    from squeezefilm.physics.perception.observer import load_observer
     from squeezefilm.study.conduct.rehearsal import rehearse as run_through
     from squeezefilm.study.conduct.terminal_run import open_study
 
@@ -341,8 +341,8 @@ class RunOptions:
 @called_with(RunOptions)
 def run(asked: RunOptions) -> None:
     """Run a session at the terminal; stop with Ctrl-C, and go on later where it stopped."""
-    from squeezefilm.report.study.session import run_study
-    from squeezefilm.report.study.terminal import ask_acknowledgement
+    from squeezefilm.study.report.session import run_study
+    from squeezefilm.study.report.terminal import ask_acknowledgement
 
     ended = run_study(
         asked.design,

@@ -12,8 +12,8 @@ from squeezefilm.cli.study import Store, drawing_by_two, study
 @study.command()
 def status(store: Store, as_json: AsJson = False) -> None:
     """Show who is enrolled and how far they are."""
-    from squeezefilm.report.study.terminal import show_status
     from squeezefilm.study.record.store import StudyStore
+    from squeezefilm.study.report.terminal import show_status
 
     with StudyStore.open(store) as found:
         if as_json:
@@ -45,9 +45,9 @@ def merge(
     others: Annotated[list[Path], typer.Argument(metavar="OTHER.sqlite …", help="To add.")],
 ) -> None:
     """Add other stations' files to this one, made if not there; merging again changes nothing."""
-    from squeezefilm.report.study.terminal import show_merge
     from squeezefilm.study.record.merge import merge as add
     from squeezefilm.study.record.merge import open_or_begin
+    from squeezefilm.study.report.terminal import show_merge
 
     with open_or_begin(store, others[0]) as found:
         for other in others:
@@ -70,9 +70,9 @@ def delete_participant(
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
 ) -> None:
     """Take a participant out of the file, its traces, backups and exports, without a trace."""
-    from squeezefilm.report.study.terminal import show_deletion
     from squeezefilm.study.record.deletion import delete_participant as take_out
     from squeezefilm.study.record.store import StudyStore
+    from squeezefilm.study.report.terminal import show_deletion
 
     with StudyStore.open(store) as found:
         if not yes:
@@ -128,10 +128,10 @@ def analyze(
 ) -> None:
     """Analyse what was recorded: thresholds, sensitivity, exponents or confusions, with
     intervals, and how people worked."""
-    from squeezefilm.errors import InputError
-    from squeezefilm.report.study.terminal_analysis import show_analyses
+    from squeezefilm.core.errors import InputError
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.record.foreign import columns_of
+    from squeezefilm.study.report.terminal_analysis import show_analyses
     from squeezefilm.study.tasks.analyze import analyze_study
 
     if design is None and (columns or values or store.suffix.lower() in (".csv", ".tsv")):
@@ -153,7 +153,7 @@ def analyze(
         )
         page = None
         if out is not None:
-            from squeezefilm.report.study.page import write_overview
+            from squeezefilm.study.report.page import write_overview
 
             page = write_overview(analyses, out, step)
     if as_json:

@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import AsJson, Finger, Jobs, Scheduler, answer, app, working, written_to
-from squeezefilm.errors import InputError
+from squeezefilm.core.arguments import called_with
+from squeezefilm.core.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -83,14 +83,14 @@ def sweep(asked: SweepOptions) -> None:
     """
     import os
 
-    from squeezefilm.display import load_display
+    from squeezefilm.design.sweep.answers import asked_for
+    from squeezefilm.design.sweep.report.compared import compared_rows, show_comparison
+    from squeezefilm.design.sweep.report.files import require_kind, write_sweep
+    from squeezefilm.design.sweep.report.page import wishes
+    from squeezefilm.design.sweep.report.terminal import show_answers, show_sweep
+    from squeezefilm.design.sweep.sweep import SweepRequest, sweep_until_stopped
     from squeezefilm.measure.fits.friction.person import with_finger
-    from squeezefilm.report.sweep.compared import compared_rows, show_comparison
-    from squeezefilm.report.sweep.files import require_kind, write_sweep
-    from squeezefilm.report.sweep.page import wishes
-    from squeezefilm.report.sweep.terminal import show_answers, show_sweep
-    from squeezefilm.search.answers import asked_for
-    from squeezefilm.search.sweep import SweepRequest, sweep_until_stopped
+    from squeezefilm.physics.display import load_display
 
     if asked.answers:
         show_answers()

@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.arguments import called_with
 from squeezefilm.cli.app import (
     AsJson,
     Finger,
@@ -26,7 +25,8 @@ from squeezefilm.cli.app import (
     working,
     written_to,
 )
-from squeezefilm.errors import InputError
+from squeezefilm.core.arguments import called_with
+from squeezefilm.core.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -78,12 +78,12 @@ class RenderOptions:
 @called_with(RenderOptions)
 def render(asked: RenderOptions) -> None:
     """A texture on a display under a moving finger: what is asked for and what is rendered."""
-    from squeezefilm.chain.rendered_texture import render_texture
-    from squeezefilm.display import load_display
-    from squeezefilm.formats.trajectories import motion_from
+    from squeezefilm.design.textures.report.terminal import show_lost, show_render
     from squeezefilm.measure.fits.friction.person import with_finger
-    from squeezefilm.report.textures.terminal import show_lost, show_render
-    from squeezefilm.texture_file import load_texture
+    from squeezefilm.physics.chain.rendered_texture import render_texture
+    from squeezefilm.physics.display import load_display
+    from squeezefilm.physics.texture_files.texture_file import load_texture
+    from squeezefilm.physics.texture_files.trajectories import motion_from
 
     out, table, drive, hjif = asked.out, asked.table, asked.drive, asked.hjif
     if out is None and (drive or hjif or table != "csv"):
@@ -95,7 +95,7 @@ def render(asked: RenderOptions) -> None:
         result = render_texture(where, what, motion, **options, progress=step)
         written = None
         if out is not None:
-            from squeezefilm.report.textures.page import hjif_export, write_render
+            from squeezefilm.design.textures.report.page import hjif_export, write_render
 
             written = write_render(result, out, table=table, drive=drive, hjif=hjif, progress=step)
 
@@ -110,9 +110,9 @@ def render(asked: RenderOptions) -> None:
 @app.command()
 def textures(as_json: AsJson = False) -> None:
     """List the textures that come with the package, for `render`."""
-    from squeezefilm.presets import texture_names
-    from squeezefilm.report.textures.terminal import show_textures
-    from squeezefilm.texture_file import load_texture
+    from squeezefilm.core.presets import texture_names
+    from squeezefilm.design.textures.report.terminal import show_textures
+    from squeezefilm.physics.texture_files.texture_file import load_texture
 
     listing = []
     for name in texture_names():
@@ -185,11 +185,11 @@ def play(asked: PlayOptions) -> None:
     Ctrl-C stops safely. Exit code 1 where the device faulted, the link broke, the loop died, or
     what was played cannot be used: too few ticks, too long a gap, too many late commands.
     """
-    from squeezefilm.bench.play import play_texture
-    from squeezefilm.display import load_display
+    from squeezefilm.instruments.bench.play import play_texture
+    from squeezefilm.instruments.report.terminal import live_view, show_play
     from squeezefilm.measure.fits.friction.person import with_finger
-    from squeezefilm.report.played.terminal import live_view, show_play
-    from squeezefilm.texture_file import load_texture
+    from squeezefilm.physics.display import load_display
+    from squeezefilm.physics.texture_files.texture_file import load_texture
 
     what = load_texture(asked.texture)
 
@@ -208,7 +208,7 @@ def play(asked: PlayOptions) -> None:
         )
     page = None
     if asked.out is not None:
-        from squeezefilm.report.played.page import write_play
+        from squeezefilm.instruments.report.page import write_play
 
         page = write_play(result, asked.out)
     answer(asked.as_json, result, show_play, page=page)
@@ -227,9 +227,9 @@ def export(
     as_json: AsJson = False,
 ) -> None:
     """Write a recorded trace as CSV or Parquet, with its metadata, and say what it had lost."""
-    from squeezefilm.report.played.terminal import show_export
-    from squeezefilm.results import to_json
-    from squeezefilm.session.record.trace import export_trace
+    from squeezefilm.core.results import to_json
+    from squeezefilm.instruments.report.terminal import show_export
+    from squeezefilm.instruments.session.record.trace import export_trace
 
     with working(as_json) as step:
         done = export_trace(trace, to, step)
@@ -258,9 +258,9 @@ def check(asked: CheckOptions) -> None:
 
     At no more than 1 V. Exit code 1 if a check fails.
     """
-    from squeezefilm.bench.play import check_drive
-    from squeezefilm.report.played.terminal import show_check
-    from squeezefilm.results import to_json
+    from squeezefilm.core.results import to_json
+    from squeezefilm.instruments.bench.play import check_drive
+    from squeezefilm.instruments.report.terminal import show_check
 
     with working(asked.as_json) as step:
         read = given(asked, leave="drive display as_json")

@@ -15,7 +15,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.http11 import Request
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 SLOWEST_REQUEST: si.Second = 10.0
 CLOSE = "squeezefilm.close"

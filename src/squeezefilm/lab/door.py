@@ -17,7 +17,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 if TYPE_CHECKING:
     import ssl

@@ -9,9 +9,9 @@ import re
 import zipfile
 from pathlib import Path
 
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import OWN_BYTES
-from squeezefilm.regular_file import read_regular
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import OWN_BYTES
+from squeezefilm.core.regular_file import read_regular
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 

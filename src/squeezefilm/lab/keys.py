@@ -17,11 +17,11 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import OWN_BYTES
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import OWN_BYTES
+from squeezefilm.core.regular_file import read_json
 from squeezefilm.lab.files import write_secret
-from squeezefilm.regular_file import read_json
 
 Role = Literal["experimenter", "participant"]
 

@@ -21,8 +21,9 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
-from squeezefilm.errors import InputError, optional
-from squeezefilm.hard_limits import OWN_BYTES
+from squeezefilm.core.errors import InputError, optional
+from squeezefilm.core.hard_limits import OWN_BYTES
+from squeezefilm.core.regular_file import read_regular
 from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN, Door
 from squeezefilm.lab.files import write_secret
 from squeezefilm.lab.guard import Guard, Places
@@ -35,7 +36,6 @@ from squeezefilm.lab.server import (
     server_of,
     station_routes,
 )
-from squeezefilm.regular_file import read_regular
 
 if TYPE_CHECKING:
     import socket

@@ -13,7 +13,7 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.lab.connections import CLOSE
 
 MOST_UNREAD = 256

@@ -15,14 +15,14 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import SqueezefilmError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.loading import hear_interrupts
+from squeezefilm.core.results import to_json
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
-from squeezefilm.loading import hear_interrupts
-from squeezefilm.results import to_json
 
 if TYPE_CHECKING:
-    from squeezefilm.session.play.plan import PlayView
+    from squeezefilm.instruments.session.play.plan import PlayView
 
 ROW_PERIOD: si.Second = 2e-3
 """Between two rows that the page's scope gets; the record has them all."""
@@ -52,7 +52,7 @@ class _Watched:
 
     def tap(self, rows: si.FloatArray) -> None:
         """The newest rows, as many as a page can draw."""
-        from squeezefilm.session.loop.rows import COLUMNS
+        from squeezefilm.instruments.session.loop.rows import COLUMNS
 
         kept = []
         for row in rows:
@@ -74,8 +74,8 @@ def play(connection: Connection, display: str, texture: str, out: str, **how: An
     `how` goes to `play_texture` as it is: drive, mode, stroke, sensor, compensation, seed, duration
     (s) and voltage (V or None).
     """
-    from squeezefilm.bench.play import JUDGING, play_texture
-    from squeezefilm.texture_file import load_texture
+    from squeezefilm.instruments.bench.play import JUDGING, play_texture
+    from squeezefilm.physics.texture_files.texture_file import load_texture
 
     tell = telling(connection)
     page = _Watched(tell)
@@ -99,7 +99,7 @@ def play(connection: Connection, display: str, texture: str, out: str, **how: An
         )
         # The device is at zero and disarmed; what is left to be written is not to be cut short.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        from squeezefilm.report.played.page import write_play
+        from squeezefilm.instruments.report.page import write_play
 
         write_play(result, Path(out))
         outcome = result.outcome
@@ -117,7 +117,7 @@ def play(connection: Connection, display: str, texture: str, out: str, **how: An
 
 def check(connection: Connection, drive: str, display: str) -> None:
     """Check a device, and tell of it."""
-    from squeezefilm.bench.play import check_drive
+    from squeezefilm.instruments.bench.play import check_drive
 
     tell = telling(connection)
     with _ends(tell, lambda: "the check was stopped"):

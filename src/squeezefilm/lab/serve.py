@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.lab.areas.design import DesignArea
 from squeezefilm.lab.areas.device import DeviceArea
 from squeezefilm.lab.areas.feel import FeelArea

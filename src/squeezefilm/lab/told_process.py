@@ -14,9 +14,9 @@ from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any, ClassVar
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.loading import interrupts_held
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.loading import interrupts_held
 
 Tell = Callable[[dict[str, Any]], None]
 

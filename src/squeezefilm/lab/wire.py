@@ -14,9 +14,9 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from squeezefilm.errors import InputError, RecordError, SqueezefilmError
+from squeezefilm.core.errors import InputError, RecordError, SqueezefilmError
+from squeezefilm.core.results import to_json
 from squeezefilm.lab.worker import SupersededError
-from squeezefilm.results import to_json
 
 LARGEST_MESSAGE = 8 * 1024 * 1024
 """Bytes of a websocket message."""

@@ -21,9 +21,9 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import SqueezefilmError
-from squeezefilm.loading import interrupts_held
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.loading import interrupts_held
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -312,7 +312,7 @@ def prepare() -> None:
     _limit_memory()
     import warnings
 
-    from squeezefilm.errors import SqueezefilmWarning
+    from squeezefilm.core.errors import SqueezefilmWarning
 
     # Answers carry their warnings as sentences.
     warnings.simplefilter("ignore", SqueezefilmWarning)

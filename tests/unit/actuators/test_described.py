@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm import presets
 from squeezefilm.actuators.described import KINDS, actuator_kind, load_actuator
 from squeezefilm.actuators.motor.description import MotorDescription
-from squeezefilm.errors import ConfigError
+from squeezefilm.core import presets
+from squeezefilm.core.errors import ConfigError
 
 TEXT = presets.resolve_actuator("biet2008-motor").read_text(encoding="utf-8")
 

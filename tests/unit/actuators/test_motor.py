@@ -9,7 +9,6 @@ from typing import Any, get_type_hints
 import numpy as np
 import pytest
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor import average_kernel, kernel
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
@@ -30,9 +29,10 @@ from squeezefilm.actuators.motor.description import (
 from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.parts import Feet, Slider, Stator
 from squeezefilm.actuators.motor.stator import face_mode
-from squeezefilm.display import load_display
-from squeezefilm.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
-from squeezefilm.plate.layout import RectangularPlate, turned
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import RectangularPlate, turned
 
 PRELOAD = 20.0
 WORKING = Working(amplitude=1e-6)

@@ -11,7 +11,7 @@ from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.causal import averaged_graph, causal_graph, inverted
 from squeezefilm.actuators.motor.closed_loop import inverted_law, track_force
 from squeezefilm.actuators.motor.in_time import resting
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 
 SPEED = 0.01
 

@@ -9,9 +9,9 @@ from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.skin_stretch import budget, cradle, load_line, patterns
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
 from squeezefilm.actuators.skin_stretch.description import SkinStretchDescription
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
-from squeezefilm.render.texture.shapes import SineWave
+from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.render.texture.shapes import SineWave
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import pytest
 from tests.e2e.program import run
 from tests.shared import shared
 
-from squeezefilm.report.actuators.dispatch import analyze_actuator
+from squeezefilm.actuators.report.dispatch import analyze_actuator
 
 
 def test_options_of_displays_are_refused_of_actuators() -> None:
@@ -26,9 +26,9 @@ def test_an_actuator_is_analysed_as_one(kind: str, tmp_path: Path) -> None:
     name = f"biet2008-{kind.replace('_', '-')}"
     # What is computed of each is asked in its own tests.
     analysis = shared(name, lambda: analyze_actuator(name)).found
-    drawn = "squeezefilm.report.actuators.skin_stretch_figures.wave_animation"
+    drawn = "squeezefilm.actuators.report.skin_stretch_figures.wave_animation"
     with (
-        mock.patch(f"squeezefilm.analysis.actuators.{kind}.analyze_{kind}") as analyze,
+        mock.patch(f"squeezefilm.actuators.analysis.{kind}.analyze_{kind}") as analyze,
         mock.patch(drawn, return_value=b""),
     ):
         analyze.return_value = analysis

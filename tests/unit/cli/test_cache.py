@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from squeezefilm import quantities as si
 from squeezefilm.cli import app
-from squeezefilm.kept.folder import clear_kept, kept_sizes
-from squeezefilm.kept.store import Kept
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kept.folder import clear_kept, kept_sizes
+from squeezefilm.core.kept.store import Kept
 
 
 def test_what_is_kept_is_shown_and_cleared_and_nothing_else(

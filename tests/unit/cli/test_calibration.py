@@ -12,9 +12,9 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.calibration import calibrate, predict_unseen, score, synthetic
-from squeezefilm.display import load_display
 from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted, Score
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.physics.display import load_display
 
 StandsIn = Callable[..., Any]
 PLATE = "biet2008-plate"
@@ -51,8 +51,8 @@ def test_a_calibration_that_does_not_fit_ends_with_1(
 ) -> None:
     found, alone = Found(fits), tmp_path / "c.toml"
     asked = stands_in("measure.calibration.folder:calibrate_display", found)
-    shown = stands_in("report.measured.calibrated:show_calibration", None, tells=False)
-    drawn = stands_in("report.measured.calibration_page:write_calibration", None, tells=False)
+    shown = stands_in("measure.report.calibrated:show_calibration", None, tells=False)
+    drawn = stands_in("measure.report.calibration_page:write_calibration", None, tells=False)
     given = ("measure", "calibrate", PLATE, str(tmp_path), "--out", str(alone))
     done = run(*given, "--seed", "7")
     assert done.returncode == (0 if fits else 1), done.stderr
@@ -69,9 +69,9 @@ def test_a_calibration_is_written_into_a_folder_with_a_page(
 ) -> None:
     found, out = Found(fits=True), tmp_path / "calibrated"
     asked = stands_in("measure.calibration.folder:calibrate_display", found)
-    stands_in("report.measured.calibrated:show_calibration", None, tells=False)
+    stands_in("measure.report.calibrated:show_calibration", None, tells=False)
     drawn = stands_in(
-        "report.measured.calibration_page:write_calibration", out / "calibration.html", tells=False
+        "measure.report.calibration_page:write_calibration", out / "calibration.html", tells=False
     )
     done = run("measure", "calibrate", PLATE, str(tmp_path), "--out", str(out))
     assert done.returncode == 0, done.stderr

@@ -12,7 +12,7 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.claims import reproduce
-from squeezefilm.measure.prototype.explanations import prototype_study
+from squeezefilm.validation.prototype.explanations import prototype_study
 
 StandsIn = Callable[..., Any]
 
@@ -31,11 +31,13 @@ CHANGED = SimpleNamespace(
 def claims(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `reproduce` calls."""
     return SimpleNamespace(
-        asked=stands_in("analysis.claims.command:reproduce", reproduced()),
-        shown=stands_in("report.claims.terminal:show_claims"),
-        page=stands_in("report.claims.page:write_reproduction", tmp_path / "index.html"),
-        checkout=stands_in("report.kit.docs:checkout"),
-        docs=stands_in("report.claims.page:write_validation_docs", "docs/reference/validation.md"),
+        asked=stands_in("validation.command:reproduce", reproduced()),
+        shown=stands_in("validation.report.terminal:show_claims"),
+        page=stands_in("validation.report.page:write_reproduction", tmp_path / "index.html"),
+        checkout=stands_in("core.kit.docs:checkout"),
+        docs=stands_in(
+            "validation.report.page:write_validation_docs", "docs/reference/validation.md"
+        ),
     )
 
 
@@ -85,7 +87,7 @@ def test_measured_curves_are_compared_in_place_of_the_claims(
     claims: SimpleNamespace, stands_in: StandsIn, tmp_path: Path
 ) -> None:
     compared = stands_in("measure.fits.friction.friction_folder:compare_folder", [])
-    stands_in("report.measured.curves:show_comparisons")
+    stands_in("measure.report.curves:show_comparisons")
     done = run("reproduce", "--data", tmp_path)
     assert done.returncode == 0, done.stderr
     assert compared.given[0] == tmp_path
@@ -100,8 +102,8 @@ def test_without_a_checkout_no_curve_is_compared_for_its_page(
     claims: SimpleNamespace, stands_in: StandsIn
 ) -> None:
     compared = stands_in("measure.fits.friction.friction_folder:compare_folder", [])
-    stands_in("report.measured.curves:show_comparisons")
-    page = stands_in("report.measured.friction_docs:write_friction_docs", "docs/friction.md")
+    stands_in("measure.report.curves:show_comparisons")
+    page = stands_in("measure.report.friction_docs:write_friction_docs", "docs/friction.md")
     done = run("reproduce", "--data", "published", "--write-docs")
     assert done.returncode == 0, done.stderr
     assert len(claims.checkout.calls) == len(page.calls) == len(compared.calls) == 1

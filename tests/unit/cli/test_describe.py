@@ -16,8 +16,8 @@ from tests.e2e.program import run
 
 from squeezefilm.cli.app import app
 from squeezefilm.cli.describe import analyze, materials, new, presets, show
-from squeezefilm.display import load_display
-from squeezefilm.presets import actuator_names, display_names
+from squeezefilm.core.presets import actuator_names, display_names
+from squeezefilm.physics.display import load_display
 
 DISPLAY = "biet2008-plate"
 StandsIn = Callable[..., Any]
@@ -107,9 +107,9 @@ def test_a_new_file_is_a_display_and_is_kept_unless_forced(tmp_path: Path) -> No
 def analysis(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `analyze` calls."""
     return SimpleNamespace(
-        asked=stands_in("analysis.analyze:analyze", ANSWER),
-        shown=stands_in("report.display.terminal:show_analysis"),
-        written=stands_in("report.display.page:write_analysis", tmp_path / "report.html"),
+        asked=stands_in("design.analysis.analyze:analyze", ANSWER),
+        shown=stands_in("design.analysis.report.terminal:show_analysis"),
+        written=stands_in("design.analysis.report.page:write_analysis", tmp_path / "report.html"),
     )
 
 

@@ -6,14 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from tests.unit.report.design.made_search import made_search
+from tests.unit.design.search.report.made_search import made_search
 from typer.testing import CliRunner
 
 import squeezefilm as sf
-from squeezefilm import presets
 from squeezefilm.cli import app
-from squeezefilm.errors import ConfigError, InputError, WorkersError
-from squeezefilm.search.design import run as searches
+from squeezefilm.core import presets
+from squeezefilm.core.errors import ConfigError, InputError, WorkersError
+from squeezefilm.design.search import run as searches
 
 PRESET = "biet2008-plate"
 FEW = ["--screened", "24", "--solved", "2", "--jobs", "1"]

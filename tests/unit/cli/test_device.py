@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 from tests.e2e.program import run
 
-from squeezefilm.bench.check import CheckResult, DeviceCheck
 from squeezefilm.cli.textures import device_app
-from squeezefilm.display import load_display
-from squeezefilm.session.record.trace import TraceExport
-from squeezefilm.texture_file import load_texture
+from squeezefilm.instruments.bench.check import CheckResult, DeviceCheck
+from squeezefilm.instruments.session.record.trace import TraceExport
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.texture_files.texture_file import load_texture
 
 DISPLAY, TEXTURE = "biet2008-plate", "sine-3mm"
 StandsIn = Callable[..., Any]
@@ -36,9 +36,9 @@ def played(failed: bool) -> SimpleNamespace:
 def play(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `play` calls."""
     return SimpleNamespace(
-        asked=stands_in("bench.play:play_texture", played(failed=False)),
-        shown=stands_in("report.played.terminal:show_play"),
-        page=stands_in("report.played.page:write_play", tmp_path / "index.html"),
+        asked=stands_in("instruments.bench.play:play_texture", played(failed=False)),
+        shown=stands_in("instruments.report.terminal:show_play"),
+        page=stands_in("instruments.report.page:write_play", tmp_path / "index.html"),
     )
 
 
@@ -113,7 +113,7 @@ def test_a_session_that_failed_ends_with_1(play: SimpleNamespace) -> None:
 
 def test_an_export_says_what_was_written(stands_in: StandsIn, tmp_path: Path) -> None:
     exported = TraceExport("a.sqft", "a.csv", "csv", 7, ("time_s", "x_m"), 2, 0, True, ("cut",))
-    asked = stands_in("session.record.trace:export_trace", exported)
+    asked = stands_in("instruments.session.record.trace:export_trace", exported)
     done = run("export", "a.sqft", "--to", "a.csv")
     assert asked.given[:2] == (Path("a.sqft"), Path("a.csv"))
     assert done.stdout == "a.csv: 7 rows of 2 columns, 2 events\n! cut\n"
@@ -129,7 +129,7 @@ def test_what_cannot_be_exported_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_check_is_of_the_twin_and_fails_with_1(stands_in: StandsIn) -> None:
-    asked = stands_in("bench.play:check_drive", DeviceCheck("twin", (PASSED,)))
+    asked = stands_in("instruments.bench.play:check_drive", DeviceCheck("twin", (PASSED,)))
     done = run("device", "check")
     assert asked.given == ("twin", DISPLAY)
     assert asked.named == {"rate": 5000.0}

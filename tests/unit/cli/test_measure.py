@@ -19,12 +19,12 @@ from tests.unit.measure.recordings.bench_files import (
     written,
 )
 
-from squeezefilm.chain.friction_models import MODEL_KINDS
-from squeezefilm.chain.prediction import predict
 from squeezefilm.cli.measure import check, fit
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
 from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
 from squeezefilm.measure.fits.friction.friction_scores import SHAPES
+from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.prediction import predict
 
 StandsIn = Callable[..., Any]
 
@@ -93,7 +93,7 @@ def test_a_fit_says_whether_it_is_adequate_by_its_exit_code(
 def test_where_a_fit_is_refused_the_doubts_are_said(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    from squeezefilm.errors import InputError
+    from squeezefilm.core.errors import InputError
     from squeezefilm.measure.fits import by_kind
 
     def refuses(*_: Any) -> None:
@@ -112,7 +112,7 @@ def test_measured_curves_are_compared_in_place_of_the_claims(
 ) -> None:
     nothing = FolderComparison((), (), ())
     asked = stands_in("measure.fits.friction.friction_folder:compare_folder", nothing, tells=False)
-    page = stands_in("report.measured.curves:write_comparisons", tmp_path / "page.html")
+    page = stands_in("measure.report.curves:write_comparisons", tmp_path / "page.html")
     done = run("reproduce", "--data", str(tmp_path), "--out", str(tmp_path / "out"))
     assert done.returncode == 0, done.stderr
     assert asked.given[0] == tmp_path

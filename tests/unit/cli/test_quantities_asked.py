@@ -12,8 +12,8 @@ import pytest
 from squeezefilm.cli import app
 from squeezefilm.cli.app import In, given, read_option
 from squeezefilm.cli.describe import AnalyzeOptions, FilmOptions
-from squeezefilm.errors import InputError
-from squeezefilm.quantities import Unit, allowed_units
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.quantities import Unit, allowed_units
 
 
 def options() -> Iterator[tuple[str, Any]]:

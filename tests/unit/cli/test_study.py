@@ -15,11 +15,11 @@ from tests.e2e.program import run as program
 
 from squeezefilm.cli import study_file
 from squeezefilm.cli.study import study
-from squeezefilm.perception.observer import load_observer
-from squeezefilm.presets import study_names
-from squeezefilm.report.study.terminal import ask_acknowledgement
+from squeezefilm.core.presets import study_names
+from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.report.terminal import ask_acknowledgement
 
 from ..study.scripted import gratings
 
@@ -81,8 +81,8 @@ def test_simulated_people_are_shown_and_written_where_asked(
 ) -> None:
     tables = stands_in("study.simulated.chain_tables:chain_tables", "the tables")
     people = stands_in("study.simulated.answers:simulate_participants", ANSWER)
-    shown = stands_in("report.study.terminal_analysis:show_simulated")
-    written = stands_in("report.study.simulated_page:write_simulated", tmp_path / "index.html")
+    shown = stands_in("study.report.terminal_analysis:show_simulated")
+    written = stands_in("study.report.simulated_page:write_simulated", tmp_path / "index.html")
     done = run("simulate", PRESET)
     assert done.returncode == 0, done.stderr
     design, observer = load_design(PRESET), load_observer("fingertip")
@@ -108,7 +108,7 @@ def test_simulated_people_are_shown_and_written_where_asked(
 
 def test_answers_of_another_program_need_their_design(stands_in: StandsIn, tmp_path: Path) -> None:
     asked = stands_in("study.tasks.analyze:analyze_study", {"one": ANSWER})
-    stands_in("report.study.terminal_analysis:show_analyses")
+    stands_in("study.report.terminal_analysis:show_analyses")
     answers = tmp_path / "answers.csv"
     run("analyze", answers, "--design", PRESET, "--columns", "choice=key, participant_id=who")
     assert asked.named["design"] == load_design(PRESET)
@@ -122,9 +122,9 @@ def test_answers_of_another_program_need_their_design(stands_in: StandsIn, tmp_p
 
 def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path: Path) -> None:
     asked = stands_in("study.simulated.planned_power:planned_power", ANSWER)
-    shown = stands_in("report.study.terminal_analysis:show_power")
-    drawn = stands_in("report.subjects:plot", "the figure")
-    stands_in("report.kit.style:png", b"a picture")
+    shown = stands_in("study.report.terminal_analysis:show_power")
+    drawn = stands_in("subjects:plot", "the figure")
+    stands_in("core.kit.style:png", b"a picture")
     done = run("power", PRESET, "8 mm", "10 mm")
     assert asked.given == (load_design(PRESET), load_observer("fingertip"), "8 mm", "10 mm")
     assert asked.named == {
@@ -156,7 +156,7 @@ def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path
 
 def test_power_compares_two_displays(stands_in: StandsIn) -> None:
     asked = stands_in("study.simulated.planned_contrast:planned_contrast", ANSWER)
-    stands_in("report.study.terminal_analysis:show_power")
+    stands_in("study.report.terminal_analysis:show_power")
     run("power", PRESET, "--against", "biet2008-plate", "--studies", "50")
     design = load_design(PRESET)
     people = load_observer("fingertip")
@@ -191,7 +191,7 @@ def test_a_rehearsal_makes_the_file_and_says_what_comes_next(
 def test_a_session_is_given_every_option(
     stands_in: StandsIn, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    asked = stands_in("report.study.session:run_study", "how it ended", tells=False)
+    asked = stands_in("study.report.session:run_study", "how it ended", tells=False)
     done = run("run", PRESET, "--store", "a.sqlite")
     assert done.stdout == "how it ended\n"
     assert asked.given == (PRESET, Path("a.sqlite"), None)
@@ -282,8 +282,8 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
 ) -> None:
     found = {"one": ANSWER, "two": ANSWER}
     asked = stands_in("study.tasks.analyze:analyze_study", found)
-    shown = stands_in("report.study.terminal_analysis:show_analyses")
-    written = stands_in("report.study.page:write_overview", tmp_path / "index.html")
+    shown = stands_in("study.report.terminal_analysis:show_analyses")
+    written = stands_in("study.report.page:write_overview", tmp_path / "index.html")
     done = run("analyze", store)
     assert asked.given == (store,)
     assert asked.named == {

@@ -7,8 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 from squeezefilm.cli import app
-from squeezefilm.errors import InputError
-from squeezefilm.search import sweep as sweeps
+from squeezefilm.core.errors import InputError
+from squeezefilm.design.sweep import sweep as sweeps
 
 STATOR = "biet2008-stator"
 ASKED = ["sweep", STATOR, "--vary", "voltage=50 V..100 V:3", "--ask", "relative_friction"]

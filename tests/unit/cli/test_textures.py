@@ -12,9 +12,9 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.textures import render, textures
-from squeezefilm.display import load_display
-from squeezefilm.presets import texture_names
-from squeezefilm.texture_file import load_texture
+from squeezefilm.core.presets import texture_names
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.texture_files.texture_file import load_texture
 
 DISPLAY, TEXTURE = "biet2008-plate", "sine-3mm"
 StandsIn = Callable[..., Any]
@@ -25,11 +25,11 @@ ANSWER = SimpleNamespace(summary=lambda: {"found": 1})
 def rendered(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `render` calls."""
     return SimpleNamespace(
-        asked=stands_in("chain.rendered_texture:render_texture", ANSWER),
-        shown=stands_in("report.textures.terminal:show_render"),
-        lost=stands_in("report.textures.terminal:show_lost"),
-        written=stands_in("report.textures.page:write_render", tmp_path / "index.html"),
-        hjif=stands_in("report.textures.page:hjif_export", "the export"),
+        asked=stands_in("physics.chain.rendered_texture:render_texture", ANSWER),
+        shown=stands_in("design.textures.report.terminal:show_render"),
+        lost=stands_in("design.textures.report.terminal:show_lost"),
+        written=stands_in("design.textures.report.page:write_render", tmp_path / "index.html"),
+        hjif=stands_in("design.textures.report.page:hjif_export", "the export"),
     )
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.lab.files import existing, fresh, named, zipped
 
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm import lab, presets
+from squeezefilm import lab
+from squeezefilm.core import presets
 from squeezefilm.lab.designing.form import form, preset_text
 
 STATIC = Path(lab.__file__).parent / "static"

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.lab import lan
 from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN
 from squeezefilm.lab.guard import Places

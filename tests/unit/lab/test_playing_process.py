@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.bench import play as bench_play
-from squeezefilm.bench.check import CheckResult
-from squeezefilm.device.wire.states import Fault, State
-from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.instruments.bench import play as bench_play
+from squeezefilm.instruments.bench.check import CheckResult
+from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.report import page
+from squeezefilm.instruments.session.loop.rows import COLUMNS
+from squeezefilm.instruments.session.play.plan import PlayView
 from squeezefilm.lab import told_process
 from squeezefilm.lab.playing_process import DeviceSession, check, play
-from squeezefilm.report.played import page
-from squeezefilm.session.loop.rows import COLUMNS
-from squeezefilm.session.play.plan import PlayView
 
 WORK: Any = {
     "display": "d.toml", "texture": "biet2008-square-4mm", "drive": "twin", "mode": "stream",

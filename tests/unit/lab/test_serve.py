@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.lab import serve as serving
 from squeezefilm.lab.door import room_for
 from squeezefilm.lab.serve import serve

@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from squeezefilm.errors import InputError, RecordError
+from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.lab.wire import Dispatcher, Request, as_text
 from squeezefilm.lab.worker import SupersededError
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.errors import ConfigError, SqueezefilmError
+from squeezefilm.core.errors import ConfigError, SqueezefilmError
 from squeezefilm.lab import worker
 from squeezefilm.lab.designing.form import name_of
 from squeezefilm.lab.worker import PAGE, Busy, SupersededError

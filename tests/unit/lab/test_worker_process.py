@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.errors import SqueezefilmError, SqueezefilmWarning
+from squeezefilm.core.errors import SqueezefilmError, SqueezefilmWarning
 from squeezefilm.lab import worker
 
 

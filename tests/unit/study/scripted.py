@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.conduct.sessions import Exposure, SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import (

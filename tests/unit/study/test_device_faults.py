@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.session.play import real_time as playing
-from squeezefilm.session.play.plan import PlayPlan
+from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.instruments.session.play import real_time as playing
+from squeezefilm.instruments.session.play.plan import PlayPlan
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
@@ -146,14 +146,14 @@ def test_a_surface_that_is_halted_before_it_plays_is_not_presented(
 def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from squeezefilm.device.wire.safety import Limits
-    from squeezefilm.render.motion.estimator import MotionEstimator
-    from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-    from squeezefilm.render.program.lowering import lower
-    from squeezefilm.render.resonator.compensation import DrivenEnvelope
-    from squeezefilm.render.texture.levels import Amplitude
-    from squeezefilm.render.texture.shapes import SquareWave
-    from squeezefilm.session.loop.plan import DriveTable, LoopPlan
+    from squeezefilm.core.drive_limits import Limits
+    from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+    from squeezefilm.physics.render.motion.estimator import MotionEstimator
+    from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+    from squeezefilm.physics.render.program.lowering import lower
+    from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+    from squeezefilm.physics.render.texture.levels import Amplitude
+    from squeezefilm.physics.render.texture.shapes import SquareWave
 
     class Silent:
         sent = b""

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.trial_by_trial import conduct
@@ -218,7 +218,7 @@ def test_an_export_whose_mark_a_full_disk_left_half_erased_is_made_again(store: 
 
 
 def test_no_cell_of_any_export_is_a_formula(tmp_path: Path) -> None:
-    from squeezefilm.perception.stimuli import Grating, Stimulus
+    from squeezefilm.physics.perception.stimuli import Grating, Stimulus
     from squeezefilm.study.design.study_design import StudyDesign
     from squeezefilm.study.record.exports import FORMATS
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.analysis import analyze_identification
 from squeezefilm.study.identification.information import ordered_observer
 

@@ -6,8 +6,8 @@ import pytest
 from tests.costs import Stopwatch, table
 
 TIMES = {
-    "tests/unit/film/test_gap.py": {False: 2.0, True: 0.0},
-    "tests/unit/film/test_mobility.py": {False: 0.5, True: 4.0},
+    "tests/unit/physics/film/test_gap.py": {False: 2.0, True: 0.0},
+    "tests/unit/physics/film/test_mobility.py": {False: 0.5, True: 4.0},
     "tests/e2e/test_cli.py": {False: 3.0, True: 0.0},
 }
 COUNTS = dict.fromkeys(TIMES, 2)
@@ -16,11 +16,11 @@ COUNTS = dict.fromkeys(TIMES, 2)
 def test_folders_and_files_are_summed_and_sorted() -> None:
     rows = [line for line in table(TIMES, COUNTS).splitlines() if " | " in line]
     assert rows == [
-        "folder | tests | quick, s | slow, s", "unit/film | 4 | 2.5 | 4.0",
+        "folder | tests | quick, s | slow, s", "unit/physics/film | 4 | 2.5 | 4.0",
         "e2e | 2 | 3.0 | 0.0", "**all** | 6 | 5.5 | 4.0",
         "file of 1 s and more | tests | quick, s | slow, s",
-        "unit/film/test_mobility.py | 2 | 0.5 | 4.0", "e2e/test_cli.py | 2 | 3.0 | 0.0",
-        "unit/film/test_gap.py | 2 | 2.0 | 0.0",
+        "unit/physics/film/test_mobility.py | 2 | 0.5 | 4.0", "e2e/test_cli.py | 2 | 3.0 | 0.0",
+        "unit/physics/film/test_gap.py | 2 | 2.0 | 0.0",
     ]  # fmt: skip
 
 

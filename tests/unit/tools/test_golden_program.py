@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 import golden_program
-from squeezefilm.errors import InputError
-from squeezefilm.texture_file import load_texture
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.texture_files.texture_file import load_texture
 
 SAMPLES = json.loads(golden_program.STORED.read_text("utf-8"))["cases"][0]["samples"]
 

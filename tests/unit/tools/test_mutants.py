@@ -14,12 +14,12 @@ ROOT = Path(__file__).parents[3]
 
 def test_the_tests_of_a_module_come_first_then_those_that_name_it() -> None:
     nearness = mutants.Nearness(ROOT)
-    files = nearness.tests("squeezefilm.film.gap")
-    assert files[0] == "tests/unit/film/test_gap.py"
-    named = ["squeezefilm.film.gap" in nearness.texts[name] for name in files]
+    files = nearness.tests("squeezefilm.physics.film.gap")
+    assert files[0] == "tests/unit/physics/film/test_gap.py"
+    named = ["squeezefilm.physics.film.gap" in nearness.texts[name] for name in files]
     assert named == sorted(named, reverse=True)
     assert 0 < len(files) < len(nearness.texts)
-    assert "tests/e2e/test_plate_cli.py" in nearness.tests("squeezefilm.plate.ring.stator")
+    assert "tests/e2e/test_plate_cli.py" in nearness.tests("squeezefilm.physics.plate.ring.stator")
 
 
 def test_a_line_that_was_cut_off_is_asked_again(tmp_path: Path) -> None:
@@ -50,7 +50,7 @@ def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
     root = tmp_path / "project"
     files = {
         "src/squeezefilm/__init__.py": '"""A package."""\n',
-        "src/squeezefilm/quantities/units.py": "",
+        "src/squeezefilm/core/quantities/units.py": "",
         "tests/costs.py": (ROOT / "tests" / "costs.py").read_text(),
         "src/squeezefilm/gap.py": "def half(a: int) -> float:\n    b = a + 0\n    return b / 2\n",
         # What a failing test logged stands as ERROR before the summary.

@@ -11,7 +11,10 @@ ROOT = Path(__file__).parents[3]
 
 def test_a_room_has_the_tests_below_it_and_those_of_its_physics_elsewhere() -> None:
     files = part_tests.tests_of("film", ROOT)
-    below = {str(file.relative_to(ROOT)) for file in (ROOT / "tests/unit/film").rglob("test_*.py")}
+    below = {
+        str(file.relative_to(ROOT))
+        for file in (ROOT / "tests/unit/physics/film").rglob("test_*.py")
+    }
     assert below < set(files)
     others = set(files) - below
     assert "tests/verification/test_film_closed_forms.py" in others
@@ -21,10 +24,10 @@ def test_a_room_has_the_tests_below_it_and_those_of_its_physics_elsewhere() -> N
 @pytest.mark.parametrize(
     ("part", "test"),
     [
-        ("loading", "tests/unit/test_loading.py"),
-        ("planar", "tests/unit/film/planar/test_kernel.py"),
-        ("film/planar", "tests/unit/film/planar/test_kernel.py"),
-        ("control", "tests/unit/control/test_force_law.py"),
+        ("loading", "tests/unit/core/test_loading.py"),
+        ("planar", "tests/unit/physics/film/planar/test_kernel.py"),
+        ("physics/film/planar", "tests/unit/physics/film/planar/test_kernel.py"),
+        ("control", "tests/unit/actuators/control/test_force_law.py"),
     ],
 )
 def test_a_module_a_folder_and_a_path_are_parts(part: str, test: str) -> None:

@@ -8,13 +8,13 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.description import Motor
 from squeezefilm.actuators.motor.parts import Feet, Slider, Stator
 from squeezefilm.actuators.motor.stator import FaceMode, face_mode
-from squeezefilm.errors import InputError, OutOfRangeError
-from squeezefilm.plate.heat.warming import FIELD_SHARE
-from squeezefilm.plate.working_mode import PlateTheory
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, OutOfRangeError
+from squeezefilm.physics.plate.heat.warming import FIELD_SHARE
+from squeezefilm.physics.plate.working_mode import PlateTheory
 
 _M, _V = si.Unit("m"), si.Unit("V")
 # A foot that moves less than this share of the lobe stands over a node.

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.parts import Feet, Stator, followed
-from squeezefilm.compiled import compiled
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import compiled
 
 MEANS = 11
 """Thrust along and sideways (N), normal force (N), share of contact, share of slip in it, contact

@@ -16,12 +16,12 @@ from typing import Annotated
 import numpy as np
 from scipy.optimize import brentq, root
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.average_kernel import MEANS, Swing, settled_height
 from squeezefilm.actuators.motor.in_time import require_no_pull
 from squeezefilm.actuators.motor.parts import Stator
-from squeezefilm.errors import ConvergenceError, InputError, OutOfRangeError, UnreachableError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError, UnreachableError
 
 SAMPLES: int = 256
 """Instants of a period: thrust within some 0.5 % of the preload times µ."""

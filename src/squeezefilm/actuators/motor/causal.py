@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from squeezefilm.actuators.motor.assembled import AssembledMotor
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,13 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.actuators.control.force_law import ForceLaw, ForceState, force_step
 from squeezefilm.actuators.motor import kernel
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.averaged import averaged
 from squeezefilm.actuators.motor.in_time import STEPS, require_no_pull, resting
-from squeezefilm.control.force_law import ForceLaw, ForceState, force_step
-from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, InputError
 
 
 @si.checked_numbers

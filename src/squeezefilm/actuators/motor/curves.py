@@ -7,7 +7,6 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
 from squeezefilm.actuators.motor.averaged import (
     AveragedMotor,
@@ -18,9 +17,10 @@ from squeezefilm.actuators.motor.averaged import (
 from squeezefilm.actuators.motor.description import Motor
 from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.stator import FaceMode
-from squeezefilm.errors import OutOfRangeError
-from squeezefilm.plate.working_mode import PlateTheory
-from squeezefilm.progress import CountProgress
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import OutOfRangeError
+from squeezefilm.core.progress import CountProgress
+from squeezefilm.physics.plate.working_mode import PlateTheory
 
 # Between rest and no load.
 _SPEEDS = np.array([0.2, 0.35, 0.5, 0.65, 0.8])

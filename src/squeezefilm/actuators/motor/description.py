@@ -8,17 +8,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
-from squeezefilm import hard_limits as hard
-from squeezefilm import presets
-from squeezefilm import quantities as si
-from squeezefilm.actuators.motor.free_plate import FreePlate
-from squeezefilm.config.load import load
-from squeezefilm.config.provenance import Provenance
-from squeezefilm.config.references import References
-from squeezefilm.errors import GeometryError, InputError, OutOfRangeError
-from squeezefilm.plate.heat.thermal import Thermal
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.results import Result
+from squeezefilm.core import hard_limits as hard
+from squeezefilm.core import presets
+from squeezefilm.core import quantities as si
+from squeezefilm.core.config.load import load
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.config.references import References
+from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError
+from squeezefilm.core.results import Result
+from squeezefilm.physics.plate.free_plate import FreePlate
+from squeezefilm.physics.plate.heat.thermal import Thermal
+from squeezefilm.physics.plate.layout import RectangularPlate
 
 _M = si.Unit("m")
 

@@ -7,11 +7,11 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.motor import kernel
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.parts import Feet, Slider, Stator, mode_energy
-from squeezefilm.errors import ConvergenceError, OutOfRangeError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, OutOfRangeError
 
 STEPS: int = 64
 """Steps of a period of the first mode: the forces' error is then some 1e-6 of them."""

@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.parts import Feet, Slider, Stator, damping_at, spring_at
-from squeezefilm.compiled import compiled
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import compiled
 
 OPEN, STICK, SLIP_UP, SLIP_DOWN = 0, 1, 2, 3
 DRIVE, PRELOAD, OUTPUT, MODAL_LOSS, CONTACT_LOSS, FRICTION, GUIDE_LOSS = range(7)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from squeezefilm import quantities as si
-from squeezefilm.compiled import compiled
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import compiled
 
 
 @si.checked_numbers

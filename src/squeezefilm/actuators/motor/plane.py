@@ -7,11 +7,11 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.in_time import require_no_pull
 from squeezefilm.actuators.motor.parts import Slider, Stator, mode_energy
 from squeezefilm.actuators.motor.plane_kernel import TOTALS, PlaneMarch, march_plane
+from squeezefilm.core import quantities as si
 
 STEPS: int = 256
 """Steps of a period of the first mode: thrust within some 1e-3 of µ times the preload."""

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.motor.parts import (
     Feet,
     Slider,
@@ -22,7 +21,8 @@ from squeezefilm.actuators.motor.parts import (
     followed,
     spring_at,
 )
-from squeezefilm.compiled import compiled
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import compiled
 
 HEIGHT, RISE, X, Y, V_X, V_Y = range(6)
 """The slider's height (m), its speed (m/s), its place and its velocity in the plane (m, m/s)."""

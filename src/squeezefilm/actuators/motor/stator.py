@@ -13,10 +13,10 @@ from typing import Annotated
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import OutOfRangeError
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.working_mode import PlateTheory, WorkingMode, working_mode
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import OutOfRangeError
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.working_mode import PlateTheory, WorkingMode, working_mode
 
 
 @dataclass(frozen=True, eq=False)

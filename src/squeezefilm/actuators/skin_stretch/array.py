@@ -13,15 +13,15 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from squeezefilm import hard_limits as hard
-from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
 from squeezefilm.actuators.skin_stretch.budget import Budget, budget
 from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip, seat
 from squeezefilm.actuators.skin_stretch.slip import held_forces
 from squeezefilm.actuators.skin_stretch.solid_bender import solid_bender
 from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, strain_matrices
-from squeezefilm.errors import GeometryError, InputError
+from squeezefilm.core import hard_limits as hard
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import GeometryError, InputError
 
 _M = si.Unit("m")
 # Frozen, so that every array may share them.

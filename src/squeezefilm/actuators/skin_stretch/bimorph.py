@@ -15,13 +15,13 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from squeezefilm import hard_limits as hard
-from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch import triple_layer
 from squeezefilm.actuators.skin_stretch.clamp_hold import ClampHold
-from squeezefilm.errors import GeometryError, OutOfRangeError
-from squeezefilm.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.plate.laminate import Laminate, Layer, laminate
+from squeezefilm.core import hard_limits as hard
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import GeometryError, OutOfRangeError
+from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.physics.plate.laminate import Laminate, Layer, laminate
 
 Wiring = Literal["parallel", "series"]
 

@@ -20,10 +20,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.special import jv
 
-from squeezefilm import hard_limits as hard
-from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.half_space import Places, together
-from squeezefilm.plate.elements.lobatto import gauss_points
+from squeezefilm.core import hard_limits as hard
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.plate.elements.lobatto import gauss_points
 
 Ratio = Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)]
 _NODES, _REACH = 400, 18.0

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
+from squeezefilm.core import quantities as si
 
 Lines = Literal["direct", "matrix", "daisy_chain"]
 

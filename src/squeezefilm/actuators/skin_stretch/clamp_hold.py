@@ -20,7 +20,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from scipy.linalg import eig
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 # Of 4 and 6 polynomials the reach differs by less than 1 %.
 _TERMS = 6

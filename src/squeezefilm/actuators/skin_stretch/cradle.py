@@ -14,10 +14,10 @@ from typing import Annotated
 import numpy as np
 from scipy.optimize import brentq, nnls
 
-from squeezefilm import hard_limits as hard
-from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.tissue import Sizes, Tissue, influence_matrix
-from squeezefilm.errors import GeometryError, UnreachableError
+from squeezefilm.core import hard_limits as hard
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import GeometryError, UnreachableError
 
 _M = si.Unit("m")
 Radius = Annotated[si.Metre, si.Above(0)]

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from squeezefilm import presets
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
-from squeezefilm.config.provenance import Provenance
-from squeezefilm.config.references import References
-from squeezefilm.results import Result
+from squeezefilm.core import presets
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.config.references import References
+from squeezefilm.core.results import Result
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,6 +46,6 @@ class SkinStretchDescription(Result):
 
 
 def _preset(name: str) -> SkinStretchDescription:
-    from squeezefilm import config
+    from squeezefilm.core import config
 
     return config.load(SkinStretchDescription, presets.resolve_actuator(name))

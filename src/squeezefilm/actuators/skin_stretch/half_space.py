@@ -13,9 +13,9 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import hard_limits as hard
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import hard_limits as hard
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 
 Places = Annotated[
     si.MetreArray, si.AtLeast(-hard.STROKE_START.most), si.AtMost(hard.STROKE_START.most)

@@ -19,9 +19,9 @@ from typing import Annotated, cast
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.bimorph import Bender
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 
 PUBLISHED_FREE: si.Metre = 0.1e-3
 PUBLISHED_BLOCKED: si.Newton = 0.15

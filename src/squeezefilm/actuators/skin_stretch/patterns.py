@@ -1,7 +1,7 @@
 """Textures that move over a fingertip, sampled where the contactors stand: voltages over time.
 
 A contactor at x, y of the finger feels the place x + s(t) of a pattern of the render room
-(`render.texture.pattern`): 0 is −V, 1 is +V, a half is rest.
+(`physics.render.texture.pattern`): 0 is −V, 1 is +V, a half is rest.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.cradle import FingerCradle
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import MOTION_SAMPLES, require_within
-from squeezefilm.render.texture.pattern import Pattern, require_pattern
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import MOTION_SAMPLES, require_within
+from squeezefilm.physics.render.texture.pattern import Pattern, require_pattern
 
 VoltArray = Annotated[si.FloatArray, si.Unit("V")]
 

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, InputError
 
 # Friction below this share of the largest holds nothing.
 _HELD = 1e-9

@@ -13,20 +13,20 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
-from squeezefilm.blas_threads import one_blas_thread
-from squeezefilm.errors import OutOfRangeError
-from squeezefilm.plate.elements.box_model import (
+from squeezefilm.core import quantities as si
+from squeezefilm.core.blas_threads import one_blas_thread
+from squeezefilm.core.errors import OutOfRangeError
+from squeezefilm.physics.plate.elements.box_model import (
     BoxModel,
     Electrode,
     isotropic_solid,
     piezoceramic_solid,
 )
-from squeezefilm.plate.elements.krylov import modes_near
-from squeezefilm.plate.elements.lobatto import LineMesh, gauss_points
-from squeezefilm.plate.elements.slab_factor import SlabFactor
-from squeezefilm.plate.elements.slabs import Slabs
+from squeezefilm.physics.plate.elements.krylov import modes_near
+from squeezefilm.physics.plate.elements.lobatto import LineMesh, gauss_points
+from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slabs import Slabs
 
 _GRADED = (0.1, 0.5, 2.0)
 """Element edges near the clamp, in thicknesses and in widths; with the orders below the deflection

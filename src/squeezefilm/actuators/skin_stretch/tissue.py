@@ -7,8 +7,6 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import hard_limits as hard
-from squeezefilm import quantities as si
 from squeezefilm.actuators.skin_stretch.bonded_layer import (
     normal_correction,
     tangential_correction,
@@ -18,8 +16,10 @@ from squeezefilm.actuators.skin_stretch.half_space import (
     normal_patch,
     tangential_patch,
 )
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.errors import InputError
+from squeezefilm.core import hard_limits as hard
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 
 Sizes = Annotated[tuple[si.Metre, si.Metre], hard.SIDE]
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 SquareMetrePerNewtonLike = Annotated[si.FloatLike, si.Unit("m2/N")]
 NewtonMetreLike = Annotated[si.FloatLike, si.Unit("N*m")]

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
-from squeezefilm import presets
-from squeezefilm.errors import InputError
+from squeezefilm.core import presets
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.regular_file import read_toml_text
+from squeezefilm.core.results import write_whole
 from squeezefilm.lab.designing import form as description
 from squeezefilm.lab.designing import numbers as design
 from squeezefilm.lab.designing.field_limits import allowed
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request, as_text
 from squeezefilm.lab.worker import PAGE
-from squeezefilm.regular_file import read_toml_text
-from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from squeezefilm.lab.server import Lab

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
-from squeezefilm import presets
-from squeezefilm.errors import InputError
+from squeezefilm.core import presets
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import write_whole
 from squeezefilm.lab import playing_process as device_process
 from squeezefilm.lab.designing.form import name_of
 from squeezefilm.lab.designing.playable import require_playable
@@ -18,7 +19,6 @@ from squeezefilm.lab.designing.program import title_of
 from squeezefilm.lab.files import existing
 from squeezefilm.lab.playing_process import DeviceSession
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
-from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path

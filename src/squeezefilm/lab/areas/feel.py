@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
-from squeezefilm import presets
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import presets
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.regular_file import read_toml_text
+from squeezefilm.core.results import write_whole
 from squeezefilm.lab.designing import program as feel
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
-from squeezefilm.regular_file import read_toml_text
-from squeezefilm.results import write_whole
-from squeezefilm.texture_file import load_texture
+from squeezefilm.physics.texture_files.texture_file import load_texture
 
 if TYPE_CHECKING:
     from squeezefilm.lab.server import Lab

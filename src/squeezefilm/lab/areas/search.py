@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
-from squeezefilm import presets
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED
+from squeezefilm.core import presets
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED
+from squeezefilm.core.regular_file import read_toml_text
+from squeezefilm.core.results import write_whole
 from squeezefilm.lab.files import existing, named
 from squeezefilm.lab.searching.asked import asked_of, display_text, folder_of
 from squeezefilm.lab.searching.process import SearchProcess, search
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
-from squeezefilm.regular_file import read_toml_text
-from squeezefilm.results import write_whole
 
 if TYPE_CHECKING:
     from squeezefilm.lab.server import Lab

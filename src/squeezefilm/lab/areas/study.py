@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import Field
 
-from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.studying.devices import Measured, StudyDevices, require_device
 from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
@@ -385,6 +385,6 @@ class StudyArea:
 
 
 def _exposure(display: str) -> Exposure:
-    from squeezefilm.display import load_display
+    from squeezefilm.physics.display import load_display
 
     return exposure(load_display(display), _LONGEST_SESSION)

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from squeezefilm import quantities as si
-from squeezefilm.calibration_record import CalibrationRecord, ComparedAnswer
-from squeezefilm.display import Display
-from squeezefilm.errors import QuantityError
-from squeezefilm.results import to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.calibration_record import CalibrationRecord, ComparedAnswer
+from squeezefilm.core.errors import QuantityError
+from squeezefilm.core.results import to_json
+from squeezefilm.physics.display import Display
 
 _FREQUENCY, _AMPLITUDE = "resonance frequency", "amplitude per volt"
 

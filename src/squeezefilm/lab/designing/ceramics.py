@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import tomlkit
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.lab.designing.form import display_of, form, write_value
-from squeezefilm.plate.layout import Actuator, RectangularPlate
+from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
 
 _METRE = si.Unit("m")
 _LEAST_SHARE: si.Dimensionless = 1e-3

@@ -11,12 +11,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from squeezefilm import quantities as si
-from squeezefilm.config.schema import leaves
-from squeezefilm.display import Display
-from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.hard_limits import HardLimit
+from squeezefilm.core import quantities as si
+from squeezefilm.core.config.schema import leaves
+from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.hard_limits import HardLimit
 from squeezefilm.lab.designing.form import choices, display_of, stated
+from squeezefilm.physics.display import Display
 
 _FAR = 1e9
 """Times the value up to which a limit is looked for."""

@@ -13,13 +13,13 @@ from typing import Any, Literal, Union
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
-from squeezefilm import config, presets
-from squeezefilm import quantities as si
-from squeezefilm.config.provenance import UNSTATED
-from squeezefilm.config.schema import leaves
-from squeezefilm.config.stated import changed_from
-from squeezefilm.display import Display
-from squeezefilm.errors import InputError
+from squeezefilm.core import config, presets
+from squeezefilm.core import quantities as si
+from squeezefilm.core.config.provenance import UNSTATED
+from squeezefilm.core.config.schema import leaves
+from squeezefilm.core.config.stated import changed_from
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.display import Display
 
 LONGEST_VALUE = 2000
 """Characters of one value in the form."""

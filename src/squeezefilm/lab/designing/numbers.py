@@ -12,22 +12,22 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.uncertainty import friction_band
-from squeezefilm.chain.active_area import active_area
-from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.display import Display
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.progress import Pace
+from squeezefilm.core.results import stamp, to_json
 from squeezefilm.lab.designing.calibrated import calibration_of
 from squeezefilm.lab.designing.ceramics import covered, stretched
 from squeezefilm.lab.designing.form import display_of, edited, form
 from squeezefilm.lab.worker import tell
-from squeezefilm.plate.electronics import load_of_mode
-from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
-from squeezefilm.plate.solid.working import response_frequencies, solid_mode
-from squeezefilm.plausibility.checks import require_plausible
-from squeezefilm.progress import Pace
-from squeezefilm.results import stamp, to_json
+from squeezefilm.physics.chain.active_area import active_area
+from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.electronics import load_of_mode
+from squeezefilm.physics.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.physics.plate.solid.working import response_frequencies, solid_mode
+from squeezefilm.physics.plausibility.checks import require_plausible
+from squeezefilm.physics.uncertainty.uncertainty import friction_band
 
 STRETCHED = "stretch the ceramics"
 """Asked for in place of a value."""

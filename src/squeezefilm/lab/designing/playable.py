@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from squeezefilm import quantities as si
-from squeezefilm.chain.played_texture import FingerMotion, require_on_display
-from squeezefilm.formats.trajectories import motion_from
+from squeezefilm.core import quantities as si
 from squeezefilm.lab.designing.form import display_of
 from squeezefilm.lab.designing.numbers import WorkingPoint, predicted
+from squeezefilm.physics.chain.played_texture import FingerMotion, require_on_display
+from squeezefilm.physics.texture_files.trajectories import motion_from
 
 LONGEST: si.Second = 86_400.0
 """For one session."""

@@ -14,21 +14,29 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.chain.friction_table import FrictionTable
-from squeezefilm.chain.prediction import Prediction
-from squeezefilm.chain.rendered_texture import lowered
-from squeezefilm.chain.standing_wave import factor_of_law, resonance_with_finger, wave_factors
-from squeezefilm.display import Display
-from squeezefilm.errors import InputError
-from squeezefilm.formats.pictures import picture_from
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import stamp, to_json
 from squeezefilm.lab.designing.form import display_of
 from squeezefilm.lab.designing.numbers import WorkingPoint, predicted
-from squeezefilm.plate.layout import DiscPlate
-from squeezefilm.render.program.inverse import LOWEST_SPEED
-from squeezefilm.render.program.lowering import Program
-from squeezefilm.render.program.renderer import render
-from squeezefilm.results import stamp, to_json
-from squeezefilm.texture_file import TextureFile, load_texture, texture_from_text
+from squeezefilm.physics.chain.friction_table import FrictionTable
+from squeezefilm.physics.chain.prediction import Prediction
+from squeezefilm.physics.chain.rendered_texture import lowered
+from squeezefilm.physics.chain.standing_wave import (
+    factor_of_law,
+    resonance_with_finger,
+    wave_factors,
+)
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.layout import DiscPlate
+from squeezefilm.physics.render.program.inverse import LOWEST_SPEED
+from squeezefilm.physics.render.program.lowering import Program
+from squeezefilm.physics.render.program.renderer import render
+from squeezefilm.physics.texture_files.pictures import picture_from
+from squeezefilm.physics.texture_files.texture_file import (
+    TextureFile,
+    load_texture,
+    texture_from_text,
+)
 
 _KNOTS = 257
 _LEAST_REDUCTION = 1e-6  # of friction, far below what anybody feels

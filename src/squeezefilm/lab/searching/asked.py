@@ -11,14 +11,14 @@ from typing import Any
 
 import tomlkit
 
-from squeezefilm import config, presets
-from squeezefilm.config.scan import require_quick_toml
-from squeezefilm.errors import ConfigError
+from squeezefilm.core import config, presets
+from squeezefilm.core.config.scan import require_quick_toml
+from squeezefilm.core.errors import ConfigError
+from squeezefilm.design.search.candidate import Design
+from squeezefilm.design.search.criteria import bounded, criterion_of
+from squeezefilm.design.search.report.plates import plate_file
+from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.lab.files import existing
-from squeezefilm.report.design.plates import plate_file
-from squeezefilm.search.design.candidate import Design
-from squeezefilm.search.design.criteria import bounded, criterion_of
-from squeezefilm.search.design.requirements import Requirements
 
 _DISPLAYS = ("start_from", "compare_with")
 """Keys of requirements that name a display, which may be a file."""

@@ -13,15 +13,15 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import SqueezefilmError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.loading import hear_interrupts
+from squeezefilm.core.progress import about
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare
-from squeezefilm.loading import hear_interrupts
-from squeezefilm.progress import about
 
 if TYPE_CHECKING:
-    from squeezefilm.search.design.run import Glimpse
+    from squeezefilm.design.search.run import Glimpse
 
 TELL_EVERY: si.Second = 0.25
 """Between two glimpses that the pages get; a new stage and the end are told at once."""
@@ -123,9 +123,9 @@ def search(connection: Connection, text: str, folder: Path, out: Path, **how: An
 def _found(
     stop: _Stop, tell: Tell, text: str, folder: Path, out: Path, how: dict[str, Any]
 ) -> dict[str, Any]:
+    from squeezefilm.design.search.run import SearchRequest, search_until_stopped
     from squeezefilm.lab.searching import shown
     from squeezefilm.lab.searching.asked import requirements_of
-    from squeezefilm.search.design.run import SearchRequest, search_until_stopped
 
     requirements = requirements_of(text, folder)
     last: tuple[str, float] | None = None

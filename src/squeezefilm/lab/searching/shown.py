@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from squeezefilm.report.design.words import setting_words
-from squeezefilm.search.design.candidate import Evaluated
-from squeezefilm.search.design.criteria import CRITERIA, criterion_of
-from squeezefilm.search.design.found import DesignSearch
-from squeezefilm.search.design.reasons import corner_in_words, limit_in_words
-from squeezefilm.search.design.requirements import Requirements
-from squeezefilm.search.design.run import Glimpse
-from squeezefilm.search.design.tolerance import Made
+from squeezefilm.design.search.candidate import Evaluated
+from squeezefilm.design.search.criteria import CRITERIA, criterion_of
+from squeezefilm.design.search.found import DesignSearch
+from squeezefilm.design.search.reasons import corner_in_words, limit_in_words
+from squeezefilm.design.search.report.words import setting_words
+from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.run import Glimpse
+from squeezefilm.design.search.tolerance import Made
 
 MOST_POINTS = 600
 """Of the screened front that are drawn; of a longer one as many, evenly."""

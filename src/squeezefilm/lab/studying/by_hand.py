@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 
 
 class ByHand:

@@ -6,8 +6,8 @@ import dataclasses
 import hashlib
 from typing import Any
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.conduct.sessions import SessionConditions
 
 

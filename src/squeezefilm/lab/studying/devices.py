@@ -15,8 +15,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from squeezefilm.errors import DeviceError, InputError, SqueezefilmError
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core.errors import DeviceError, InputError, SqueezefilmError
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
@@ -278,7 +278,7 @@ def require_device(kind: str, display: str) -> None:
 
     Raises `InputError` that says which may.
     """
-    from squeezefilm.display import load_display
+    from squeezefilm.physics.display import load_display
     from squeezefilm.study.conduct.played_device import require_study_drive
 
     if kind == "none":

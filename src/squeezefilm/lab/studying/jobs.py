@@ -16,9 +16,9 @@ from squeezefilm.study.tasks.findings import TaskAnalysis
 
 def analysis_of(path: Path) -> dict[str, Any]:
     """The analysis of what was answered so far, by display: tables, numbers, figures."""
-    from squeezefilm.report.kit.style import png
-    from squeezefilm.report.study.page import study_figures
-    from squeezefilm.report.study.words import key_rows, read_first
+    from squeezefilm.core.kit.style import png
+    from squeezefilm.study.report.page import study_figures
+    from squeezefilm.study.report.words import key_rows, read_first
 
     with StudyStore.open(path) as store:
         answers = sum(one["answered"] for one in store.participants())
@@ -46,7 +46,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
 
 def _tables(display: str, one: StudyAnalysis) -> dict[str, Any]:
     """Answers by stimulus and by person, or confusions."""
-    from squeezefilm.report.study.words import (
+    from squeezefilm.study.report.words import (
         PERSON_HEAD,
         condition_head,
         condition_rows,
@@ -73,7 +73,7 @@ def _tables(display: str, one: StudyAnalysis) -> dict[str, Any]:
 
 def rehearsed(path: Path, participants: int) -> dict[str, Any]:
     """Simulated participants do the study's file."""
-    from squeezefilm.perception.observer import load_observer
+    from squeezefilm.physics.perception.observer import load_observer
     from squeezefilm.study.conduct.rehearsal import rehearse
 
     with StudyStore.open(path) as store:
@@ -83,7 +83,7 @@ def rehearsed(path: Path, participants: int) -> dict[str, Any]:
 
 def report_of(path: Path) -> dict[str, Any]:
     """The analysis written as pages beside the study's file."""
-    from squeezefilm.report.study.page import write_overview
+    from squeezefilm.study.report.page import write_overview
 
     with StudyStore.open(path) as store:
         found = analyze_study(store)

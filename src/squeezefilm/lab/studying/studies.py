@@ -10,15 +10,15 @@ import dataclasses
 from pathlib import Path
 from typing import Any, Literal
 
-from squeezefilm import presets
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import presets
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import to_json
 from squeezefilm.lab.files import existing, fresh, zipped
 from squeezefilm.lab.studying.by_hand import ByHand
 from squeezefilm.lab.studying.conditions import conditions_of
 from squeezefilm.lab.studying.told import confusion_counts, described, shown_sitting
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.results import to_json
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.again import why_begun_again
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import (

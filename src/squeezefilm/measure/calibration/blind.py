@@ -16,13 +16,12 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.intervals import LEVEL
-from squeezefilm.analysis.uncertainty import sobol_points
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import Display
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.core.hard_limits import DESCRIPTION_BYTES
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.regular_file import read_json, read_regular_text
+from squeezefilm.core.results import stamp, to_json, write_whole
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.discrepancy import BELIEVED, KINDS, scales_of
 from squeezefilm.measure.calibration.friction_likelihood import GRID, touching
@@ -36,9 +35,10 @@ from squeezefilm.measure.calibration.priors import (
 from squeezefilm.measure.calibration.solved_answers import FRICTION, asked_by, solved_answers
 from squeezefilm.measure.calibration.written_display import calibrated_display
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.progress import SayProgress
-from squeezefilm.regular_file import read_json, read_regular_text
-from squeezefilm.results import stamp, to_json, write_whole
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.uncertainty.intervals import LEVEL
+from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
 KIND = "squeezefilm blind prediction"
 _SOLVED, _FRICTION = 32, 256

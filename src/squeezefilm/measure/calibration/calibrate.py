@@ -8,16 +8,10 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.drawn import evaluate
-from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, between_limits
-from squeezefilm.analysis.intervals import LEVEL, MOST_REFUSED, quantiles
-from squeezefilm.analysis.uncertainty import sobol_points
-from squeezefilm.chain.prediction import Prediction, predict
-from squeezefilm.chain.touch import touch
-from squeezefilm.display import Display
-from squeezefilm.distributions import Distribution
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.distributions import Distribution
+from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.progress import SayProgress
 from squeezefilm.measure.calibration.calibration import (
     CalibratedValue,
     Calibration,
@@ -46,9 +40,15 @@ from squeezefilm.measure.calibration.plate_fit import WORKING, PlateFit, fitted_
 from squeezefilm.measure.calibration.priors import calibration_parameters, with_calibrated
 from squeezefilm.measure.calibration.solved_answers import FRICTION, MODE_FREQUENCY
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.plate.layout import AnnularStator
-from squeezefilm.plate.working_mode import WorkingMode
-from squeezefilm.progress import SayProgress
+from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.chain.touch import touch
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.layout import AnnularStator
+from squeezefilm.physics.plate.working_mode import WorkingMode
+from squeezefilm.physics.uncertainty.drawn import evaluate
+from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, between_limits
+from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, quantiles
+from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
 _JOINT = 1024
 _BEFORE = 256
@@ -115,8 +115,8 @@ def calibrate(
 
 
 def friction_before(display: Display, seed: int) -> FrictionInterval | None:
-    """µ′/µ of a display as described with its interval, as `analysis.uncertainty` draws it; None
-    where more than 2 % of the draws have no friction."""
+    """µ′/µ of a display as described with its interval, as `physics.uncertainty.uncertainty` draws
+    it; None where more than 2 % of the draws have no friction."""
     prediction = predict(display)
     mixture = Mixture(display, prediction, driven=prediction.voltage is not None)
     drawn, refused = evaluate(mixture, sobol_points(mixture, _BEFORE, seed), lambda _: None)

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.intervals import LEVEL
-from squeezefilm.calibration_record import ComparedAnswer
-from squeezefilm.display import Display
+from squeezefilm.core import quantities as si
+from squeezefilm.core.calibration_record import ComparedAnswer
+from squeezefilm.core.results import to_json
 from squeezefilm.measure.calibration.discrepancy import Misfit
 from squeezefilm.measure.calibration.identified import Identification
 from squeezefilm.measure.calibration.solved_answers import Asked
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.results import to_json
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.uncertainty.intervals import LEVEL
 
 
 @dataclass(frozen=True)
@@ -101,8 +101,8 @@ class Calibration:
 
     `values` are the parameters of plate, finger and surface; `identification` says which of them
     the data told; `laws` are the weights of each choice of a law after the data (before:
-    `analysis.model_choices`). `misfits` judge the plate's and the friction's observations.
-    `before` and `after` are friction's interval without and with what was measured;
+    `physics.uncertainty.model_choices`). `misfits` judge the plate's and the friction's
+    observations. `before` and `after` are friction's interval without and with what was measured;
     `next_measurements` the candidates, most telling first. `emulator_errors` are the emulator's own
     (relative, by answer), of `solves` plates. `doubts` are sentences that a reader must see.
     `compared` has every observation beside the model alone.

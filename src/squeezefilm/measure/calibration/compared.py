@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.intervals import LEVEL
-from squeezefilm.calibration_record import ComparedAnswer
+from squeezefilm.core import quantities as si
+from squeezefilm.core.calibration_record import ComparedAnswer
 from squeezefilm.measure.calibration.friction_likelihood import touching
 from squeezefilm.measure.calibration.friction_posterior import FrictionDraws
 from squeezefilm.measure.calibration.plate_fit import PlateFit, prior_scores
 from squeezefilm.measure.calibration.solved_answers import FRICTION, MODE_FREQUENCY, asked_by
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.physics.uncertainty.intervals import LEVEL
 
 UNITS: dict[str, str] = {
     "resonance_frequency": "Hz",

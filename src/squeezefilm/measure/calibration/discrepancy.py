@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 BELIEVED: dict[str, si.Dimensionless] = {
     "resonance_frequency": 0.01,

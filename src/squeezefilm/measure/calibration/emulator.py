@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 
 HELD_OUT = 12
 """Points that the emulator is not shown, from which its error is taken."""

@@ -10,12 +10,14 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, ClassVar
 
-from squeezefilm.calibration_record import UsedRecording
-from squeezefilm.display import Display, NamedDisplay
-from squeezefilm.distributions import Distribution
-from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.from_text import reads_text
-from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.core.calibration_record import UsedRecording
+from squeezefilm.core.distributions import Distribution
+from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.hard_limits import RECORDING_BYTES
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.regular_file import read_regular
+from squeezefilm.core.results import Result, to_json
 from squeezefilm.measure.calibration.blind import Score, load_prediction, score
 from squeezefilm.measure.calibration.calibrate import calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
@@ -29,9 +31,7 @@ from squeezefilm.measure.calibration.solved_answers import (
 from squeezefilm.measure.calibration.written_display import calibrated_display, write_calibrated
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.measure.recordings.kinds import FrictionCurve
-from squeezefilm.progress import SayProgress
-from squeezefilm.regular_file import read_regular
-from squeezefilm.results import Result, to_json
+from squeezefilm.physics.display import Display, NamedDisplay
 
 
 @dataclass(frozen=True, eq=False)

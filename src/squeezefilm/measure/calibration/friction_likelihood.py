@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.calibration.discrepancy import (
     BELIEVED,
     FRICTION_SCALES,

@@ -1,9 +1,10 @@
 """What observations of µ′/µ say of a finger and of the laws: weighted draws.
 
-Draws of everything that `analysis.draws.Mixture` has uncertain (values, laws and mechanisms),
-first from the priors, then from a Gaussian about those that the observations speak for (in normal
-scores of the unit cube, mixed with the priors so that no weight runs away): adaptive importance
-sampling, Cappé et al. 2004, 10.1198/106186004X12803. The laws are weighted by it as values are.
+Draws of everything that `physics.uncertainty.draws.Mixture` has uncertain (values, laws and
+mechanisms), first from the priors, then from a Gaussian about those that the observations speak for
+(in normal scores of the unit cube, mixed with the priors so that no weight runs away): adaptive
+importance sampling, Cappé et al. 2004, 10.1198/106186004X12803. The laws are weighted by it as
+values are.
 """
 
 from __future__ import annotations
@@ -17,20 +18,20 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import Draw, Mixture, as_drawn, between_limits
-from squeezefilm.chain.prediction import Prediction
-from squeezefilm.display import Display
-from squeezefilm.errors import OutOfRangeError, SqueezefilmError
-from squeezefilm.kept.store import Kept
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import OutOfRangeError, SqueezefilmError
+from squeezefilm.core.kept.store import Kept
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import to_json
 from squeezefilm.measure.calibration.discrepancy import Misfit
 from squeezefilm.measure.calibration.friction_likelihood import (
     GRID,
     FrictionLikelihood,
     Touching,
 )
-from squeezefilm.progress import SayProgress
-from squeezefilm.results import to_json
+from squeezefilm.physics.chain.prediction import Prediction
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, between_limits
 
 DRAWS, ROUNDS = 2048, 2
 """Draws from the priors, and how often half as many more are drawn where the observations point."""
@@ -142,7 +143,7 @@ class FrictionPosterior:
 
     def shares(self) -> Iterator[tuple[str, dict[str, float], dict[str, float]]]:
         """Of each choice of a law its path, and the weights of its options before and after."""
-        from squeezefilm.analysis.model_choices import Choice
+        from squeezefilm.physics.uncertainty.model_choices import Choice
 
         weight = self.weights.sum(axis=1)
         for k, one in enumerate(self.mixture.inputs):

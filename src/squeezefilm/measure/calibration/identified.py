@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 Standing = Literal["identified", "narrowed", "not told"]
 IDENTIFIED, NOT_TOLD = 0.35, 0.9

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.intervals import LEVEL
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.calibration.calibration import NextMeasurement
+from squeezefilm.physics.uncertainty.intervals import LEVEL
 
 ACCURACIES: dict[str, tuple[si.Dimensionless, str]] = {
     "resonance_frequency": (5e-4, "resonance frequency by an impedance sweep"),

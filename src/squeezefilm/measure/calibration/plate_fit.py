@@ -9,10 +9,9 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.parameters import Parameter
-from squeezefilm.display import Display
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.progress import SayProgress
 from squeezefilm.measure.calibration.emulator import HELD_OUT, emulator_of, least_points
 from squeezefilm.measure.calibration.plate_posterior import (
     PlatePosterior,
@@ -30,8 +29,9 @@ from squeezefilm.measure.calibration.solved_answers import (
     solved_answers,
 )
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.progress import SayProgress
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.uncertainty.parameters import Parameter
 
 _MOST_LOST = 0.25
 _SMALL = 0.3  # of a standard error; so much adds a twentieth to it

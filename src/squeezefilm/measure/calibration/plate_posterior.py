@@ -14,8 +14,9 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError, optional
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, optional
+from squeezefilm.core.progress import SayProgress
 from squeezefilm.measure.calibration.discrepancy import (
     KINDS,
     READ_ALONE,
@@ -29,7 +30,6 @@ from squeezefilm.measure.calibration.emulator import Emulator
 from squeezefilm.measure.calibration.priors import NormalScores
 from squeezefilm.measure.calibration.solved_answers import Asked, asked_by
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.progress import SayProgress
 
 STEPS, BURN_IN = 2000, 500
 """Of each walker: kept, and left out before."""

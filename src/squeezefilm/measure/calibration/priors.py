@@ -14,13 +14,13 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.parameters import Origin, Parameter, value_at, with_values
-from squeezefilm.display import Display
-from squeezefilm.distributions import Distribution, LogNormal, Normal, Uniform
-from squeezefilm.errors import InputError
-from squeezefilm.materials import Piezoceramic
-from squeezefilm.plate.layout import AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.core import quantities as si
+from squeezefilm.core.distributions import Distribution, LogNormal, Normal, Uniform
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import Piezoceramic
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.physics.uncertainty.parameters import Origin, Parameter, value_at, with_values
 
 STIFFNESS_SHARE, CHARGE_SHARE, PERMITTIVITY_SHARE = (
     "ceramic_stiffness_share",

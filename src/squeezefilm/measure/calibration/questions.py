@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from squeezefilm import quantities as si
-from squeezefilm.display import NamedDisplay
-from squeezefilm.errors import InputError
-from squeezefilm.from_text import reads_text
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.progress import SayProgress
 from squeezefilm.measure.calibration.blind import BlindPrediction, predict_blind
 from squeezefilm.measure.calibration.solved_answers import LINES
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.progress import SayProgress
+from squeezefilm.physics.display import NamedDisplay
 
 CONDITIONS: dict[str, si.Unit] = {
     "vibration_amplitude": si.Unit("m"),

@@ -13,19 +13,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.kept.store import Kept, in_passing
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.kept.store import Kept, in_passing
+from squeezefilm.core.results import to_json
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.plate.electronics import ring_admittance
-from squeezefilm.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
-from squeezefilm.plate.parts import assembly_mass
-from squeezefilm.plate.ring.body import ring_body
-from squeezefilm.plate.ring.modes import clamped_capacitance
-from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.solid.working import SolidMode, solid_mode
-from squeezefilm.plate.working_mode import working_mode
-from squeezefilm.results import to_json
+from squeezefilm.physics.plate.electronics import ring_admittance
+from squeezefilm.physics.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.physics.plate.parts import assembly_mass
+from squeezefilm.physics.plate.ring.body import ring_body
+from squeezefilm.physics.plate.ring.modes import clamped_capacitance
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.working import SolidMode, solid_mode
+from squeezefilm.physics.plate.working_mode import working_mode
 
 MODE_FREQUENCY, LINES = "mode_frequency", ("lines_across_length", "lines_across_width")
 FRICTION = "relative_friction"

@@ -2,8 +2,8 @@
 
 Every value that the data told something of is written as measured, with the posterior's spread.
 The rest stays as it was described. What the spreads of single values do not say is in the file's
-`joint` (`joint_spread.JointSpread`), which draws of friction's interval use; what was measured
-stands in its `calibration` (`calibration_record.CalibrationRecord`).
+`joint` (`core.joint_spread.JointSpread`), which draws of friction's interval use; what was measured
+stands in its `calibration` (`core.calibration_record.CalibrationRecord`).
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm import __version__
-from squeezefilm import quantities as si
-from squeezefilm.analysis.draws import Input
-from squeezefilm.analysis.joint_draws import AMPLITUDE_SHARE, FRICTION_OFFSET
-from squeezefilm.analysis.parameters import SKIN_COMPLIANCE, Parameter, with_values
-from squeezefilm.calibration_record import CalibrationRecord, UsedRecording
-from squeezefilm.chain.prediction import predict
-from squeezefilm.config.provenance import Provenance
-from squeezefilm.config.write import text_of
-from squeezefilm.display import Display
-from squeezefilm.distributions import Distribution, Normal, Uniform
-from squeezefilm.joint_spread import JointSpread
+from squeezefilm.core import quantities as si
+from squeezefilm.core.calibration_record import CalibrationRecord, UsedRecording
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.config.write import text_of
+from squeezefilm.core.distributions import Distribution, Normal, Uniform
+from squeezefilm.core.joint_spread import JointSpread
+from squeezefilm.core.results import write_whole
 from squeezefilm.measure.calibration.calibration import CalibratedValue, Calibration, Joint
 from squeezefilm.measure.calibration.friction_posterior import finger_mixture
 from squeezefilm.measure.calibration.identified import NOT_TOLD
 from squeezefilm.measure.calibration.priors import SHARES, share_of
-from squeezefilm.plate.layout import DiscPlate, RectangularPlate
-from squeezefilm.results import write_whole
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.physics.uncertainty.draws import Input
+from squeezefilm.physics.uncertainty.joint_draws import AMPLITUDE_SHARE, FRICTION_OFFSET
+from squeezefilm.physics.uncertainty.parameters import SKIN_COMPLIANCE, Parameter, with_values
 
 _ROWS = 256
 """Draws that the file holds: their 5 % and 95 % ends are within some hundredths of all of them."""

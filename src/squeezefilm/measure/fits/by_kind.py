@@ -6,19 +6,19 @@ from importlib import import_module
 from types import ModuleType
 from typing import Annotated, Any, Protocol, cast
 
-from squeezefilm import quantities as si
-from squeezefilm.display import Display, NamedDisplay
-from squeezefilm.errors import InputError
-from squeezefilm.from_text import ReadBy, reads_text
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import ReadBy, reads_text
 from squeezefilm.measure.fits.estimate import Adequacy, Observation
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.read import read_recording
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
-from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.solid.working import solid_mode
+from squeezefilm.physics.display import Display, NamedDisplay
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.working import solid_mode
 
 OF_MANY_PEOPLE = kinds.FrictionDecays | kinds.FingertipImpedances | kinds.DetectionThresholds
 """What is compared, and not fitted."""

@@ -14,8 +14,8 @@ from typing import Literal
 import numpy as np
 from scipy import optimize, stats
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
 from squeezefilm.measure.fits.misfit import adequacy_of
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 LEVEL: si.Dimensionless = 0.95
 """Of an interval, unless said."""

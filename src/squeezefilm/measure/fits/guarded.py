@@ -9,7 +9,7 @@ from typing import ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Observation
 
 _P = ParamSpec("_P")

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.fits.estimate import Adequacy
 
 STRUCTURED = 4.0

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.misfit import correlation_factor
 from squeezefilm.measure.fits.nonlinear import propagated

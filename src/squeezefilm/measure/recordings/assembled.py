@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.recordings import assembled_friction, kinds
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES, Fixture
@@ -18,7 +18,7 @@ from squeezefilm.measure.recordings.files.raw_table import RawTable
 from squeezefilm.measure.recordings.motions import moment_by_moment, motion_of, motion_per_volt
 from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity
 from squeezefilm.measure.recordings.rows import both_rows, require_rising, rising_order
-from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
+from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
 _HZ, _S = si.Unit("Hz"), si.Unit("s")
 _PAIRS = tuple(IMPEDANCES)

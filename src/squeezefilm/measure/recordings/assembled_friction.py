@@ -6,7 +6,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
 from squeezefilm.measure.recordings.rows import require_rising

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import DENSITY, LAYER, SIDE
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import DENSITY, LAYER, SIDE
 
 
 @si.checked_numbers

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from squeezefilm import quantities as si
-from squeezefilm.hard_limits import FREQUENCY
+from squeezefilm.core import quantities as si
+from squeezefilm.core.hard_limits import FREQUENCY
 from squeezefilm.measure.recordings.kinds import Told
 
 MOST_VOLTAGE: si.Volt = 1e4

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from squeezefilm import quantities as si
-from squeezefilm.hard_limits import FINGER_SPEED, FORCE, FREQUENCY
+from squeezefilm.core import quantities as si
+from squeezefilm.core.hard_limits import FINGER_SPEED, FORCE, FREQUENCY
 from squeezefilm.measure.recordings.described import Column, Described
 
 

@@ -10,12 +10,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
-from squeezefilm import quantities as si
-from squeezefilm.config import load_text
-from squeezefilm.config.lines import locate
-from squeezefilm.config.scan import require_quick_toml
-from squeezefilm.errors import ConfigError
-from squeezefilm.hard_limits import DESCRIPTION_BYTES, FREQUENCY, PLACE, RESISTANCE
+from squeezefilm.core import quantities as si
+from squeezefilm.core.config import load_text
+from squeezefilm.core.config.lines import locate
+from squeezefilm.core.config.scan import require_quick_toml
+from squeezefilm.core.errors import ConfigError
+from squeezefilm.core.hard_limits import DESCRIPTION_BYTES, FREQUENCY, PLACE, RESISTANCE
+from squeezefilm.core.regular_file import read_regular_text
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.described import Band, Column, Described, Given
 from squeezefilm.measure.recordings.described_friction import (
@@ -25,8 +26,7 @@ from squeezefilm.measure.recordings.described_friction import (
     DescribedDetection,
     DescribedTouches,
 )
-from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
-from squeezefilm.regular_file import read_regular_text
+from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.quantities_read import quantity
 

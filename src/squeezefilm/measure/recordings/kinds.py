@@ -12,9 +12,9 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
-from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
+from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
 
 @si.checked_numbers

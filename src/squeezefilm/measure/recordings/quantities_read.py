@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError, QuantityError
-from squeezefilm.hard_limits import (
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError, QuantityError
+from squeezefilm.core.hard_limits import (
     FINGER_SPEED,
     FORCE,
     FREQUENCY,

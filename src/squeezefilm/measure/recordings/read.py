@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, cast
 
-from squeezefilm.config import load_text
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.core.config import load_text
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.core.regular_file import read_toml_text
+from squeezefilm.core.results import Result, to_json, write_whole
 from squeezefilm.measure.recordings.assembled import assembled, joined_sweeps
 from squeezefilm.measure.recordings.described import Described
 from squeezefilm.measure.recordings.description import (
@@ -30,8 +32,6 @@ from squeezefilm.measure.recordings.files.universal import SUFFIXES, read_univer
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, Recording
 from squeezefilm.measure.recordings.proposed import Proposal, proposed
 from squeezefilm.measure.recordings.quantities_read import Reading
-from squeezefilm.regular_file import read_toml_text
-from squeezefilm.results import Result, to_json, write_whole
 
 _TEXTS = (".csv", ".txt", ".tsv", ".dat")
 _SCANS = ("line scan", "grid scan")

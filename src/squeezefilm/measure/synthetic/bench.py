@@ -12,15 +12,15 @@ from functools import cached_property
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.parameters import Parameter
-from squeezefilm.chain.friction import friction_law
-from squeezefilm.display import Display
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.synthetic.duffing import SofteningResonance
 from squeezefilm.measure.synthetic.strokes import PlannedStrokes, recorded_strokes
 from squeezefilm.measure.synthetic.truth import SyntheticOptions, SyntheticTruth, drawn_truth
-from squeezefilm.plate.working_mode import WorkingMode, working_mode
+from squeezefilm.physics.chain.friction import friction_law
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
+from squeezefilm.physics.uncertainty.parameters import Parameter
 
 _POINTS = 161
 # Half-bandwidths f/2Q that a sweep covers on each side.

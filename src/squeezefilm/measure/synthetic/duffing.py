@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 _GRID = 1500
 _POLISHED = 5

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import RECORDING_BYTES
+from squeezefilm.core.regular_file import read_regular
+from squeezefilm.core.results import to_json, write_whole
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.synthetic.bench import SyntheticBench
-from squeezefilm.regular_file import read_regular
-from squeezefilm.results import to_json, write_whole
 
 _AMPLITUDE = 'given_as = "zero-to-peak"'
 

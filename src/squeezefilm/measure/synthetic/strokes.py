@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.recordings.kinds import FrictionBench
 
 _STEP: si.Second = 5e-3

@@ -9,17 +9,17 @@ from typing import Annotated, Literal, get_args
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.parameters import (
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, FrictionModel
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.uncertainty.parameters import (
     SKIN_COMPLIANCE,
     Parameter,
     uncertain_parameters,
     with_values,
 )
-from squeezefilm.chain.friction_models import DEFAULT_MODEL, FrictionModel
-from squeezefilm.display import Display
-from squeezefilm.errors import InputError
-from squeezefilm.plate.layout import RectangularPlate
 
 Mechanism = Literal["as described", "another law", "unmodelled mode", "uneven glue"]
 MECHANISMS: tuple[Mechanism, ...] = get_args(Mechanism)

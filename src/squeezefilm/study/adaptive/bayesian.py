@@ -14,10 +14,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.from_text import reads_text
-from squeezefilm.results import to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.results import to_json
 from squeezefilm.study.adaptive.kernel import EXACT, information
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code

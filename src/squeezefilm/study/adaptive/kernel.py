@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.compiled import compiled
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import compiled
 from squeezefilm.study.psychometric import kernel
 
 EXACT: si.FloatArray = np.empty(0)

@@ -15,8 +15,8 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.kernel import EXACT, information
 
 

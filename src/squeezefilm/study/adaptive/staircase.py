@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.results import to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import to_json
 from squeezefilm.study.psychometric.function import AXES, Axis
 
 

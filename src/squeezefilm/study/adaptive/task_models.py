@@ -20,9 +20,9 @@ from typing import Annotated
 import numpy as np
 from scipy.special import ndtr
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.perception.senses import D_PRIME_OF_75
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.adaptive.placement import PlacementModel
 
 Rates = Annotated[si.DimensionlessArray, si.AtLeast(0.0), si.Below(1.0)]

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from squeezefilm.progress import about
+from squeezefilm.core.progress import about
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
 

@@ -1,8 +1,8 @@
 """A surface that another program starts and stops: PsychoPy's script, or any of one's own.
 
 A handle that never waits for what plays: that goes on in a process of its own, with the safety and
-the record of a study's session. `bench.play.play_texture` is for one session of a given length
-that is judged afterwards.
+the record of a study's session. `instruments.bench.play.play_texture` is for one session of a given
+length that is judged afterwards.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from pathlib import Path
 from types import TracebackType
 from typing import Annotated, Literal, Self
 
-from squeezefilm import quantities as si
-from squeezefilm.arguments import called_with
-from squeezefilm.bench.markers import Markers, markers_if
-from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.from_text import ReadBy, reads_text
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.render.texture.composition import Composable
+from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import called_with
+from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.core.from_text import ReadBy, reads_text
+from squeezefilm.instruments.bench.markers import Markers, markers_if
+from squeezefilm.instruments.twin.hand import EXPLORING
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.render.texture.composition import Composable
+from squeezefilm.physics.texture_files.texture_file import TextureFile, load_texture
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.playing_process import Surface, surface_of
 from squeezefilm.study.conduct.study_device import TrialMotion
-from squeezefilm.texture_file import TextureFile, load_texture
-from squeezefilm.twin.hand import EXPLORING
 
 PlaybackState = Literal["ready", "playing", "failed", "closed"]
 Playable = Annotated[Stimulus | TextureFile | Composable, ReadBy(load_texture)]

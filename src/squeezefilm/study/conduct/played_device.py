@@ -19,16 +19,16 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Self
 
-from squeezefilm import quantities as si
-from squeezefilm.display import load_display
-from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.loading import interrupts_held
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.results import config_hash
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.core.loading import interrupts_held
+from squeezefilm.core.results import config_hash
+from squeezefilm.instruments.twin.hand import EXPLORING
+from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.conduct.playing_process import Surface, WorkerOrders, serve
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
-from squeezefilm.twin.hand import EXPLORING
-from squeezefilm.twin.settings import PickupModel, TwinSettings
 
 START_LIMIT: si.Second = 300.0
 """A first start solves the plate and compiles, which may take a minute on a busy computer."""

@@ -1,8 +1,8 @@
 """The process that plays a study's surfaces on a device, told over a pipe by `session_device`.
 
 It is a process of its own so that nothing the study does can hold up what is played. It plays with
-the safety of `session.play.real_time`; where the study's program dies, the pipe breaks and the
-output ramps to zero; where this process dies, the device's own watchdog stops it.
+the safety of `instruments.session.play.real_time`; where the study's program dies, the pipe breaks
+and the output ramps to zero; where this process dies, the device's own watchdog stops it.
 
 Orders in: ("verify",), ("prepare", surface), ("present", surface, seed, name), ("stop",). Answers:
 ("verified", verification), ("prepared",), ("playing", since), ("ended", failure, exploration),
@@ -26,34 +26,35 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.bench.play import device_stream
-from squeezefilm.bench.resonance_sweep import ResonanceSweep, sweep_resonance
-from squeezefilm.bench.setup import KnownDevice, PlaySetup, play_setup
-from squeezefilm.chain.prediction import predict
-from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.serial_ports import SerialDrive
-from squeezefilm.device.wire.link import Link
-from squeezefilm.device.wire.safety import Limits, require_safe_drive
-from squeezefilm.device.wire.states import State
-from squeezefilm.device.wire.streams import open_stream
-from squeezefilm.display import Display, load_display
-from squeezefilm.errors import SqueezefilmError
-from squeezefilm.formats.traces import Table, csv_text
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.plate.working_mode import WorkingMode
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.results import stamp
-from squeezefilm.session.loop import rows as column
-from squeezefilm.session.play.plan import Ending, PlayView
-from squeezefilm.session.play.real_time import PlayOutcome, run_play
-from squeezefilm.session.record.trace import Trace, read_trace
+from squeezefilm.core import quantities as si
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.formats.traces import Table, csv_text
+from squeezefilm.core.results import stamp
+from squeezefilm.instruments.bench.play import device_stream
+from squeezefilm.instruments.bench.resonance_sweep import ResonanceSweep, sweep_resonance
+from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
+from squeezefilm.instruments.device.host import DeviceHost
+from squeezefilm.instruments.device.serial_ports import SerialDrive
+from squeezefilm.instruments.device.wire.link import Link
+from squeezefilm.instruments.device.wire.safety import require_safe_drive
+from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.device.wire.streams import open_stream
+from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.play.plan import Ending, PlayView
+from squeezefilm.instruments.session.play.real_time import PlayOutcome, run_play
+from squeezefilm.instruments.session.record.trace import Trace, read_trace
+from squeezefilm.instruments.twin.settings import TwinSettings
+from squeezefilm.instruments.twin.working_point import working_point
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import Display, load_display
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.plate.working_mode import WorkingMode
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.texture_files.texture_file import TextureFile
 from squeezefilm.study.conduct.study_device import DeviceVerification, TrialMotion
 from squeezefilm.study.record.exploration import PATH_PERIOD
 from squeezefilm.study.record.explored_trials import explored_table
-from squeezefilm.texture_file import TextureFile
-from squeezefilm.twin.settings import TwinSettings
-from squeezefilm.twin.working_point import working_point
 
 LONGEST_PRESENTATION: si.Second = 600.0
 """A surface that nobody answers plays no longer; the trial then comes again."""

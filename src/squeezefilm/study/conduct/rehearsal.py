@@ -13,9 +13,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from squeezefilm.errors import InputError
-from squeezefilm.perception.observer import Observer
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.observer import Observer
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.rehearsed_hand import path_of, rehearsed
 from squeezefilm.study.conduct.run import Presentation, Response, StudyRun, spoiled_by
 from squeezefilm.study.conduct.sessions import (

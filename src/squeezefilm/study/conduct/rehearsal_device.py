@@ -1,9 +1,9 @@
 """A study's device that is a display's twin: to rehearse a study, its files and its analysis.
 
-Loop, link, device and plate are those of a session, on a virtual clock (`session.play.simulated`):
-with the plate's drift, its amplifier and the noise of its pickup, so that a verification measures
-something and may fail. Nobody can feel it; a simulated hand explores every surface instead, which
-says how a finger moves, not what a person would answer.
+Loop, link, device and plate are those of a session, on a virtual clock
+(`instruments.session.play.simulated`): with the plate's drift, its amplifier and the noise of its
+pickup, so that a verification measures something and may fail. Nobody can feel it; a simulated hand
+explores every surface instead, which says how a finger moves, not what a person would answer.
 """
 
 from __future__ import annotations
@@ -12,27 +12,27 @@ import dataclasses
 import tempfile
 from pathlib import Path
 
-from squeezefilm import quantities as si
-from squeezefilm.bench.resonance_sweep import ResonanceSweep, sweep_resonance
-from squeezefilm.bench.setup import KnownDevice, play_setup
-from squeezefilm.device.host import DeviceHost
-from squeezefilm.device.wire.link import Link
-from squeezefilm.device.wire.safety import Limits
-from squeezefilm.display import Display
-from squeezefilm.errors import DeviceError
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.results import config_hash
-from squeezefilm.session.play.plan import Ending
-from squeezefilm.session.play.simulated import VirtualStream, virtual_play
-from squeezefilm.session.record.trace import read_trace
+from squeezefilm.core import quantities as si
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.core.errors import DeviceError
+from squeezefilm.core.results import config_hash
+from squeezefilm.instruments.bench.resonance_sweep import ResonanceSweep, sweep_resonance
+from squeezefilm.instruments.bench.setup import KnownDevice, play_setup
+from squeezefilm.instruments.device.host import DeviceHost
+from squeezefilm.instruments.device.wire.link import Link
+from squeezefilm.instruments.session.play.plan import Ending
+from squeezefilm.instruments.session.play.simulated import VirtualStream, virtual_play
+from squeezefilm.instruments.session.record.trace import read_trace
+from squeezefilm.instruments.twin.device import TwinDevice
+from squeezefilm.instruments.twin.hand import Hand, hand_from
+from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.texture_files.texture_file import TextureFile
 from squeezefilm.study.conduct.playing_process import explored, resonance_verified
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
-from squeezefilm.texture_file import TextureFile
-from squeezefilm.twin.device import TwinDevice
-from squeezefilm.twin.hand import Hand, hand_from
-from squeezefilm.twin.settings import PickupModel, TwinSettings
-from squeezefilm.twin.working_point import WorkingPoint, working_point
 
 
 class StudyTwin:

@@ -1,21 +1,22 @@
 """The paths that simulated participants leave beside a rehearsed study: assumed, and labelled so.
 
 Their finger goes as the model of their answers has it: strokes to and fro along x, or the plain
-hand of free exploration (`perception.free_hand`), at the speed and force of its finger class.
+hand of free exploration (`physics.perception.free_hand`), at the speed and force of its finger
+class.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.display import Display
-from squeezefilm.formats.traces import Table, csv_text
-from squeezefilm.perception.free_hand import SAYS
-from squeezefilm.perception.observer import FingerClass, Observer
-from squeezefilm.perception.percepts import exploration
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.core import quantities as si
+from squeezefilm.core.formats.traces import Table, csv_text
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.perception.free_hand import SAYS
+from squeezefilm.physics.perception.observer import FingerClass, Observer
+from squeezefilm.physics.perception.percepts import exploration
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.study.conduct.study_device import TrialMotion
 from squeezefilm.study.design.matching import Exploring
 from squeezefilm.study.record.exploration import PATH_PERIOD

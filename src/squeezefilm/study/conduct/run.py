@@ -20,10 +20,10 @@ from datetime import datetime
 from typing import Any, Literal
 
 from squeezefilm import __version__
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.results import to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import to_json
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.conduct.again import COUNTED, practise_again, set_aside
 from squeezefilm.study.conduct.sessions import display_wanted, next_planned

@@ -18,12 +18,12 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from squeezefilm import __version__
-from squeezefilm import quantities as si
-from squeezefilm.display import Display
-from squeezefilm.errors import InputError
-from squeezefilm.plate.exposure import EAR_DISTANCE
-from squeezefilm.plate.sound import SoundField
-from squeezefilm.results import to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import to_json
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.exposure import EAR_DISTANCE
+from squeezefilm.physics.plate.sound import SoundField
 from squeezefilm.study.conduct.again import COUNTED, restart_block
 from squeezefilm.study.conduct.study_device import DeviceVerification, StudyDevice
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
@@ -144,10 +144,10 @@ def exposure(
 ) -> Exposure:
     """The exposure of a session of `duration` (s) on a display at its own voltage.
 
-    The plate or ring is solved and its field searched over all directions (`plate.sound`), which
-    takes seconds. Raises what `solve_plate` raises.
+    The plate or ring is solved and its field searched over all directions (`physics.plate.sound`),
+    which takes seconds. Raises what `solve_plate` raises.
     """
-    from squeezefilm.analysis.plate.command import solve_plate
+    from squeezefilm.design.plate.command import solve_plate
 
     field = solve_plate(display, points=41, progress=progress).sound
     return exposure_of(display.name, field, duration, distance)

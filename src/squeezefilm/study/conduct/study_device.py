@@ -7,15 +7,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from squeezefilm import quantities as si
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.stimuli import Stimulus
 
 
 @dataclass(frozen=True)
 class DeviceIdentity:
     """Which device presented a trial, so that its rows can be told apart.
 
-    `device_sha256` is the hash of the display's description (`results.config_hash`),
+    `device_sha256` is the hash of the display's description (`core.results.config_hash`),
     `calibration_sha256` that of the calibration in use; both are empty where there is none.
     """
 
@@ -86,12 +86,12 @@ class DeviceVerification:
 class TrialMotion:
     """How the finger explored one trial; NaN where the device does not know.
 
-    `trace` is a table's CSV text (`formats.traces.csv_text`) of the finger's path, empty if there
-    is none; its metadata must not name the participant. `raw_trace` is the random name of a file
-    that the device wrote into the study's folder of traces, empty if there is none. `touch` is the
-    share of the time in which the finger touched. `began` and `ended` are when the device said that
-    it plays, and that its output is at zero (s, `time.monotonic`). `unusable` says why what was
-    played cannot be used; empty where it can.
+    `trace` is a table's CSV text (`core.formats.traces.csv_text`) of the finger's path, empty if
+    there is none; its metadata must not name the participant. `raw_trace` is the random name of a
+    file that the device wrote into the study's folder of traces, empty if there is none. `touch` is
+    the share of the time in which the finger touched. `began` and `ended` are when the device said
+    that it plays, and that its output is at zero (s, `time.monotonic`). `unusable` says why what
+    was played cannot be used; empty where it can.
     """
 
     path_length: si.Metre = math.nan

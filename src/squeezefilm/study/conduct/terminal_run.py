@@ -10,15 +10,15 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
-from squeezefilm import config
-from squeezefilm import quantities as si
-from squeezefilm.display import Display
-from squeezefilm.errors import InputError
-from squeezefilm.formats.traces import Table, csv_text
-from squeezefilm.perception.observer import load_observer
-from squeezefilm.progress import SayProgress
-from squeezefilm.render.motion.finger_path import FingerPath
-from squeezefilm.results import write_whole
+from squeezefilm.core import config
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.formats.traces import Table, csv_text
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import write_whole
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.study.conduct.again import COUNTED, why_begun_again
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import (
@@ -218,10 +218,10 @@ def _device(
     if drive == "none":
         return (NoDevice() if by_hand is None else ByHand(by_hand)), None
     # Plates, film and loop take a second to import, which a study by hand need not wait for.
-    from squeezefilm.display import load_display
+    from squeezefilm.instruments.twin.hand import EXPLORING, Hand
+    from squeezefilm.physics.display import load_display
     from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
     from squeezefilm.study.conduct.rehearsal_device import StudyTwin
-    from squeezefilm.twin.hand import EXPLORING, Hand
 
     if drive != "rehearsal":
         require_study_drive(drive)

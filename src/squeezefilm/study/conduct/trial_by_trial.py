@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-from squeezefilm import quantities as si
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, Response, StudyRun
 from squeezefilm.study.conduct.study_device import StudyDevice, TrialMotion
 from squeezefilm.study.record.store import utc_now

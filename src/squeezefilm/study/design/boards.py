@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import HardLimit, require_within
-from squeezefilm.perception.stimuli import Grating
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import HardLimit, require_within
+from squeezefilm.physics.perception.stimuli import Grating
 from squeezefilm.study.design.study_design import StudyDesign
 
 _RIDGES = HardLimit("ridges of a board", 1, 20_000, "a drawing of so many opens nowhere")

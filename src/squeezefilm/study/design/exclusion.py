@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 _Share = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
 _Chance = Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(0.5)]

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Literal
 
-from squeezefilm.errors import InputError
-from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 
 MatchedWith = Literal["real gratings", "stimuli"]
 """What match-to-sample offers as answers."""

@@ -7,11 +7,11 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from squeezefilm import quantities as si
-from squeezefilm.from_text import reads_text
-from squeezefilm.hard_limits import PLANNED_TRIALS, require_within
-from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.results import Result
+from squeezefilm.core import quantities as si
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.hard_limits import PLANNED_TRIALS, require_within
+from squeezefilm.core.results import Result
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import (
     Trial,

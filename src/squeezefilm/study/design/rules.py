@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 _Speed = Annotated[si.MetrePerSecond, si.AtLeast(0.0), si.AtMost(10.0)]
 _Force = Annotated[si.Newton, si.AtLeast(0.0), si.AtMost(50.0)]

@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.perception.stimuli import Stimulus, Varied
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.stimuli import Stimulus, Varied
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 

@@ -21,14 +21,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
-from squeezefilm import quantities as si
-from squeezefilm.config.provenance import Provenance
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.formats.image_file import with_images
-from squeezefilm.from_text import ReadBy
-from squeezefilm.hard_limits import PARTICIPANT_TRIALS, require_within
-from squeezefilm.perception.stimuli import Grating, Stimulus, Varied
-from squeezefilm.results import config_hash
+from squeezefilm.core import quantities as si
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.core.from_text import ReadBy
+from squeezefilm.core.hard_limits import PARTICIPANT_TRIALS, require_within
+from squeezefilm.core.results import config_hash
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus, Varied
+from squeezefilm.physics.texture_files.image_file import with_images
 from squeezefilm.study.design.exclusion import ExclusionRule
 from squeezefilm.study.design.matching import (
     Exploring,
@@ -384,7 +384,7 @@ def load_design(name_or_path: str | Path) -> StudyDesign:
     Pictures in a stimulus's pattern are read from beside the file; a texture file named in a
     stimulus is looked for from where the program runs.
     """
-    from squeezefilm import config, presets
+    from squeezefilm.core import config, presets
 
     path = presets.resolve_study(name_or_path)
     found = config.load(StudyDesign, path)

@@ -17,7 +17,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.study.design.special_trials import CatchTrial
 from squeezefilm.study.design.study_design import Condition, Order, StudyDesign
 

@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from squeezefilm import quantities as si
-from squeezefilm.arguments import called_with
-from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.results import Result, stamp, to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import called_with
+from squeezefilm.core.errors import ConvergenceError, InputError
+from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.study.identification.choice_model import (
     ChoiceModel,
     PerceptualMap,

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.study.identification.confusion import (
     column_proportions,
     goodness_of_fit,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.study.identification.confusion import one_per_trial
 
 

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError, optional
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, optional
 from squeezefilm.study.identification.confusion import one_per_trial
 
 _MOST_TRIALS = 50_000

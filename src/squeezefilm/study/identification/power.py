@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import STUDIES, require_within
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import STUDIES, require_within
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import proportion_interval
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.confusion import ConfusionMatrix, whole_counts
 from squeezefilm.study.psychometric.interval_ends import holding
 

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from scipy import optimize, stats
 from scipy.special import erfcx, log_ndtr
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.study.identification.condition_means import condition_means
 from squeezefilm.study.identification.confusion import one_per_trial
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.study.design.exclusion import ExclusionRule
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.course import attention

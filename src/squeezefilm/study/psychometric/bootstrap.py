@@ -18,7 +18,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.special import bdtr, chdtri
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.kernel import BoolArray
 

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.psychometric.fit import Interval, PsychometricFit
 from squeezefilm.study.psychometric.interval_ends import holding
 

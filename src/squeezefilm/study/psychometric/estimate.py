@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,9 @@ from typing import Annotated, Literal, get_args
 import numpy as np
 from scipy.special import ndtri
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.from_text import reads_text
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import reads_text
 from squeezefilm.study.psychometric import kernel
 
 Shape = Literal[

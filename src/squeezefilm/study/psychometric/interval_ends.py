@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 
 def holding(

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm import quantities as si
-from squeezefilm.compiled import compiled
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import compiled
 
 BoolArray = NDArray[np.bool_]
 

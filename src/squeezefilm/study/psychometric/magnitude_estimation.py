@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.psychometric.fit import Interval
 
 

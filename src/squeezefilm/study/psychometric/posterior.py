@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis
 from squeezefilm.study.psychometric.prior import LARGEST_RATE, PsychometricPrior

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm import quantities as si
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.explored_trials import MEASURES
 from squeezefilm.study.record.store import StudyStore

@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterable, Iterator
 from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm.errors import InputError
-from squeezefilm.regular_file import parsed_json
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.regular_file import parsed_json
 from squeezefilm.study.record.schema import SCHEMA, TABLES
 
 if TYPE_CHECKING:

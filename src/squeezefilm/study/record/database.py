@@ -13,8 +13,8 @@ import os
 import sqlite3
 from pathlib import Path
 
-from squeezefilm.errors import InputError, RecordError
-from squeezefilm.regular_file import require_regular
+from squeezefilm.core.errors import InputError, RecordError
+from squeezefilm.core.regular_file import require_regular
 from squeezefilm.study.record.schema import APPLICATION_ID, VERSION
 
 _PATIENCE = 5000

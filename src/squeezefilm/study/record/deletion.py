@@ -17,9 +17,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from squeezefilm.errors import InputError, RecordError
-from squeezefilm.hard_limits import TRACE_BYTES
-from squeezefilm.regular_file import opened
+from squeezefilm.core.errors import InputError, RecordError
+from squeezefilm.core.hard_limits import TRACE_BYTES
+from squeezefilm.core.regular_file import opened
 from squeezefilm.study.record.contents import is_trace, require_identifier
 from squeezefilm.study.record.database import same_folders
 from squeezefilm.study.record.erasure import erase_file, require_plain

@@ -12,7 +12,7 @@ import stat
 from collections.abc import Iterator
 from pathlib import Path
 
-from squeezefilm.errors import InputError, RecordError
+from squeezefilm.core.errors import InputError, RecordError
 
 _PIECE = 1 << 20
 _PLAIN = (

@@ -10,10 +10,10 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.perception.path_runs import straight_runs
-from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.path_runs import straight_runs
+from squeezefilm.physics.render.motion.finger_path import FingerPath
 
 # Slower than this the finger rests rather than explores; assumed.
 RESTING_SPEED: si.MetrePerSecond = 5e-3
@@ -41,7 +41,7 @@ class Exploration:
         moving_speed: path over the time spent above `RESTING_SPEED` (m/s); NaN if it never moved.
         moving_share: share of the time in touch spent above `RESTING_SPEED`.
         reversals: of the motion along x, rests left out.
-        passes: straight stretches one way, of 4 mm or more (`perception.path_runs`).
+        passes: straight stretches one way, of 4 mm or more (`physics.perception.path_runs`).
         along_x_share: share of the passes' way that goes along x more than along y; NaN without.
         coverage: share of the face's cells of 5 mm that the finger's middle came over; NaN where
             the face is not known.

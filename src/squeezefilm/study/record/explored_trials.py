@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.display import load_display
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.formats.traces import Table, table_from_csv
-from squeezefilm.plate.layout import AnnularStator
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.core.formats.traces import Table, table_from_csv
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import AnnularStator
 from squeezefilm.study.record.exploration import PATH_PERIOD, Exploration, exploration
 from squeezefilm.study.record.store import StudyStore
 

@@ -19,10 +19,10 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from squeezefilm import __version__
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import OWN_BYTES
-from squeezefilm.regular_file import parsed_json, read_json, read_regular_text
-from squeezefilm.results import write_whole
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import OWN_BYTES
+from squeezefilm.core.regular_file import parsed_json, read_json, read_regular_text
+from squeezefilm.core.results import write_whole
 from squeezefilm.study.record.erasure import erase_file, require_plain
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import (

@@ -12,9 +12,9 @@ import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.formats.traces import text_of_file
-from squeezefilm.hard_limits import FOREIGN_TRIALS, require_within
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.core.formats.traces import text_of_file
+from squeezefilm.core.hard_limits import FOREIGN_TRIALS, require_within
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import EXPLORED, Answers, answers_of
 from squeezefilm.study.record.implausible import require_plausible_rows

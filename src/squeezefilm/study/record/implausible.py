@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from statistics import median
 
-from squeezefilm.errors import ConfigError
+from squeezefilm.core.errors import ConfigError
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.tables import Cell
 

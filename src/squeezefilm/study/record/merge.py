@@ -13,8 +13,8 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-from squeezefilm.errors import ContradictionError, InputError
-from squeezefilm.results import write_whole
+from squeezefilm.core.errors import ContradictionError, InputError
+from squeezefilm.core.results import write_whole
 from squeezefilm.study.record.erasure import read_plain, require_own_folder
 from squeezefilm.study.record.schema import TABLES
 from squeezefilm.study.record.store import StudyStore, insert

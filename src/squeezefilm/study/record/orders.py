@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from squeezefilm.errors import InputError
-from squeezefilm.results import write_whole
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import write_whole
 from squeezefilm.study.design.plan import StudyPlan
 from squeezefilm.study.design.trials import Trial
 from squeezefilm.study.record.tables import Cell, Column, csv_text, surface_cells

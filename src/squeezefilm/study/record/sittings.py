@@ -20,11 +20,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError, RecordError
-from squeezefilm.hard_limits import OWN_BYTES
-from squeezefilm.regular_file import read_json
-from squeezefilm.results import write_whole
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, RecordError
+from squeezefilm.core.hard_limits import OWN_BYTES
+from squeezefilm.core.regular_file import read_json
+from squeezefilm.core.results import write_whole
 from squeezefilm.study.record.erasure import erase_file, overwrite, plain_file, require_plain
 
 try:

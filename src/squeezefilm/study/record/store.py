@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm import __version__
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError, RecordError
-from squeezefilm.results import sync_folder, write_whole
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, RecordError
+from squeezefilm.core.results import sync_folder, write_whole
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.contents import is_trace, problems
@@ -114,7 +114,7 @@ class StudyStore:
         return store
 
     def _fill(self, design: StudyDesign, seed: int, station: int, stations: int) -> None:
-        from squeezefilm.config.write import text_of
+        from squeezefilm.core.config.write import text_of
 
         row = {
             "uuid": str(uuid.uuid4()),
@@ -233,7 +233,7 @@ class StudyStore:
     def design(self) -> StudyDesign:
         """The design the file was made with."""
         if self._design is None:
-            from squeezefilm import config
+            from squeezefilm.core import config
 
             self._design = config.load_text(StudyDesign, self.study["design"], file=self.path)
         return self._design

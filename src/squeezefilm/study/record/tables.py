@@ -16,8 +16,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.explored_trials import NO_MEASURES, ExploredTrials
 from squeezefilm.study.record.store import StudyStore

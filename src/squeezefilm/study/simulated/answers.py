@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.from_text import reads_text
-from squeezefilm.perception.observer import NamedObserver
-from squeezefilm.results import Result, stamp
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.results import Result, stamp
+from squeezefilm.physics.perception.observer import NamedObserver
 from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.assumptions import assumed

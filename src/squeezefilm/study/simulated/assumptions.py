@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from squeezefilm.perception.free_hand import SAYS
+from squeezefilm.physics.perception.free_hand import SAYS
 from squeezefilm.study.design.study_design import StudyDesign, Task
 from squeezefilm.study.simulated.recalled import ASSUMED as RECALLED
 

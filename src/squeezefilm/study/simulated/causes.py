@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.perception.observer import FingerClass, Observer
-from squeezefilm.perception.percepts import Percept, along_way
-from squeezefilm.perception.senses import line_amplitudes, line_periods
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.observer import FingerClass, Observer
+from squeezefilm.physics.perception.percepts import Percept, along_way
+from squeezefilm.physics.perception.senses import line_amplitudes, line_periods
+from squeezefilm.physics.perception.stimuli import Stimulus
 
 if TYPE_CHECKING:
-    from squeezefilm.chain.rendered_texture import RenderAnalysis
-    from squeezefilm.perception.path_percepts import RunPercept
+    from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
+    from squeezefilm.physics.perception.path_percepts import RunPercept
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,15 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.display import Display, load_display
-from squeezefilm.errors import InputError
-from squeezefilm.perception.observer import FingerClass, Observer
-from squeezefilm.perception.percepts import Apparatus
-from squeezefilm.perception.senses import Candidates
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.progress import SayProgress
-from squeezefilm.results import config_hash
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import config_hash
+from squeezefilm.physics.display import Display, load_display
+from squeezefilm.physics.perception.observer import FingerClass, Observer
+from squeezefilm.physics.perception.percepts import Apparatus
+from squeezefilm.physics.perception.senses import Candidates
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.simulated.causes import Causes, median_causes
 from squeezefilm.study.simulated.felt_surfaces import (

@@ -16,27 +16,32 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.arguments import called_with
-from squeezefilm.display import NamedDisplay, load_display
-from squeezefilm.formats.traces import table_from_csv
-from squeezefilm.formats.trajectories import motion_from
-from squeezefilm.from_text import reads_text
-from squeezefilm.perception.observer import FingerClass, NamedObserver, Observer, load_observer
-from squeezefilm.perception.path_percepts import PathPercept, RunPercept, path_percept
-from squeezefilm.perception.perceived import Perceived
-from squeezefilm.perception.percepts import Apparatus, grating_percept
-from squeezefilm.perception.senses import percept_deviation
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.plate.layout import AnnularStator
-from squeezefilm.progress import SayProgress
-from squeezefilm.render.motion.finger_path import FingerPath
-from squeezefilm.results import Result, stamp, to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import called_with
+from squeezefilm.core.formats.traces import table_from_csv
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.physics.display import NamedDisplay, load_display
+from squeezefilm.physics.perception.observer import (
+    FingerClass,
+    NamedObserver,
+    Observer,
+    load_observer,
+)
+from squeezefilm.physics.perception.path_percepts import PathPercept, RunPercept, path_percept
+from squeezefilm.physics.perception.perceived import Perceived
+from squeezefilm.physics.perception.percepts import Apparatus, grating_percept
+from squeezefilm.physics.perception.senses import percept_deviation
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.plate.layout import AnnularStator
+from squeezefilm.physics.render.motion.finger_path import FingerPath
+from squeezefilm.physics.texture_files.texture_file import TextureFile
+from squeezefilm.physics.texture_files.trajectories import motion_from
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.record.exploration import Exploration, exploration, touches
 from squeezefilm.study.record.explored_trials import LONGEST_STEP
 from squeezefilm.study.simulated.recalled import difference
-from squeezefilm.texture_file import TextureFile
 
 _SAMPLE: si.Second = 2e-3
 _KEPT = frozenset({"speed_m_per_s", "amplitude_m", "relative_friction"})
@@ -164,7 +169,7 @@ def felt_on_path(asked: FeltRequest) -> FeltPath:
         design: the study whose surfaces are compared.
         stimulus: the one explored.
         path: a CSV file (`time_s`, `x_m`, `y_m`; a `force_N` if it is known), a motion in words
-            (`formats.trajectories`), or paths, one for each touch.
+            (`physics.texture_files.trajectories`), or paths, one for each touch.
         observer: whose senses; the preset "fingertip" if None.
         display: in place of the design's first.
         normal_force: (N); of the file, or the observer's median, which is assumed, if None.

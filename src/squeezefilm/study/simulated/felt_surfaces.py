@@ -11,21 +11,21 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from squeezefilm import quantities as si
-from squeezefilm.display import Display
-from squeezefilm.errors import InputError
-from squeezefilm.kept.store import Kept
-from squeezefilm.perception.observer import FingerClass, Observer
-from squeezefilm.perception.percepts import Apparatus, grating_percept, percept
-from squeezefilm.perception.senses import Candidates
-from squeezefilm.perception.stimuli import Grating, Stimulus
-from squeezefilm.progress import SayProgress
-from squeezefilm.results import config_hash
-from squeezefilm.second_process import is_present, later, second_process, values
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.kept.store import Kept
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import config_hash
+from squeezefilm.core.second_process import is_present, later, second_process, values
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.perception.observer import FingerClass, Observer
+from squeezefilm.physics.perception.percepts import Apparatus, grating_percept, percept
+from squeezefilm.physics.perception.senses import Candidates
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.simulated.causes import Causes, causes, free_causes
 
 if TYPE_CHECKING:
-    from squeezefilm.render.motion.finger_path import FingerPath
+    from squeezefilm.physics.render.motion.finger_path import FingerPath
 
 _AT_ONCE = 12
 """Fingers that each of two processes has between two words of progress."""
@@ -101,7 +101,7 @@ def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[FeltSurfac
 
 def _load() -> None:
     """What a second process needs before it takes fingers."""
-    import_module("squeezefilm.chain.rendered_texture")
+    import_module("squeezefilm.physics.chain.rendered_texture")
 
 
 def _name(feel: Callable[..., FeltSurface], surface: Stimulus | Grating, rest: Any) -> str:
@@ -152,8 +152,8 @@ def felt_freely(
     asked = _name(felt_freely, stimulus, (display, observer, finger, run))
     if (known := _known(asked)) is not None:
         return known
-    from squeezefilm.perception.path_percepts import path_percept
-    from squeezefilm.texture_file import TextureFile
+    from squeezefilm.physics.perception.path_percepts import path_percept
+    from squeezefilm.physics.texture_files.texture_file import TextureFile
 
     path = free_path(display, observer, finger)
     surface = TextureFile(stimulus.surface(), stimulus.name)
@@ -184,8 +184,8 @@ def felt_really(grating: Grating, observer: Observer, finger: FingerClass) -> Fe
 
 def free_path(display: Display, observer: Observer, finger: FingerClass) -> FingerPath:
     """How a finger explores a display freely. Raises `InputError` for a ring: it has no plane."""
-    from squeezefilm.perception.free_hand import free_exploration
-    from squeezefilm.plate.layout import AnnularStator
+    from squeezefilm.physics.perception.free_hand import free_exploration
+    from squeezefilm.physics.plate.layout import AnnularStator
 
     plate = display.actuator
     if isinstance(plate, AnnularStator):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from squeezefilm import quantities as si
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
-from squeezefilm.perception.observer import Observer
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.perception.observer import Observer
 from squeezefilm.study.record.exploration import touches
 from squeezefilm.study.record.explored_trials import LONGEST_STEP, ExploredTrials
 from squeezefilm.study.record.store import StudyStore

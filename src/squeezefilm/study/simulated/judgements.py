@@ -1,8 +1,9 @@
 """Simulated participants of two-interval, same-different and magnitude tasks, trial by trial.
 
-Senses and noise are those of match-to-sample (`perception.perceived`): every surface is perceived
-anew on every trial. What the tasks add is how an answer follows from what was perceived. None of
-that was measured, none was tuned, and `assumptions` says each in a sentence that results repeat.
+Senses and noise are those of match-to-sample (`physics.perception.perceived`): every surface is
+perceived anew on every trial. What the tasks add is how an answer follows from what was perceived.
+None of that was measured, none was tuned, and `assumptions` says each in a sentence that results
+repeat.
 
 Trials go in their order, all people at once, so that an adaptive series meets the answers that it
 asks for. **Every number that comes out is simulated.**
@@ -18,12 +19,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.perception.observer import Observer
-from squeezefilm.perception.perceived import Perceived, perceived
-from squeezefilm.perception.senses import FINEST_PERIOD, Candidates, percept_deviation
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.observer import Observer
+from squeezefilm.physics.perception.perceived import Perceived, perceived
+from squeezefilm.physics.perception.senses import FINEST_PERIOD, Candidates, percept_deviation
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import Trial, trials

@@ -17,13 +17,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.hard_limits import SIMULATED_TRIALS, require_within
-from squeezefilm.perception.observer import Observer
-from squeezefilm.perception.perceived import perceived_anew
-from squeezefilm.perception.senses import Candidates, percept_deviation
-from squeezefilm.results import Result, stamp, to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import SIMULATED_TRIALS, require_within
+from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.physics.perception.observer import Observer
+from squeezefilm.physics.perception.perceived import perceived_anew
+from squeezefilm.physics.perception.senses import Candidates, percept_deviation
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts

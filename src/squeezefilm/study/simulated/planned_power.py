@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm import quantities as si
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
-from squeezefilm.kept.store import Kept
-from squeezefilm.perception.observer import Observer
-from squeezefilm.results import stamp, to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.kept.store import Kept
+from squeezefilm.core.results import stamp, to_json
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.perception.observer import Observer
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.power import (
     ParticipantSimulator,

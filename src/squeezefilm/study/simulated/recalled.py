@@ -1,10 +1,10 @@
 """How like two surfaces feel, direction by direction; and surfaces matched with those recalled.
 
-A surface is perceived in each direction in which it was explored (`perception.perceived`): how
-evident its clearest rhythm is, and with which period. Two percepts differ, in standard deviations
-of that difference, by the strengths in every direction and by the periods where both have one that
-is felt. A person who knows the stimuli by name recalls each as if it were felt again, with noise
-of its own, and names the one that differs least. None of that was measured or tuned.
+A surface is perceived in each direction in which it was explored (`physics.perception.perceived`):
+how evident its clearest rhythm is, and with which period. Two percepts differ, in standard
+deviations of that difference, by the strengths in every direction and by the periods where both
+have one that is felt. A person who knows the stimuli by name recalls each as if it were felt again,
+with noise of its own, and names the one that differs least. None of that was measured or tuned.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm import quantities as si
-from squeezefilm.perception.perceived import Perceived, perceived_anew
-from squeezefilm.perception.senses import Candidates
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.perceived import Perceived, perceived_anew
+from squeezefilm.physics.perception.senses import Candidates
 
 if TYPE_CHECKING:
     from squeezefilm.study.simulated.chain_tables import ChainTables

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.perception.observer import Observer
-from squeezefilm.perception.senses import percept_deviation
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.observer import Observer
+from squeezefilm.physics.perception.senses import percept_deviation
 
 CHUNK = 60
 """People whose noise is drawn together: a multiple of all rows for 5 stimuli. Orders of more people

@@ -14,9 +14,9 @@ import numpy as np
 from scipy import stats
 from scipy.stats import mstats
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
-from squeezefilm.from_text import reads_text
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, InputError
+from squeezefilm.core.from_text import reads_text
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
 from squeezefilm.study.identification.condition_means import ConditionMean, condition_means

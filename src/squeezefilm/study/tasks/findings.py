@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from squeezefilm import quantities as si
-from squeezefilm.perception.stimuli import Varied
-from squeezefilm.results import Result, stamp, to_json
+from squeezefilm.core import quantities as si
+from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.physics.perception.stimuli import Varied
 from squeezefilm.study.design.study_design import Task
 from squeezefilm.study.identification.condition_means import ConditionMean
 from squeezefilm.study.identification.course import Course

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from scipy import stats
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.psychometric.interval_ends import holding
 from squeezefilm.study.psychometric.magnitude_estimation import fit_power_law

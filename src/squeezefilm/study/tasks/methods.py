@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from squeezefilm import __version__
-from squeezefilm import quantities as si
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import Answers
 

@@ -30,8 +30,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 
 _MEANS, _SPREADS = 161, 41
 _WIDEST = 2.0

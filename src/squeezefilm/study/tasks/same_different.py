@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import ndtr
 
-from squeezefilm import quantities as si
-from squeezefilm.perception.senses import D_PRIME_OF_75
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.psychometric.discrimination import differencing_sensitivity
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers

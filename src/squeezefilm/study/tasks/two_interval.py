@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.special import betaln
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.adaptive.staircase import Staircase
 from squeezefilm.study.identification.proportions import proportion_interval

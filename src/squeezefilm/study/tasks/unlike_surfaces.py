@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.study.psychometric.discrimination import differencing_sensitivity, sensitivity
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from tests.unit.lab.areas.too_long import require_refused_if_longer
 
-from squeezefilm import presets
+from squeezefilm.core import presets
 from squeezefilm.lab.areas.design import (
     ComputeDesign,
     DesignArea,

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from serial.tools import list_ports
 from tests.unit.lab.areas.too_long import require_refused_if_longer
 
-from squeezefilm import presets
+from squeezefilm.core import presets
 from squeezefilm.lab import playing_process
 from squeezefilm.lab.areas.device import DEVICE, DeviceArea, OnDrive, PlayDevice
 from squeezefilm.lab.designing.form import preset_text

@@ -12,8 +12,8 @@ from pydantic import ValidationError
 from tests.pictures import coloured_bytes, picture_bytes
 from tests.unit.lab.areas.too_long import require_refused_if_longer
 
-from squeezefilm import presets
-from squeezefilm.errors import SqueezefilmWarning
+from squeezefilm.core import presets
+from squeezefilm.core.errors import SqueezefilmWarning
 from squeezefilm.lab.areas.feel import (
     COLUMNS,
     AddPicture,
@@ -24,7 +24,7 @@ from squeezefilm.lab.areas.feel import (
     TextureText,
 )
 from squeezefilm.lab.designing.form import preset_text
-from squeezefilm.texture_file import load_texture, texture_from_text
+from squeezefilm.physics.texture_files.texture_file import load_texture, texture_from_text
 
 if TYPE_CHECKING:
     from .conftest import Talk

@@ -12,8 +12,8 @@ from pydantic import ValidationError
 from tests.unit.lab.areas.too_long import require_refused_if_longer
 from tests.unit.lab.searching.small import TEXT, evaluated, requirements
 
-from squeezefilm import config, presets
-from squeezefilm.display import Display
+from squeezefilm.core import config, presets
+from squeezefilm.design.search.candidate import display_of
 from squeezefilm.lab.areas import search as search_area
 from squeezefilm.lab.areas.search import (
     CheckRequirements,
@@ -24,7 +24,7 @@ from squeezefilm.lab.areas.search import (
 )
 from squeezefilm.lab.searching import process, shown
 from squeezefilm.lab.searching.process import SearchProcess
-from squeezefilm.search.design.candidate import display_of
+from squeezefilm.physics.display import Display
 
 if TYPE_CHECKING:
     from .conftest import Talk

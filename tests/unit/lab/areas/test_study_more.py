@@ -13,8 +13,8 @@ import pytest
 from pydantic import ValidationError
 from tests.unit.lab.areas.too_long import require_refused_if_longer
 
-from squeezefilm import presets
-from squeezefilm.errors import DeviceError
+from squeezefilm.core import presets
+from squeezefilm.core.errors import DeviceError
 from squeezefilm.lab.areas import study as study_area
 from squeezefilm.lab.areas.study import (
     CreateStudy,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.lab.designing.ceramics import covered, stretched
 from squeezefilm.lab.designing.form import display_of, edited, preset_text
-from squeezefilm.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.layout import RectangularPlate
 
 PLATE = preset_text("biet2008-plate")
 

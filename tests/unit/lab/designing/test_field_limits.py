@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from squeezefilm import presets
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.core import presets
+from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing.field_limits import allowed
 from squeezefilm.lab.designing.form import edited, form, preset_text
 from squeezefilm.lab.designing.numbers import WorkingPoint, designed

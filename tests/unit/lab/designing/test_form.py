@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 
 import pytest
 
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.quantities import Hertz, Unit
 from squeezefilm.lab.designing.form import (
     LONGEST_VALUE,
     OWN_VALUES,
@@ -18,7 +19,6 @@ from squeezefilm.lab.designing.form import (
     preset_text,
     stated,
 )
-from squeezefilm.quantities import Hertz, Unit
 
 GLASS = preset_text("touchpad-glass")
 STATOR = preset_text("biet2008-stator")

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.uncertainty import FrictionBand
-from squeezefilm.chain.active_area import active_area
-from squeezefilm.chain.prediction import predict
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.progress import Pace
 from squeezefilm.lab.designing import numbers
 from squeezefilm.lab.designing.form import display_of, edited, form, preset_text
 from squeezefilm.lab.designing.numbers import WorkingPoint, designed, opened, outline, predicted
-from squeezefilm.progress import Pace
+from squeezefilm.physics.chain.active_area import active_area
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.uncertainty.uncertainty import FrictionBand
 
 STATOR, DISC = preset_text("biet2008-stator"), preset_text("winfield2007-tpad")
 GLASS = preset_text("touchpad-glass")

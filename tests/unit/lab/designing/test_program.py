@@ -12,14 +12,14 @@ import pytest
 from tests.pictures import coloured_bytes, picture_bytes
 
 from squeezefilm import load_display
-from squeezefilm.chain.prediction import predict
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.results import config_hash
 from squeezefilm.lab.designing import program
 from squeezefilm.lab.designing.form import edited, preset_text
 from squeezefilm.lab.designing.program import TextureOnDisplay, feel, parity, pixels_of, title_of
-from squeezefilm.render.program.inverse import LOWEST_SPEED
-from squeezefilm.results import config_hash
-from squeezefilm.texture_file import load_texture
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.render.program.inverse import LOWEST_SPEED
+from squeezefilm.physics.texture_files.texture_file import load_texture
 
 STATOR, PLATE = preset_text("biet2008-stator"), preset_text("biet2008-plate")
 NOWHERE = Path("/nowhere")

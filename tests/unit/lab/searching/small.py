@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from squeezefilm.design.search.candidate import Evaluated, Level, design_of
+from squeezefilm.design.search.criteria import breaches
+from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.lab.searching.asked import requirements_of
-from squeezefilm.search.design.candidate import Evaluated, Level, design_of
-from squeezefilm.search.design.criteria import breaches
-from squeezefilm.search.design.requirements import Requirements
 
 TEXT = Path(__file__).with_name("small.toml").read_text(encoding="utf-8")
 

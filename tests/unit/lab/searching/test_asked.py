@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm import config
-from squeezefilm.display import Display, load_display
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.core import config
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.design.search.candidate import display_of
+from squeezefilm.design.search.criteria import criterion_of
+from squeezefilm.design.search.report.plates import plate_file
 from squeezefilm.lab.designing.form import preset_text
 from squeezefilm.lab.designing.numbers import opened
 from squeezefilm.lab.searching.asked import (
@@ -18,9 +20,7 @@ from squeezefilm.lab.searching.asked import (
     folder_of,
     requirements_of,
 )
-from squeezefilm.report.design.plates import plate_file
-from squeezefilm.search.design.candidate import display_of
-from squeezefilm.search.design.criteria import criterion_of
+from squeezefilm.physics.display import Display, load_display
 
 from .small import TEXT, evaluated, requirements
 

@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
+from squeezefilm.design.search import run
+from squeezefilm.design.search.run import Glimpse, SearchRequest
 from squeezefilm.lab import told_process
 from squeezefilm.lab.searching import process, shown
 from squeezefilm.lab.searching.process import Pace, SearchProcess, search
-from squeezefilm.search.design import run
-from squeezefilm.search.design.run import Glimpse, SearchRequest
 
 from .small import TEXT
 

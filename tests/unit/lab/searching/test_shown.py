@@ -9,17 +9,17 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.lab.searching import shown
-from squeezefilm.lab.wire import as_text
-from squeezefilm.search.design.found import DesignSearch, FrontMember
-from squeezefilm.search.design.reasons import (
+from squeezefilm.design.search.found import DesignSearch, FrontMember
+from squeezefilm.design.search.reasons import (
     EmptyCorner,
     corner_in_words,
     empty_corners,
     limit_reasons,
 )
-from squeezefilm.search.design.run import Glimpse
-from squeezefilm.search.design.tolerance import Made
+from squeezefilm.design.search.run import Glimpse
+from squeezefilm.design.search.tolerance import Made
+from squeezefilm.lab.searching import shown
+from squeezefilm.lab.wire import as_text
 
 from .small import evaluated, requirements
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.lab.studying.by_hand import ByHand
 
 

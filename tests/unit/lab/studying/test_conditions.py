@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.lab.studying.conditions import conditions_of
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.errors import DeviceError, InputError
+from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.lab import playing_process
 from squeezefilm.lab.areas import study as study_area
 from squeezefilm.lab.areas.device import DeviceArea
@@ -22,7 +22,7 @@ from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.playing_process import DeviceSession
 from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.studying.devices import StudyDevices, require_device
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.sessions import Exposure
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
 from squeezefilm.study.record.store import StudyStore

@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.kit import style
 from squeezefilm.lab.studying import jobs
 from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
-from squeezefilm.perception.observer import Observer, load_observer
-from squeezefilm.report.kit import style
-from squeezefilm.report.study import page
-from squeezefilm.report.study.page import key_rows
+from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.study.conduct import rehearsal
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import trial_table
+from squeezefilm.study.report import page
+from squeezefilm.study.report.page import key_rows
 from squeezefilm.study.tasks.analyze import analyze_study
 
 from ...study.scripted import gratings, run_through

@@ -8,12 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.draws import Mixture
-from squeezefilm.analysis.uncertainty import uncertain_friction
-from squeezefilm.chain.prediction import predict
-from squeezefilm.config.load import load_text
-from squeezefilm.display import Display, load_display
-from squeezefilm.errors import InputError
+from squeezefilm.core.config.load import load_text
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.calibration.blind import (
     keep_scores,
     load_prediction,
@@ -38,9 +34,13 @@ from squeezefilm.measure.calibration.written_display import (
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
-from squeezefilm.plate.electronics import ring_admittance
-from squeezefilm.plate.layout import DiscPlate
-from squeezefilm.plate.parts import assembly_mass
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import Display, load_display
+from squeezefilm.physics.plate.electronics import ring_admittance
+from squeezefilm.physics.plate.layout import DiscPlate
+from squeezefilm.physics.plate.parts import assembly_mass
+from squeezefilm.physics.uncertainty.draws import Mixture
+from squeezefilm.physics.uncertainty.uncertainty import uncertain_friction
 
 STATOR = "biet2008-stator"
 

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 import squeezefilm as sf
-from squeezefilm.calibration_record import UsedRecording
-from squeezefilm.display import Display, load_display
-from squeezefilm.errors import InputError
+from squeezefilm.core.calibration_record import UsedRecording
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.calibration import folder as calibrated_folder
 from squeezefilm.measure.calibration import questions
 from squeezefilm.measure.calibration.folder import FolderObservations, folder_observations
 from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.physics.display import Display, load_display
 
 PLATE, STATOR = "biet2008-plate", "biet2008-stator"
 Q = 60.0

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from squeezefilm.errors import InputError, OutOfRangeError
+from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.measure.calibration.discrepancy import BELIEVED
 from squeezefilm.measure.calibration.friction_likelihood import (
     GRID,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from squeezefilm.analysis.parameters import Parameter
-from squeezefilm.distributions import Normal
-from squeezefilm.errors import InputError
+from squeezefilm.core.distributions import Normal
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.quantities import Unit
 from squeezefilm.measure.calibration.discrepancy import (
     ALIKE,
     BELIEVED,
@@ -33,7 +33,7 @@ from squeezefilm.measure.calibration.plate_posterior import (
 from squeezefilm.measure.calibration.priors import NormalScores
 from squeezefilm.measure.calibration.solved_answers import Asked
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.quantities import Unit
+from squeezefilm.physics.uncertainty.parameters import Parameter
 
 NAMES = ("resonance_frequency", "mass", "amplitude_per_volt")
 # The first two answers see the sum of both parameters, the third the second one alone.

@@ -7,10 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squeezefilm.analysis.plate.sensitivity import with_ceramic_stiffness, with_glue
-from squeezefilm.display import load_display
-from squeezefilm.distributions import Normal, Uniform
-from squeezefilm.errors import InputError
+from squeezefilm.core.distributions import Normal, Uniform
+from squeezefilm.core.errors import InputError
+from squeezefilm.design.plate.sensitivity import with_ceramic_stiffness, with_glue
 from squeezefilm.measure.calibration.priors import (
     CHARGE_SHARE,
     PERMITTIVITY_SHARE,
@@ -21,6 +20,7 @@ from squeezefilm.measure.calibration.priors import (
     share_of,
     with_calibrated,
 )
+from squeezefilm.physics.display import load_display
 
 PAPER = load_display("biet2008-plate")
 

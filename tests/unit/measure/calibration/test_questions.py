@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.calibration.questions import question
 from squeezefilm.measure.fits.estimate import Observation
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
-from squeezefilm.materials import VACUUM_PERMITTIVITY
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.bar import BarConstants, bar_constants
 from squeezefilm.measure.fits.ceramic.constants import CeramicConstants, resonance_peaks
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.measure.fits.circuit.branches import Layout, circuit_curve, poles, start_at
-from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.physics.plate.circuit import EquivalentCircuit
 
 FREQUENCY = np.linspace(35e3, 46e3, 240)
 LAYOUT = Layout(2, coupling_loss=True, softening=True, drift=True)

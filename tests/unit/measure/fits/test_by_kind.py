@@ -15,12 +15,12 @@ import pytest
 from tests.unit.measure.recordings.bench_files import IMPEDANCE, impedance_text, written
 
 import squeezefilm as sf
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.measure.fits.by_kind import FITS, OF_MANY_PEOPLE, fit_recording, response_fit
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.read import check_recording
-from squeezefilm.plate.ring.ceramic_disc import CeramicDisc
+from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
 
 def stand_in(monkeypatch: pytest.MonkeyPatch, module: str, **functions: Any) -> None:

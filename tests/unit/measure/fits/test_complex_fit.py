@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.complex_fit import (
     Model,
     Prior,

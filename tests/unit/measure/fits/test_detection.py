@@ -8,9 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm import presets
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics, skin_displacement_per_friction
-from squeezefilm.errors import InputError
+from squeezefilm.core import presets
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.friction.detection import (
     METHOD_RATIO,
     RIVALS,
@@ -21,7 +20,16 @@ from squeezefilm.measure.fits.friction.detection import (
 )
 from squeezefilm.measure.recordings.kinds import DetectionThresholds
 from squeezefilm.measure.recordings.read import read_recording
-from squeezefilm.perception.observer import TUNED_AT, Observer, SensoryChannel, load_observer
+from squeezefilm.physics.contact.finger.fingerpad import (
+    FingerpadDynamics,
+    skin_displacement_per_friction,
+)
+from squeezefilm.physics.perception.observer import (
+    TUNED_AT,
+    Observer,
+    SensoryChannel,
+    load_observer,
+)
 
 OBSERVER = load_observer()
 PERIODS = np.array([8.0, 4.0, 2.0, 1.0, 0.5, 0.25]) * 1e-3

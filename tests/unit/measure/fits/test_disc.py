@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.ceramic.ceramic_prior import PARAMETERS, ceramic_prior, compliances
 from squeezefilm.measure.fits.ceramic.disc import (
     Combination,
@@ -26,7 +26,7 @@ from squeezefilm.measure.fits.ceramic.disc_prediction import (
 from squeezefilm.measure.fits.estimate import Adequacy
 from squeezefilm.measure.fits.sweep_reading import sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
-from squeezefilm.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
+from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
 
 DISC = CeramicDisc(30e-3, 2.5e-3, 7700.0)
 FREQUENCY = np.linspace(58e3, 84e3, 121)

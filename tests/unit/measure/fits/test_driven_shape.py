@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm import quantities as si
-from squeezefilm.display import load_display
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.fits.by_kind import fit_recording
 from squeezefilm.measure.fits.vibration.driven_shape import REST, DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan
 from squeezefilm.measure.fits.vibration.line_scan import LineScanFit, fit_line_scan
 from squeezefilm.measure.recordings.kinds import GridScan, LineScan
-from squeezefilm.plate.layout import RectangularPlate
-from squeezefilm.plate.solid.working import solid_mode
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.solid.working import solid_mode
 
 LENGTH, WIDTH = 80e-3, 40e-3
 U, V = np.linspace(0, LENGTH, 161), np.linspace(0, WIDTH, 41)

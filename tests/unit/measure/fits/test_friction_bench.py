@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.friction.strokes import sliding_strokes
 from squeezefilm.measure.synthetic.strokes import PlannedStrokes, recorded_strokes

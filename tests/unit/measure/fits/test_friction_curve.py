@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from squeezefilm.chain.friction_models import MODEL_KINDS
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison, compare_friction_curve
 from squeezefilm.measure.fits.friction.friction_scores import SHAPES
 from squeezefilm.measure.recordings.kinds import FrictionCurve, Told
+from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import load_display
 
 AMPLITUDE = np.linspace(0.0, 2e-6, 9)
 BARE = FrictionCurve(

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan, shapes_at
 from squeezefilm.measure.recordings.kinds import GridScan
-from squeezefilm.plate.solid.solve import solve_modes
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.working_mode import working_mode
 
 X, Y = (one.ravel() for one in np.meshgrid(np.linspace(0, 1, 24), np.linspace(0, 1, 12)))
 SHAPES = {"(8,0)": np.cos(8 * np.pi * X), "(8,1)": np.cos(8 * np.pi * X) * np.cos(np.pi * Y)}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.circuit.branches import Layout, circuit_curve, relative_motion
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance, parallel_resonance
 from squeezefilm.measure.fits.sweep_reading import sweep_peaks

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration.line_points import LinePoints
 from squeezefilm.measure.fits.vibration.line_scan import fit_line_scan
 from squeezefilm.measure.recordings.kinds import LineScan
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.working_mode import working_mode
 
 X = np.linspace(0, 83e-3, 120)
 

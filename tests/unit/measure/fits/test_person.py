@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm import presets
-from squeezefilm.analysis.parameters import DECAY_LENGTH, uncertain_parameters
-from squeezefilm.chain.friction import FrictionLaw, friction_law
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
+from squeezefilm.core import presets
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.friction.person import fitted_person, with_decay_length, with_finger
 from squeezefilm.measure.recordings.kinds import FrictionCurve
+from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.uncertainty.parameters import DECAY_LENGTH, uncertain_parameters
 
 PLATE = load_display("biet2008-plate")
 AMPLITUDE = np.linspace(0.1e-6, 2.5e-6, 17)

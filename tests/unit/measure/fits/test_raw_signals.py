@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
 from squeezefilm.measure.fits.vibration.raw_signals import fit_raw_signals
 from squeezefilm.measure.recordings.kinds import RawSignals

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
 from squeezefilm.measure.recordings.kinds import RingDown
 from squeezefilm.measure.synthetic.duffing import SofteningResonance

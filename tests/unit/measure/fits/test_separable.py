@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.nonlinear import (
     fit_nonlinear,

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, VoltageSweeps
 from squeezefilm.measure.synthetic.duffing import SofteningResonance

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 IMPEDANCE = """\
 kind = "impedance"

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 Sweep = Callable[[si.HertzArray, si.ComplexArray], str]
 Scope = Callable[[si.SecondArray, si.FloatArray, si.FloatArray], str | bytes]

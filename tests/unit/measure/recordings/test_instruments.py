@@ -9,7 +9,7 @@ import pytest
 from tests.unit.measure.recordings import instrument_files as made
 from tests.unit.measure.recordings.bench_files import resonator, text, written
 
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES, Fixture
 from squeezefilm.measure.recordings.files.instruments import held_by, recognised

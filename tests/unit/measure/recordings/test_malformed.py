@@ -20,7 +20,7 @@ from tests.unit.measure.recordings.bench_files import (
     written,
 )
 
-from squeezefilm.errors import ConfigError
+from squeezefilm.core.errors import ConfigError
 from squeezefilm.measure.recordings.read import check_recording
 
 GOOD = impedance_text()

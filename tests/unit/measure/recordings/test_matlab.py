@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.io import savemat
 
-from squeezefilm.errors import ConfigError
+from squeezefilm.core.errors import ConfigError
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.files.matlab import read_matlab
 from squeezefilm.measure.recordings.read import check_recording

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from tests.unit.measure.recordings.bench_files import export_4294a, impedance_text, written
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.assembled import assembled
 from squeezefilm.measure.recordings.described import CONVENTIONS

@@ -14,7 +14,7 @@ import pytest
 from tests.unit.measure.recordings.bench_files import IMPEDANCE, impedance_text, text, written
 
 import squeezefilm as sf
-from squeezefilm.errors import ConfigError, InputError
+from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.description import KINDS
 from squeezefilm.measure.recordings.read import check_folder, check_recording, read_recording

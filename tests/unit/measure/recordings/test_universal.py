@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squeezefilm.errors import ConfigError
+from squeezefilm.core.errors import ConfigError
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.files.universal import read_universal
 from squeezefilm.measure.recordings.read import check_recording, read_recording

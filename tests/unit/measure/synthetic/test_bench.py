@@ -5,8 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from squeezefilm.display import load_display
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.calibration.folder import folder_observations
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
@@ -16,7 +15,8 @@ from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.synthetic.bench import SyntheticBench, synthetic_bench
 from squeezefilm.measure.synthetic.files import write_synthetic_bench, write_truth
 from squeezefilm.measure.synthetic.truth import SyntheticOptions, SyntheticTruth, drawn_truth
-from squeezefilm.plate.working_mode import working_mode
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.working_mode import working_mode
 
 
 @pytest.fixture(scope="module")

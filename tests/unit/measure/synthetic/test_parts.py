@@ -5,13 +5,13 @@ import tomllib
 import numpy as np
 import pytest
 
-from squeezefilm.display import load_display
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.synthetic.bench import SyntheticBench
 from squeezefilm.measure.synthetic.duffing import SofteningResonance
 from squeezefilm.measure.synthetic.files import write_synthetic_bench
 from squeezefilm.measure.synthetic.strokes import PlannedStrokes, recorded_strokes
 from squeezefilm.measure.synthetic.truth import SyntheticOptions, SyntheticTruth
+from squeezefilm.physics.display import load_display
 
 F = np.linspace(29e3, 31e3, 60)
 

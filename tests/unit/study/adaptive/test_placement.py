@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from squeezefilm.errors import InputError
-from squeezefilm.perception.senses import D_PRIME_OF_75
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.adaptive.placement import Placement, PlacementModel
 from squeezefilm.study.adaptive.task_models import (
     magnitude_model,

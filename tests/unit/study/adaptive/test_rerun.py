@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive import kernel
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.rerun import Procedure, rerun_intervals, simulate_runs

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 
 RULE: dict[str, Any] = {"start": 8.0, "step": 2.0, "smallest_step": 0.5}

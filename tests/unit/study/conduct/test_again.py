@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.conduct.again import (
     practise_again,

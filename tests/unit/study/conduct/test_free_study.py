@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from tests.e2e.program import run as program
 
-from squeezefilm.perception.observer import load_observer
-from squeezefilm.presets import resolve_observer
+from squeezefilm.core.presets import resolve_observer
+from squeezefilm.physics.perception.observer import load_observer
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 
 import squeezefilm as sf
-from squeezefilm.errors import ConfigError, DeviceError, InputError
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.session.loop import rows as column
+from squeezefilm.core.errors import ConfigError, DeviceError, InputError
+from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.texture_files.texture_file import TextureFile, load_texture
 from squeezefilm.study.conduct import playback
 from squeezefilm.study.conduct.playback import Playback, named, play, utc_of
 from squeezefilm.study.conduct.study_device import TrialMotion
-from squeezefilm.texture_file import TextureFile, load_texture
 
 GRATING = Stimulus("4 mm", 4e-3, "period")
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
-from squeezefilm.session.loop import rows as column
-from squeezefilm.session.record.trace import Damage, Trace
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.record.trace import Damage, Trace
 from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
 from squeezefilm.study.conduct.playing_process import explored
 from squeezefilm.study.conduct.run import Response, StudyRun

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct import played_device
 from squeezefilm.study.conduct.played_device import (
     START_LIMIT,

@@ -13,14 +13,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.device.wire.states import State
-from squeezefilm.display import load_display
-from squeezefilm.errors import DeviceError, InputError
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.session.loop import rows as column
-from squeezefilm.session.play.plan import Ending
-from squeezefilm.session.play.real_time import PlayOutcome
-from squeezefilm.session.record.trace import Damage, Trace, TraceEvent
+from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.play.plan import Ending
+from squeezefilm.instruments.session.play.real_time import PlayOutcome
+from squeezefilm.instruments.session.record.trace import Damage, Trace, TraceEvent
+from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.texture_files.texture_file import TextureFile
 from squeezefilm.study.conduct import playing_process
 from squeezefilm.study.conduct.playing_process import (
     LONGEST_PRESENTATION,
@@ -30,9 +33,6 @@ from squeezefilm.study.conduct.playing_process import (
     explored,
     serve,
 )
-from squeezefilm.texture_file import TextureFile
-from squeezefilm.twin.settings import PickupModel, TwinSettings
-from squeezefilm.twin.working_point import WorkingPoint
 
 DISPLAY = load_display("biet2008-plate")
 GRATING = Stimulus("4 mm", 4e-3, "period")

@@ -8,12 +8,12 @@ import io
 import numpy as np
 import pytest
 
-from squeezefilm.display import load_display
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.instruments.twin.settings import PickupModel, PlateDrift, TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.conduct.rehearsal_device import StudyTwin
-from squeezefilm.twin.settings import PickupModel, PlateDrift, TwinSettings
-from squeezefilm.twin.working_point import WorkingPoint, working_point
 
 DISPLAY = load_display("biet2008-plate")
 SETTINGS = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"))

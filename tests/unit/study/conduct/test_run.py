@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.conduct.run import Presentation, Response, StudyRun
 from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
@@ -212,7 +212,7 @@ def test_what_is_not_the_trials_turn_or_no_answer_of_it_is_refused(tmp_path: Pat
 
 
 def test_a_trace_that_cannot_be_written_leaves_no_answer(tmp_path: Path) -> None:
-    from squeezefilm.errors import RecordError
+    from squeezefilm.core.errors import RecordError
 
     with StudyStore.create(tmp_path / "a.sqlite", gratings(), 7) as store:
         run = session(store, store.enrol())

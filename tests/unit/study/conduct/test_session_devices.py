@@ -10,14 +10,14 @@ from typing import Any, Self
 
 import pytest
 
-from squeezefilm import display as display_module
-from squeezefilm.errors import InputError
-from squeezefilm.progress import SayProgress
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.instruments.twin.hand import EXPLORING
+from squeezefilm.physics import display as display_module
 from squeezefilm.study.conduct import played_device, rehearsal_device, terminal_run
 from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
 from squeezefilm.study.design.trials import expected_duration
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.twin.hand import EXPLORING
 
 from ..scripted import LOUD, Bench, Script, gratings
 

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm import config
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.plate.exposure import exposure_guidance
-from squeezefilm.plate.sound import SoundField
+from squeezefilm.core import config
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.physics.plate.exposure import exposure_guidance
+from squeezefilm.physics.plate.sound import SoundField
 from squeezefilm.study.conduct.sessions import (
     SessionConditions,
     begin_session,

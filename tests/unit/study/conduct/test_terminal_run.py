@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.progress import SayProgress
+from squeezefilm.core.progress import SayProgress
 from squeezefilm.study.conduct.run import Presentation
 from squeezefilm.study.conduct.terminal_run import Desk, run_session
 from squeezefilm.study.record.store import StudyStore

@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 from PIL import Image as Picture
 
-from squeezefilm.config.load import load_text
-from squeezefilm.config.write import text_of
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.perception.stimuli import Stimulus
-from squeezefilm.render.texture.shapes import Band
+from squeezefilm.core.config.load import load_text
+from squeezefilm.core.config.write import text_of
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.render.texture.shapes import Band
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import trials

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign
 from squeezefilm.study.adaptive.staircase import StaircaseRule
 from squeezefilm.study.design.rules import TrialRules

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.errors import InputError
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.special_trials import (
     AdaptiveCondition,
     CatchTrial,

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm import config, presets
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.perception.stimuli import Grating, Stimulus
+from squeezefilm.core import config, presets
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.rules import TrialRules
 from squeezefilm.study.design.special_trials import AdaptiveCondition, CatchTrial
 from squeezefilm.study.design.study_design import StudyDesign, load_design

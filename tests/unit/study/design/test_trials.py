@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import pytest
 
-from squeezefilm import config
-from squeezefilm.errors import InputError
-from squeezefilm.perception.stimuli import Stimulus
+from squeezefilm.core import config
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.special_trials import AdaptiveCondition, CatchTrial
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import (
@@ -163,6 +163,6 @@ def test_numbers_below_zero_are_refused() -> None:
 
 
 def test_a_design_is_written_and_read_back() -> None:
-    from squeezefilm.config.write import text_of
+    from squeezefilm.core.config.write import text_of
 
     assert config.load_text(StudyDesign, text_of(PAIRS)) == PAIRS

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.choice_model import (
     choice_model,
     perceptual_map,

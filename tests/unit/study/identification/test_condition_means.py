@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.condition_means import condition_means
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.proportions import recentred_interval
 
 SPREAD = np.random.default_rng(1).normal(5.0, 0.2, 4000)

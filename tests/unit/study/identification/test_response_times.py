@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.response_times import (
     ExGaussian,
     ex_gaussian_density,

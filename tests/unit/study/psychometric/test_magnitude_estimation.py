@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.psychometric.magnitude_estimation import (
     equalised_estimates,
     fit_power_law,

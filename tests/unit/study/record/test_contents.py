@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct

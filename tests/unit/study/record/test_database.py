@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError, RecordError
+from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
@@ -101,7 +101,7 @@ def test_a_creation_that_fails_leaves_what_another_put_there(
 
 RACE = """
 import os, sys, time
-from squeezefilm.errors import SqueezefilmError
+from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.study.record.store import StudyStore
 sys.path.insert(0, sys.argv[1])
 from scripted_design import design

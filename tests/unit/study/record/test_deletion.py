@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError, RecordError, SqueezefilmError
+from squeezefilm.core.errors import InputError, RecordError, SqueezefilmError
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session, end_session
 from squeezefilm.study.conduct.trial_by_trial import conduct

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError, RecordError
+from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.study.record import erasure
 from squeezefilm.study.record.erasure import (
     erase_file,

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
-from squeezefilm.render.motion.finger_path import FingerPath
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.study.record.exploration import coverage, exploration, touches
 
 

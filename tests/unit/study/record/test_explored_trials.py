@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from tests.unit.study.design.test_matching import shapes
 
-from squeezefilm.display import load_display
-from squeezefilm.formats.traces import Table, csv_text, table_from_csv
-from squeezefilm.perception.observer import load_observer
+from squeezefilm.core.formats.traces import Table, csv_text, table_from_csv
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.study.conduct.rehearsed_hand import path_of, rehearsed
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session

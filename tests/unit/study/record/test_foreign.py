@@ -9,9 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.errors import ConfigError, InputError
-from squeezefilm.perception.observer import load_observer
-from squeezefilm.report.study.simulated_page import ANSWER_COLUMNS
+from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.study.conduct.rehearsal import rehearse
 from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
@@ -21,6 +20,7 @@ from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.foreign import PEOPLE, columns_of, read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import csv_text
+from squeezefilm.study.report.simulated_page import ANSWER_COLUMNS
 from squeezefilm.study.simulated.answers import SimulatedAnswers, simulate_participants
 from squeezefilm.study.tasks.analyze import analyze_study
 from squeezefilm.study.tasks.findings import TaskAnalysis

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.errors import ConfigError
+from squeezefilm.core.errors import ConfigError
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.record.foreign import read_answers
 

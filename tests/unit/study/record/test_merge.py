@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import ContradictionError, InputError, RecordError
+from squeezefilm.core.errors import ContradictionError, InputError, RecordError
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.record.merge import merge, open_or_begin

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.record.orders import ORDER_COLUMNS, write_orders
 

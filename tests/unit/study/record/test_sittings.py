@@ -11,7 +11,7 @@ from typing import NoReturn
 
 import pytest
 
-from squeezefilm.errors import InputError, RecordError
+from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.study.record import sittings as sittings_module
 from squeezefilm.study.record.sittings import FILE, MOST_SITTINGS, Sittings

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm import second_process
-from squeezefilm.errors import InputError
-from squeezefilm.kept.folder import CACHE_VARIABLE
-from squeezefilm.perception.observer import Observer, load_observer
-from squeezefilm.perception.senses import line_amplitudes, line_periods
+from squeezefilm.core import second_process
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.kept.folder import CACHE_VARIABLE
+from squeezefilm.physics.perception.observer import Observer, load_observer
+from squeezefilm.physics.perception.senses import line_amplitudes, line_periods
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated import felt_surfaces as felt
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
@@ -109,7 +109,7 @@ def test_what_was_felt_before_needs_no_plate_no_loop_and_no_statistics(
     chain_tables(*small)
     code = (
         "import dataclasses, sys\n"
-        "from squeezefilm.perception.observer import load_observer\n"
+        "from squeezefilm.physics.perception.observer import load_observer\n"
         "from squeezefilm.study.design.study_design import load_design\n"
         "from squeezefilm.study.simulated.answers import simulate_participants\n"
         "d = load_design('biet2008-gratings')\n"

@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 from tests.unit.study.design.test_matching import shapes
 
-from squeezefilm.errors import InputError, SqueezefilmError
-from squeezefilm.formats.traces import Table, csv_text
-from squeezefilm.perception.observer import load_observer
-from squeezefilm.render.motion.finger_path import FingerPath
-from squeezefilm.report.study.felt_path import felt_path, show_all
-from squeezefilm.report.subjects import plot
+from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.formats.traces import Table, csv_text
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.study.conduct.rehearsal import rehearse
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.report.felt_path import felt_path, show_all
 from squeezefilm.study.simulated.felt_paths import felt_on_path
 from squeezefilm.study.simulated.felt_trials import felt_in_trial
+from squeezefilm.subjects import plot
 
 SLANTED = "80 mm/s over 4 cm, 3 passes, at 30 deg"
 
@@ -91,7 +91,7 @@ def test_a_rehearsed_answer_is_felt_along_its_own_path(tmp_path: Path) -> None:
         assert found.explored.passes == 16
         assert found.force_is == "known"
         # The path as the study keeps it, every 10 ms, and the model's own give the same percept.
-        from squeezefilm.display import load_display
+        from squeezefilm.physics.display import load_display
         from squeezefilm.study.conduct.rehearsed_hand import path_of
 
         exact = path_of("free", load_display("biet2008-plate"), observer, observer.median_finger())

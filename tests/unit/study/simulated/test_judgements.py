@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from squeezefilm.errors import InputError
-from squeezefilm.perception.observer import load_observer
-from squeezefilm.perception.percepts import Apparatus
-from squeezefilm.perception.senses import D_PRIME_OF_75, Candidates
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.percepts import Apparatus
+from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated.answers import (
     SimulatedAnswers,

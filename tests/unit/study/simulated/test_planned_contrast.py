@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
-from squeezefilm.perception.senses import Candidates
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.simulated import planned_contrast as module
 from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.planned_contrast import otherwise_than_0, planned_contrast

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
-from squeezefilm.report.study.terminal_analysis import show_precision
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.power import above_0
+from squeezefilm.study.report.terminal_analysis import show_precision
 from squeezefilm.study.simulated import planned_precision as module
 from squeezefilm.study.simulated.planned_power import (
     pair_scores,

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from squeezefilm.perception.observer import load_observer
-from squeezefilm.perception.perceived import Perceived
-from squeezefilm.perception.senses import Candidates
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.perceived import Perceived
+from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.simulated.assumptions import assumed
 from squeezefilm.study.simulated.recalled import difference, recalled_distances
 from squeezefilm.study.simulated.simulated_people import SimulatedPeople, finger_of

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from tests.recovery.task_people import DESIGNS, Person, answered
 
-from squeezefilm.errors import InputError
-from squeezefilm.report.study.words import person_rows
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.staircase import StaircaseRule
 from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.report.words import person_rows
 from squeezefilm.study.tasks.analyze import analyze_answers
 from squeezefilm.study.tasks.asked_again import _procedure
 from squeezefilm.study.tasks.findings import TaskAnalysis

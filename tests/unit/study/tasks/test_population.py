@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.tasks.population import (
     LAPSES,
     MEAN_LAPSES,

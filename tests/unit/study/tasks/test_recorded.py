@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.errors import InputError
-from squeezefilm.perception.observer import load_observer
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.study.conduct.rehearsal import rehearse
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from tests.recovery.task_people import DESIGNS, Person, analysed, answered, somebody
 
-from squeezefilm.errors import InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.course import attention, course_of, drift
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.analyze import analyze_answers

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.materials import VACUUM_PERMITTIVITY
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.constants import (
     CeramicConstants,
     constants_of,

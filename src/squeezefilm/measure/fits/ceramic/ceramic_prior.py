@@ -7,10 +7,10 @@ import math
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.presets.materials import library
 from squeezefilm.measure.fits.complex_fit import Prior
-from squeezefilm.presets.materials import library
 
 PARAMETERS = (
     "ln s11",
@@ -44,7 +44,7 @@ def ceramic_prior() -> Prior:
     The ratios that a sweep of a disc hardly tells (among them Poisson's) scatter as those of the
     library's lead zirconate titanates do, hard to very soft; of a further one of their kind they
     are known to √(1 + 1/n) of that. The three sizes are as good as unknown. Losses: 0.015 ± 0.02;
-    that of s12 that of s11 to 20 % (both assumed). Read from `presets/materials.toml`.
+    that of s12 that of s11 to 20 % (both assumed). Read from `core/presets/materials.toml`.
     """
     rows = np.array([_ratios(one.values) for one in library() if one.kind == "ceramic"])
     mean, spread = rows.mean(axis=0), rows.std(axis=0, ddof=1) * math.sqrt(1 + 1 / len(rows))

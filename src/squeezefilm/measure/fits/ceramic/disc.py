@@ -8,9 +8,9 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
-from squeezefilm.materials import VACUUM_PERMITTIVITY
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.ceramic_prior import PARAMETERS, ceramic_prior, compliances
 from squeezefilm.measure.fits.ceramic.constants import (
     CeramicConstants,
@@ -21,7 +21,7 @@ from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, fit_complex
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
-from squeezefilm.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
+from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
 
 _LEAST_SLENDERNESS = 5.0
 _NO_CERAMIC = 2.5

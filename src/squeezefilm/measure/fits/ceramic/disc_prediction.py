@@ -8,14 +8,14 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.measure.fits.ceramic.ceramic_prior import compliances
 from squeezefilm.measure.fits.ceramic.disc import DiscConstants
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.sweep_reading import SweepPeaks, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
-from squeezefilm.plate.ring.ceramic_disc import disc_admittance, weak_constants
+from squeezefilm.physics.plate.ring.ceramic_disc import disc_admittance, weak_constants
 
 LEVEL = 0.95
 _ROOTS = (2.049, 5.389, 8.572, 11.732)

@@ -18,8 +18,8 @@ from typing import Annotated
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 
 _SANATHANAN_KOERNER = 12
 _LARGEST = np.array([30.0, 30.0, 0.0])

@@ -11,8 +11,8 @@ from typing import Annotated
 import numpy as np
 from scipy import optimize
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConvergenceError, InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.measure.fits.circuit.branches import (
     Layout,
     circuit_curve,
@@ -24,7 +24,7 @@ from squeezefilm.measure.fits.complex_fit import ComplexFit, fit_complex, sweep_
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
-from squeezefilm.plate.circuit import EquivalentCircuit
+from squeezefilm.physics.plate.circuit import EquivalentCircuit
 
 MOST_BRANCHES = 8
 # So many richer circuits in a row that are no better, and no more are tried: two modes of five that

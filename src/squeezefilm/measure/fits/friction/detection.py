@@ -17,12 +17,12 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.core import quantities as si
+from squeezefilm.core.results import to_json
 from squeezefilm.measure.recordings.kinds import DetectionThresholds, Told
-from squeezefilm.perception.felt import Rubbed, grating_evidence
-from squeezefilm.perception.observer import Observer, load_observer
-from squeezefilm.results import to_json
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.perception.felt import Rubbed, grating_evidence
+from squeezefilm.physics.perception.observer import Observer, load_observer
 
 Rival = Literal["temporal", "mixed", "spatial"]
 RIVALS: Mapping[Rival, si.Dimensionless] = {"temporal": 1.0, "mixed": 0.5, "spatial": 0.0}
@@ -81,7 +81,7 @@ def detection_threshold(
 ) -> si.DimensionlessArray:
     """The amplitude (zero-to-peak) of the friction coefficient (1) about its mean that has d′ = 1,
     of sines of periods (m), shape (n,), under the published pad that slides at a speed (m/s) and a
-    force (N). Raises `InputError` for a value out of range. Source: `perception.felt`."""
+    force (N). Raises `InputError` for a value out of range. Source: `physics.perception.felt`."""
     pad = FingerpadDynamics.pressed(normal_force)
     rubbed = Rubbed(friction_coefficient * normal_force, pad, speed)
     wave = np.sin(2 * math.pi * np.arange(_SAMPLES) / _SAMPLES) * np.ones((period.size, 1))

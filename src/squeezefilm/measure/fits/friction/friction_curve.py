@@ -9,14 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm import quantities as si
-from squeezefilm.analysis.intervals import LEVEL
-from squeezefilm.analysis.uncertainty import FrictionBand, friction_bands
-from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import Display, load_display
-from squeezefilm.errors import InputError, SqueezefilmError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import to_json
 from squeezefilm.measure.fits.estimate import Adequacy, Observation
 from squeezefilm.measure.fits.friction.friction_scores import (
     SHAPES,
@@ -26,8 +22,12 @@ from squeezefilm.measure.fits.friction.friction_scores import (
     shape_scores,
 )
 from squeezefilm.measure.recordings.kinds import FrictionCurve
-from squeezefilm.progress import SayProgress
-from squeezefilm.results import to_json
+from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import Display, load_display
+from squeezefilm.physics.uncertainty.intervals import LEVEL
+from squeezefilm.physics.uncertainty.uncertainty import FrictionBand, friction_bands
 
 _SAMPLES = 64
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, LEVEL)

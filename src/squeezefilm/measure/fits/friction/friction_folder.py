@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import to_json
 from squeezefilm.measure.fits.friction.detection import DetectionComparison, compare_detection
 from squeezefilm.measure.fits.friction.friction_curve import (
     LEVELS,
@@ -33,8 +35,6 @@ from squeezefilm.measure.recordings.kinds import (
     FrictionDecays,
 )
 from squeezefilm.measure.recordings.read import check_folder
-from squeezefilm.progress import SayProgress
-from squeezefilm.results import to_json
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from squeezefilm import quantities as si
-from squeezefilm.contact.sharing.levitation import levitation_friction
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.recordings.kinds import FrictionCurve
+from squeezefilm.physics.contact.sharing.levitation import levitation_friction
 
 _FIRST_POINTS = 3
 NO_PHYSICS = ("gaussian", "exponential")

@@ -10,19 +10,19 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.chain.friction import FrictionLaw
-from squeezefilm.chain.prediction import predict
-from squeezefilm.config.provenance import Provenance
-from squeezefilm.contact.finger.fingertip import FASTEST, SLOWEST
-from squeezefilm.contact.finger.people import MEAN_SPREAD
-from squeezefilm.display import DECAY_LENGTH, Display, NamedDisplay, load_display
-from squeezefilm.distributions import LogNormal
-from squeezefilm.errors import InputError
-from squeezefilm.from_text import reads_text
+from squeezefilm.core import quantities as si
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.distributions import LogNormal
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import reads_text
 from squeezefilm.measure.fits.friction.friction_scores import nearest_scale
 from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.measure.recordings.read import read_recording
+from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.contact.finger.fingertip import FASTEST, SLOWEST
+from squeezefilm.physics.contact.finger.people import MEAN_SPREAD
+from squeezefilm.physics.display import DECAY_LENGTH, Display, NamedDisplay, load_display
 
 _LENGTHS = np.geomspace(0.3e-6, 100e-6, 120)
 # Of a curve's points, left out in turn: neighbours err alike.

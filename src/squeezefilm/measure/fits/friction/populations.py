@@ -8,19 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.chain.friction_models import MODEL_KINDS
-from squeezefilm.chain.prediction import predict
-from squeezefilm.display import Display
+from squeezefilm.core import quantities as si
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import to_json
 from squeezefilm.measure.fits.friction.friction_curve import relative_friction
 from squeezefilm.measure.fits.friction.friction_scores import fitted_shape
 from squeezefilm.measure.recordings.kinds import FingertipImpedances, FrictionDecays, Told
-from squeezefilm.progress import SayProgress
-from squeezefilm.results import to_json
+from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import Display
 
 _POINTS, _MOST_DECAY = 9, 10.0
 # A publication of fingertip impedances does not tell it; what was measured is impossible at 1 µm
-# (see `contact.finger.load`).
+# (see `physics.contact.finger.load`).
 _PRESSED_AMPLITUDE: si.Metre = 1e-7
 
 

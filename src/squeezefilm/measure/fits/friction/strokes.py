@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.recordings.kinds import FrictionBench
 
 _FEWEST_POINTS = 100

@@ -9,12 +9,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import fit_separable
-from squeezefilm.plate.solid.working import SolidMode
+from squeezefilm.physics.plate.solid.working import SolidMode
 
 REST = "what else the drive moves"
 """The label of the motion that is not the working mode's, beside the labels of modes."""

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of

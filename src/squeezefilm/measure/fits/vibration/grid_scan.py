@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.fits.vibration.driven_shape import REST, DrivenShape
 from squeezefilm.measure.recordings.kinds import GridScan
-from squeezefilm.plate.solid.modes import PlateModes
-from squeezefilm.plate.solid.resonances import label_name
+from squeezefilm.physics.plate.solid.modes import PlateModes
+from squeezefilm.physics.plate.solid.resonances import label_name
 
 SAME_SHAPE: si.Dimensionless = 0.95
 """From this criterion on a scan is called the shape it is compared with."""

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.nonlinear import interval_around
 from squeezefilm.measure.fits.separable import SeparableFit, fit_separable

@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import optional
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import optional
 
 
 @dataclass(frozen=True, eq=False)

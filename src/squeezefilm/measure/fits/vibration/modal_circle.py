@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm import quantities as si
+from squeezefilm.core import quantities as si
 
 
 @dataclass(frozen=True)

@@ -9,15 +9,15 @@ from typing import Annotated, Literal, get_args
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.actuators.motor.free_plate import FreePlate
-from squeezefilm.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
 from squeezefilm.measure.fits.nonlinear import NonlinearFit, fit_nonlinear, inverse_of
 from squeezefilm.measure.fits.vibration.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.recordings.kinds import VoltageSweeps
+from squeezefilm.physics.plate.free_plate import FreePlate
 
 BackboneLaw = Literal["quadratic", "linear"]
 BACKBONE_LAWS: tuple[BackboneLaw, ...] = get_args(BackboneLaw)

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm.errors import ConfigError
-from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.core.errors import ConfigError
+from squeezefilm.core.hard_limits import RECORDING_BYTES
+from squeezefilm.core.regular_file import opened
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES
 from squeezefilm.measure.recordings.files.raw_table import Held, RawTable
 from squeezefilm.measure.recordings.files.text_table import decoded
-from squeezefilm.regular_file import opened
 
 _HEAD = re.compile(r"\s*\"?4294A\b")
 _SAID = re.compile(r'\s*"([^":]+):\s*([^"]*)"\s*$')

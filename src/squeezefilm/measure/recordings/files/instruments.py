@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError, QuantityError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError, QuantityError
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES
 from squeezefilm.measure.recordings.files.raw_table import Held, RawTable
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError
-from squeezefilm.hard_limits import RECORDING_BYTES
-from squeezefilm.isolated_reading import Read, read_isolated
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError
+from squeezefilm.core.hard_limits import RECORDING_BYTES
+from squeezefilm.core.isolated_reading import Read, read_isolated
+from squeezefilm.core.regular_file import read_regular
 from squeezefilm.measure.recordings.files.raw_table import RawTable
-from squeezefilm.regular_file import read_regular
 
 
 def read_matlab(path: Path) -> RawTable:

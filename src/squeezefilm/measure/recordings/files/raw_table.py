@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError, QuantityError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError, QuantityError
 
 _UNIT_IN_NAME = re.compile(r"[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*$")
 

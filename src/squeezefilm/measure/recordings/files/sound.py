@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm.errors import ConfigError
-from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.core.errors import ConfigError
+from squeezefilm.core.hard_limits import RECORDING_BYTES
+from squeezefilm.core.regular_file import read_regular
 from squeezefilm.measure.recordings.files.raw_table import RawTable
-from squeezefilm.regular_file import read_regular
 
 
 def read_wav(path: Path) -> RawTable:

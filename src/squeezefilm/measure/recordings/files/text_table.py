@@ -16,9 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError, QuantityError
-from squeezefilm.hard_limits import RECORDING_BYTES
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError, QuantityError
+from squeezefilm.core.hard_limits import RECORDING_BYTES
+from squeezefilm.core.regular_file import read_regular
 from squeezefilm.measure.recordings.described import Described
 from squeezefilm.measure.recordings.files.instruments import (
     recognised,
@@ -27,7 +28,6 @@ from squeezefilm.measure.recordings.files.instruments import (
     with_meaning,
 )
 from squeezefilm.measure.recordings.files.raw_table import RawTable
-from squeezefilm.regular_file import read_regular
 
 DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ",", "blank": None}
 _WORDS = {"\t": "tabs", ";": "semicolons", ",": "commas", None: "blanks"}

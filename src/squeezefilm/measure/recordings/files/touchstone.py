@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError
 from squeezefilm.measure.recordings.files.instruments import recognised
 from squeezefilm.measure.recordings.files.raw_table import Held, RawTable
 from squeezefilm.measure.recordings.files.text_table import decoded

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm import quantities as si
-from squeezefilm.errors import ConfigError, optional
-from squeezefilm.hard_limits import RECORDING_BYTES
-from squeezefilm.isolated_reading import Read, read_isolated
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError, optional
+from squeezefilm.core.hard_limits import RECORDING_BYTES
+from squeezefilm.core.isolated_reading import Read, read_isolated
+from squeezefilm.core.regular_file import read_regular
 from squeezefilm.measure.recordings.files.raw_table import RawTable
-from squeezefilm.regular_file import read_regular
 
 SUFFIXES = (".uff", ".unv", ".uf")
 _READ = (15, 55, 58)

@@ -1,0 +1,105 @@
+"""How sure an actuator's answers are: all values that nobody knows drawn together."""
+
+from __future__ import annotations
+
+import collections
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from scipy.stats import qmc
+
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.distributions import Uniform
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.progress import CountProgress
+from squeezefilm.physics.uncertainty.parameters import Parameter, value_at, with_values
+
+COUNT, SEED = 64, 20081
+LEVELS: tuple[float, float, float] = (0.05, 0.5, 0.95)
+"""The ends and the middle of an interval, as quantiles of the draws."""
+
+_Described = TypeVar("_Described")
+
+
+class Usual(NamedTuple):
+    """A range in shares of the nominal value, at most `most`, and why: taken for a value that the
+    file gives no range of."""
+
+    low: float
+    high: float
+    why: str
+    most: float = float("inf")
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnAnswers:
+    """What an actuator's answers become where what is uncertain is drawn, `count` times.
+
+    `intervals` have the quantiles `LEVELS` of each answer, of the draws in which the actuator
+    works; `refused` is in how many it does not, most often because of `reason`. `drawn` are the
+    values and their ranges.
+    """
+
+    intervals: Mapping[str, tuple[float, float, float]]
+    count: int
+    refused: int
+    reason: str
+    seed: int
+    drawn: tuple[Parameter, ...]
+
+
+def drawn_answers(
+    described: _Described,
+    provenance: Mapping[str, Provenance],
+    usual: Mapping[str, Usual],
+    answers: Callable[[_Described], Mapping[str, float]],
+    *,
+    progress: CountProgress | None = None,
+) -> DrawnAnswers:
+    """The `answers` of a description with the values of `usual` (by dotted path) drawn: from the
+    distribution that the file gives where it gives one, else evenly from the usual range.
+
+    Scrambled Sobol' points of one seed: the same description has the same intervals, whose ends
+    64 draws find to some 5 % of the probability. A draw that cannot work is counted and left out,
+    so that the interval is of actuators that do. Where fewer than half work there is no interval.
+    """
+    drawn = tuple(_parameters(described, provenance, usual))
+    points = qmc.Sobol(len(drawn), scramble=True, rng=SEED).random(COUNT)
+    columns = [one.drawn(points[:, k]) for k, one in enumerate(drawn)]
+    found: list[Mapping[str, float]] = []
+    reasons: collections.Counter[str] = collections.Counter()
+    for row in range(COUNT):
+        values = {one.path: column[row] for one, column in zip(drawn, columns, strict=True)}
+        try:
+            found.append(answers(with_values(described, values)))
+        except SqueezefilmError as error:
+            # Of one cause the numbers differ from draw to draw.
+            reasons[str(error).split(":", 1)[0].split(" is ", 1)[0]] += 1
+        if progress is not None:
+            progress(row + 1, COUNT)
+    intervals = {}
+    if len(found) > COUNT // 2:
+        for name in found[0]:
+            low, middle, high = np.quantile([one[name] for one in found], LEVELS).tolist()
+            intervals[name] = (low, middle, high)
+    reason = reasons.most_common(1)[0][0] if reasons else ""
+    return DrawnAnswers(intervals, COUNT, COUNT - len(found), reason, SEED, drawn)
+
+
+def _parameters(
+    described: object, provenance: Mapping[str, Provenance], usual: Mapping[str, Usual]
+) -> list[Parameter]:
+    found = []
+    for path, known in usual.items():
+        nominal, unit = value_at(described, path)
+        origin = provenance.get(path)
+        given = None if origin is None else origin.distribution
+        if given is not None and origin is not None:
+            found.append(Parameter(path, nominal, unit, given, "given", origin.source))
+        elif nominal:
+            low, high = sorted((known.low * nominal, min(known.high * nominal, known.most)))
+            spread = Uniform(low, high)
+            found.append(Parameter(path, nominal, unit, spread, "assumed", known.why))
+    return found

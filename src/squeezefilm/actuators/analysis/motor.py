@@ -1,0 +1,382 @@
+"""What `squeezefilm analyze` computes of a planar standing-wave motor."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+
+from squeezefilm.actuators.analysis.drawn import DrawnAnswers, Usual, drawn_answers
+from squeezefilm.actuators.analysis.effects import Effect, effects
+from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
+from squeezefilm.actuators.motor.averaged import (
+    AveragedMotor,
+    averaged,
+    free_amplitude,
+    no_load_speed,
+    stall_force,
+)
+from squeezefilm.actuators.motor.causal import CausalGraph, averaged_graph
+from squeezefilm.actuators.motor.closed_loop import TrackedForce, inverted_law, track_force
+from squeezefilm.actuators.motor.curves import (
+    MotorMap,
+    motor_map,
+    over_foot_position,
+    speed_force_curve,
+)
+from squeezefilm.actuators.motor.description import MotorDescription
+from squeezefilm.actuators.motor.in_time import MotorMotion, simulate
+from squeezefilm.actuators.motor.plane import PlaneMotion, simulate_plane
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, UnreachableError
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import Result, to_json
+
+# Where the mean over a period is off by more than this of µ times the preload, it is warned of.
+_APART = 0.05
+_MAP, _RESOLVED = 10, 5
+_PERIODS, _TRACED = 600, 3
+_DETUNED, _POINTS = 0.04, 29
+_FREE, _FREE_STEPS = 4000, 64
+_STEP = (0.3, 0.7)
+_STEPS = 60
+_Q = "motor.plate.quality_factor"
+# None was measured on a motor. The plate's own frequency and shape are for its analysis as a
+# display, and solving it for each draw would take minutes.
+_USUAL = {
+    "motor.contact.normal_stiffness": Usual(0.5, 1.5, "of foot, slider and contact; a guess"),
+    "motor.contact.tangential_stiffness": Usual(
+        0.5, 1.05, "up to Mindlin's 0.82 of the normal one; softer legs; a guess"
+    ),
+    "motor.contact.friction_coefficient": Usual(0.7, 1.3, "dry pairs scatter so; a guess"),
+    "motor.contact.damping": Usual(0.0, 2.0, "from none to twice; a guess"),
+    "motor.cradle.preload": Usual(0.95, 1.05, "as springs or weights are set; a guess"),
+    "motor.cradle.friction": Usual(0.5, 1.5, "of a guide; a guess"),
+    _Q: Usual(0.7, 1.3, "the losses of a bonded assembly; as for displays"),
+}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MotorAnalysis(Result):
+    """A motor at its voltage.
+
+    Attributes:
+        described: the motor as its file describes it.
+        motor: with its plate solved.
+        curve: from rest to no load.
+        best: the point of it with the largest efficiency.
+        map: over preload and amplitude, about those that it has.
+        motion: resolved in time at the speed of `best`.
+        resolved: speed (m/s) and force left for a load (N) of the motor resolved in time, from
+            rest to no load, shape (speeds, 2).
+        graph: what makes what.
+        tracked: the force law's answer to a step, at that speed; None where a force cannot be
+            commanded.
+        effects: what each assumed value does to stall force and speed without a load.
+        drawn: those two where what is uncertain is drawn together.
+        tuned: at rest, at frequencies about the resonance.
+        shifts, shifted: of all feet along the wave (m), and the motor at rest there; None over a
+            node, or beside the plate.
+        plane: the slider free in the plane from rest, both plates at the voltage; None without a
+            second one.
+        warnings: in sentences.
+    """
+
+    described: MotorDescription
+    motor: AssembledMotor
+    voltage: si.Volt
+    curve: tuple[AveragedMotor, ...]
+    best: AveragedMotor
+    map: MotorMap
+    motion: MotorMotion
+    resolved: si.FloatArray
+    graph: CausalGraph
+    tracked: TrackedForce | None
+    effects: tuple[Effect, ...]
+    drawn: DrawnAnswers
+    tuned: tuple[AveragedMotor, ...]
+    shifts: si.MetreArray
+    shifted: tuple[AveragedMotor | None, ...]
+    plane: PlaneMotion | None
+    warnings: tuple[str, ...]
+    _shown: ClassVar[str] = "described.name voltage stall_force no_load_speed"
+
+    @property
+    def rest(self) -> AveragedMotor:
+        """The motor stalled."""
+        return self.curve[0]
+
+    @property
+    def stall_force(self) -> si.Newton:
+        """The load that just stops it (N)."""
+        return self.rest.force
+
+    @property
+    def no_load_speed(self) -> si.MetrePerSecond:
+        """Its speed where nothing is left for a load (m/s)."""
+        return self.curve[-1].speed
+
+    @property
+    def free_amplitude(self) -> si.Metre:
+        """Of the lobe at this voltage without a slider (m)."""
+        return free_amplitude(self.motor, Working(voltage=self.voltage))
+
+    @property
+    def input_power(self) -> si.Watt:
+        """What the drive puts in at `best` (W): output, losses of plate, contacts and guide."""
+        one = self.best
+        guide = (one.thrust - one.force) * one.speed
+        return one.output + one.plate_loss + one.contact_loss + one.friction_loss + guide
+
+    @property
+    def best_of_map(self) -> tuple[si.Dimensionless, si.Newton, si.Metre]:
+        """The largest efficiency over preload and amplitude, and where (N, m)."""
+        at = np.unravel_index(np.nanargmax(self.map.efficiency), self.map.efficiency.shape)
+        found = self.map.efficiency[at], self.map.preload[at[0]], self.map.amplitude[at[1]]
+        return float(found[0]), float(found[1]), float(found[2])
+
+    @property
+    def thrust_apart(self) -> si.Dimensionless:
+        """Averaged less resolved thrust at the speed of `best`, over µ times the preload (1)."""
+        described = self.motor.motor
+        most = described.contact.friction_coefficient * described.cradle.preload
+        return (self.best.thrust - self.motion.thrust) / most
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers for ``--json``, with units in the keys."""
+        mode = self.motor.modes[0].working
+        return {
+            "actuator": self.described.name,
+            "kind": "motor",
+            "voltage_V": self.voltage,
+            "resonance_frequency_Hz": mode.resonance_frequency,
+            "quality_factor": mode.quality_factor,
+            "free_amplitude_m": self.free_amplitude,
+            "amplitude_under_the_slider_m": self.rest.amplitude,
+            "preload_N": self.motor.motor.cradle.preload,
+            "stall_force_N": self.stall_force,
+            "no_load_speed_m_per_s": self.no_load_speed,
+            "holding_force_unpowered_N": self.motor.quiescent_force,
+            "contact_share": self.rest.contact_share,
+            "best": to_json(self.best) | {"efficiency": self.best.efficiency},
+            "input_power_W": self.input_power,
+            "best_of_map": dict(
+                zip(("efficiency", "preload_N", "amplitude_m"), self.best_of_map, strict=True)
+            ),
+            "thrust_in_time_N": self.motion.thrust,
+            "resolved_curve": [
+                {"speed_m_per_s": speed, "force_N": force}
+                for speed, force in self.resolved.tolist()
+            ],
+            "averaged_less_resolved_thrust": self.thrust_apart,
+            "energy_residual": self.motion.energy_residual,
+            "highest_voltage_V": self.motor.highest_voltage,
+            "speed_force_curve": [
+                {"speed_m_per_s": one.speed, "force_N": one.force, "efficiency": one.efficiency}
+                for one in self.curve
+            ],
+            "effects": to_json(self.effects),
+            "drawn": to_json(self.drawn),
+            "over_frequency": [
+                {
+                    "frequency_Hz": one.working.frequency,
+                    "force_N": one.force,
+                    "amplitude_m": one.amplitude,
+                }
+                for one in self.tuned
+            ],
+            "over_place_of_the_feet": [
+                {"shift_m": shift, "force_N": None if one is None else one.force}
+                for shift, one in zip(self.shifts.tolist(), self.shifted, strict=True)
+            ],
+            "velocity_in_the_plane_m_per_s": None
+            if self.plane is None
+            else self.plane.final_velocity.tolist(),
+            "warnings": list(self.warnings),
+        }
+
+
+@si.checked_numbers
+def analyze_motor(
+    described: MotorDescription,
+    *,
+    voltage: Annotated[si.Volt, si.Above(0.0)] | None = None,
+    progress: SayProgress | None = None,
+) -> MotorAnalysis:
+    """A described motor at a voltage (V, zero-to-peak; its own if None): averaged, resolved in
+    time at its best load, over preload and amplitude, and under its force law.
+
+    Valid as the models are, see `averaged` and `simulate`. Raises what they raise:
+    `OutOfRangeError` for a preload under which it stalls, a foot over a node, or a voltage at which
+    the ceramic loses its poling.
+    """
+    tell = progress or (lambda _: None)
+    volts = described.motor.voltage if voltage is None else voltage
+    tell("modes of the plate")
+    motor = assembled(described.motor)
+    working = Working(voltage=volts)
+    tell("speed and force")
+    curve = speed_force_curve(motor, working)
+    best = max(curve, key=lambda one: one.efficiency)
+    tell("in time")
+    motion = simulate(motor, working, speed=best.speed, periods=_PERIODS, traced=_TRACED)
+    resolved = _resolved(motor, working, curve)
+    tell("preload and amplitude")
+    cradle, amplitude = described.motor.cradle, curve[0].amplitude
+    over = motor_map(
+        motor,
+        cradle.preload * np.geomspace(0.1, 2.5, _MAP),
+        amplitude * np.linspace(0.2, 2.0, _MAP),
+        progress=lambda done, of: None if done % _MAP else tell(f"{done} of {of} points"),
+    )
+    tell("frequency and place of the feet")
+    tuned = _tuned(motor, volts)
+    shifts, shifted = _shifted(motor, amplitude)
+    tell("force law")
+    tracked, why_not = _step(motor, best.speed, amplitude)
+    tell("what assumed values do")
+    moved = effects(described, described.provenance, lambda one: _answers(one, volts), _tried)
+    tell("how sure that is")
+    sure = drawn_answers(
+        described,
+        described.provenance,
+        _USUAL,
+        lambda one: _drawn(described, motor, one, volts),
+        progress=lambda done, of: None if done % 16 else tell(f"{done} of {of} draws"),
+    )
+    found = MotorAnalysis(
+        described,
+        motor,
+        volts,
+        curve,
+        best,
+        over,
+        motion,
+        resolved,
+        averaged_graph(motor),
+        tracked,
+        moved,
+        sure,
+        tuned,
+        shifts,
+        shifted,
+        _plane(motor, volts),
+        (),
+    )
+    return dataclasses.replace(found, warnings=tuple(_warnings(found, why_not)))
+
+
+def _tuned(motor: AssembledMotor, voltage: si.Volt) -> tuple[AveragedMotor, ...]:
+    """About the resonance, as far as the drive moves the plate under the slider."""
+    found = []
+    for share in np.linspace(1 - _DETUNED, 1 + _DETUNED, _POINTS).tolist():
+        working = Working(voltage=voltage, frequency=share * motor.resonance_frequency)
+        try:
+            found.append(averaged(motor, working))
+        except UnreachableError:
+            continue
+    return tuple(found)
+
+
+def _shifted(
+    motor: AssembledMotor, amplitude: si.Metre
+) -> tuple[si.MetreArray, tuple[AveragedMotor | None, ...]]:
+    """Feet moved by up to half a wave to either side, at the amplitude that the motor has."""
+    described, half = motor.motor, motor.modes[0].working.half_wavelength
+    along_width = described.plate.lines_across == "width"
+    places = [foot.y if along_width else foot.x for foot in described.feet]
+    span = described.plate.width if along_width else described.plate.length
+    shifts = np.linspace(max(-half, -min(places)), min(half, span - max(places)), 2 * _POINTS)
+    return shifts, over_foot_position(described, Working(amplitude=amplitude), shifts)
+
+
+def _plane(motor: AssembledMotor, voltage: si.Volt) -> PlaneMotion | None:
+    if len(motor.modes) == 1:
+        return None
+    working = Working(voltage=voltage, second=1.0)
+    return simulate_plane(motor, working, periods=_FREE, steps=_FREE_STEPS, traced=_FREE)
+
+
+def _resolved(
+    motor: AssembledMotor, working: Working, curve: tuple[AveragedMotor, ...]
+) -> si.FloatArray:
+    """Speed and force left for a load, in time, at every so many points of an averaged curve."""
+    found = []
+    for one in curve[:: len(curve) // _RESOLVED]:
+        there = simulate(motor, working, speed=one.speed, periods=_PERIODS, traced=0)
+        found.append((one.speed, there.thrust - (one.thrust - one.force)))
+    return np.array(found)
+
+
+def _step(
+    motor: AssembledMotor, speed: si.MetrePerSecond, amplitude: si.Metre
+) -> tuple[TrackedForce | None, str]:
+    """The force law's answer to a step between two shares of the largest force at a speed."""
+    try:
+        law = inverted_law(motor, np.array([speed]), amplitude * np.linspace(0.3, 1.0, 12))
+    except InputError as error:
+        return None, f"no force can be commanded at the best load's speed: {error}"
+    low, high = (share * float(law.thrust.max()) for share in _STEP)
+    wanted = np.repeat([low, high], _STEPS // 2)
+    return track_force(motor, law, wanted, speed), ""
+
+
+def _drawn(
+    nominal: MotorDescription, solved: AssembledMotor, drawn: MotorDescription, voltage: si.Volt
+) -> Mapping[str, float]:
+    """The answers of a drawn motor on the solved plate; losses scale a mode at its resonance."""
+    share = drawn.motor.plate.quality_factor / nominal.motor.plate.quality_factor
+    modes = tuple(
+        dataclasses.replace(
+            mode,
+            working=dataclasses.replace(
+                mode.working,
+                quality_factor=share * mode.working.quality_factor,
+                amplitude_per_volt=share * mode.working.amplitude_per_volt,
+            ),
+        )
+        for mode in solved.modes
+    )
+    return _answered(assembled(drawn.motor, modes=modes), voltage)
+
+
+def _answers(described: MotorDescription, voltage: si.Volt) -> Mapping[str, float]:
+    return _answered(assembled(described.motor), voltage)
+
+
+def _answered(motor: AssembledMotor, voltage: si.Volt) -> Mapping[str, float]:
+    working = Working(voltage=voltage)
+    return {
+        "stall_force_N": stall_force(motor, working),
+        "no_load_speed_m_per_s": no_load_speed(motor, working),
+    }
+
+
+def _tried(path: str) -> bool:
+    """Feet would leave the wave, and each of the plate's own values is a solve: but for its Q they
+    are for an analysis of the plate as a display."""
+    in_plate = path.startswith(("motor.plate.", "motor.second_plate."))
+    return not path.startswith("motor.feet.") and (
+        not in_plate or path == "motor.plate.quality_factor"
+    )
+
+
+def _warnings(found: MotorAnalysis, why_no_force: str) -> list[str]:
+    said = []
+    if abs(found.thrust_apart) > _APART:
+        said.append(
+            f"At its best load the mean over a period gives {found.best.thrust:.3g} N and the "
+            f"motion in time {found.motion.thrust:.3g} N: the slider jumps for several periods, "
+            "which the mean does not know. Press it harder, or take the numbers in time."
+        )
+    if found.voltage > 0.8 * found.motor.highest_voltage:
+        said.append(
+            f"The voltage is {100 * found.voltage / found.motor.highest_voltage:.0f} % of that at "
+            "which the ceramic begins to lose its poling."
+        )
+    if found.no_load_speed < 0:
+        said.append("It moves against the direction that its cradle names: its feet push back.")
+    return [*said, *([why_no_force] if why_no_force else [])]

@@ -1,0 +1,111 @@
+"""The page of an actuator: what one decides from, its figures, and where its values are from."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.kit import style
+from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.core.kit.numbers import Row
+from squeezefilm.core.kit.page_style import (
+    as_html,
+    bullets,
+    page,
+    picture_sections,
+    section,
+    stamped,
+    text_table,
+)
+from squeezefilm.core.results import stamp
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class Described(Protocol):
+    """An actuator as its file describes it."""
+
+    name: str
+    title: str
+
+    @property
+    def provenance(self) -> Mapping[str, Provenance]:
+        """Where each value is from."""
+
+
+class ActuatorAnalysis(Protocol):
+    """What every analysis of an actuator has."""
+
+    @property
+    def described(self) -> Any:
+        """The actuator, `Described`."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """In sentences."""
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers, with units in the keys."""
+
+
+def assumed_words(provenance: Mapping[str, Provenance]) -> str:
+    """How many of an actuator's values are assumed, in a sentence."""
+    assumed = sum(one.evidence == "assumed" for one in provenance.values())
+    return (
+        f"{assumed} of {len(provenance)} values with a source are assumed, and the numbers hang on "
+        "them; the page's last tables (--out DIR) list them and say what they do."
+    )
+
+
+def write_page(
+    found: ActuatorAnalysis,
+    folder: Path,
+    *,
+    key_numbers: Sequence[Row],
+    figures: Mapping[str, tuple[str, Figure]],
+    more: str = "",
+    pictures: Mapping[str, bytes] | None = None,
+) -> Path:
+    """Write result.json, a PNG of each of the `figures` (by file name: heading and figure),
+    other `pictures` by file name, and report.html into `folder`; the path of the page.
+
+    `more` are sections of HTML after the figures. Raises `InputError` where the folder cannot be
+    written to.
+    """
+    folder, described = require_folder(folder), found.described
+    summary = found.summary()
+    stamped_with = stamp(summary)
+    files: dict[str, str | bytes] = {
+        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
+    }
+    files |= pictures or {}
+    files["result.json"] = json_text(summary | {"stamp": stamped_with})
+    warned = [*found.warnings, assumed_words(described.provenance)]
+    head = ("quantity", "value", "remark")
+    body = section("Warnings", bullets(warned))
+    body += section("Key numbers", text_table("Amplitudes zero to peak", head, key_numbers))
+    body += picture_sections(figures) + more + _sources(described.provenance)
+    title = as_html(described.title)
+    foot = stamped(stamped_with, "SHA-256 of the numbers")
+    files["report.html"] = page(title, title, as_html(described.name), body, foot)
+    write_folder(folder, files)
+    return folder / "report.html"
+
+
+def _sources(provenance: Mapping[str, Provenance]) -> str:
+    """Where values are from, those of the same place side by side: seven ceramics alike take as
+    many rows as one."""
+    rows: dict[tuple[str, str, str], list[str]] = {}
+    for path, one in provenance.items():
+        numbered = re.sub(r"\.\d+\.", ".*.", path)
+        rows.setdefault((numbered, one.evidence, one.source), []).append(path)
+    table = [
+        (paths[0] if len(paths) == 1 else f"{name} ({len(paths)} alike)", evidence, source)
+        for (name, evidence, source), paths in rows.items()
+    ]
+    head = ("value", "evidence", "source")
+    return section("Where the values come from", text_table("As the file says", head, table))

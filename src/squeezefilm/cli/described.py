@@ -1,0 +1,214 @@
+"""What the command line prints of descriptions: presets, materials, and a display's values with
+their sources."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from squeezefilm.core.kit.numbers import dotted
+from squeezefilm.core.kit.terminal import heading, plain_console, table
+
+_MARKS = {"assumed": "* ", "unstated": "? "}
+_STYLES = {"*": "yellow", "?": "red"}
+
+
+DISPLAY_VERBS = "every verb for displays"
+ACTUATOR_VERBS = "analyze and show"
+
+
+def preset_list() -> list[dict[str, Any]]:
+    """The displays, motors and skin-stretch arrays that come with the package: name, title, type,
+    which verbs take it, how many values have a source and how many of these are assumed."""
+    from squeezefilm.actuators.described import KINDS, load_actuator
+    from squeezefilm.core import presets
+    from squeezefilm.physics.display import load_display
+
+    listing = []
+    for name in presets.display_names():
+        display = load_display(name)
+        listing.append(_preset(display, display.actuator.type, DISPLAY_VERBS))
+    for name in presets.actuator_names():
+        actuator = load_actuator(name)
+        kind = next(kind for kind in KINDS if hasattr(actuator, kind))
+        listing.append(_preset(actuator, kind, ACTUATOR_VERBS))
+    return listing
+
+
+def _preset(described: Any, kind: str, verbs: str) -> dict[str, Any]:
+    """One entry of the list of presets."""
+    evidence = [item.evidence for item in described.provenance.values()]
+    return {
+        "name": described.name,
+        "title": described.title,
+        "type": kind,
+        "taken_by": verbs,
+        "values_with_source": len(evidence),
+        "values_assumed": evidence.count("assumed"),
+    }
+
+
+def show_presets(listing: Sequence[dict[str, Any]]) -> None:
+    """Print the list of presets."""
+    console = plain_console()
+    rows = [
+        (
+            preset["name"],
+            preset["title"],
+            preset["taken_by"],
+            f"{preset['values_assumed']} of {preset['values_with_source']}",
+        )
+        for preset in listing
+    ]
+    table(console, ("preset", "what it is", "taken by", "assumed"), rows, fixed=(0, 3))
+    console.print("squeezefilm show NAME lists the values; squeezefilm analyze NAME works them out")
+
+
+def display_values(target: str) -> list[dict[str, Any]]:
+    """Every value that the file of a display or an actuator states, or takes from the library of
+    materials: path, text as written, source and evidence.
+
+    Members of lists are counted from 1. `source` and `evidence` are None where nothing is
+    said; the evidence of a number without a source is "unstated". Raises `ConfigError` for a file
+    that is not right.
+    """
+    from squeezefilm.actuators.described import actuator_class, is_actuator
+    from squeezefilm.core import presets
+    from squeezefilm.core.config.written import written_values
+    from squeezefilm.core.regular_file import read_toml_text
+    from squeezefilm.physics.display import Display
+
+    other = is_actuator(target)
+    file = presets.resolve_actuator(target) if other else presets.resolve(target)
+    text = read_toml_text(file)
+    described = actuator_class(text, file) if other else Display
+    return [
+        {
+            "path": dotted(one.path),
+            "text": one.text,
+            "source": (one.provenance and one.provenance.source) or None,
+            "evidence": None if one.provenance is None else one.provenance.evidence,
+        }
+        for one in written_values(described, text, file=file)
+    ]
+
+
+def show_values(values: Sequence[dict[str, Any]]) -> None:
+    """Print the values of a display by table of its file, with their sources; a star marks what is
+    assumed, a question mark what has no source."""
+    console = plain_console()
+    groups: dict[str, list[tuple[str, str, str]]] = {}
+    for item in values:
+        group, _, key = item["path"].rpartition(".")
+        mark = _MARKS.get(item["evidence"] or "", "  ")
+        groups.setdefault(group, []).append((mark + key, item["text"], _origin(item)))
+    for group, rows in groups.items():
+        if group:
+            heading(console, group)
+        table(
+            console,
+            ("", "", ""),
+            rows,
+            fixed=(0,),
+            styles=lambda row: _STYLES.get(row[0][:1], ""),
+        )
+    sourced = [item["evidence"] for item in values if item["evidence"] is not None]
+    console.print(f"\n* assumed: {sourced.count('assumed')} of {len(sourced)} values")
+    if bare := sourced.count("unstated"):
+        console.print(
+            f"? without a source: {bare} of {len(sourced)} values; say where each is from, like "
+            'thickness = { value = "2 mm", source = "caliper", evidence = "measured" }, or once '
+            'for a table: source = "drawing 17"'
+        )
+
+
+def _origin(item: dict[str, Any]) -> str:
+    if item["evidence"] is None:
+        return ""
+    return f"{item['evidence']}: {item['source']}" if item["source"] else str(item["evidence"])
+
+
+def material_list(name: str | None = None) -> list[dict[str, Any]]:
+    """The materials of the library, or one of them by any of its names, with all their values.
+
+    Each value has its text as a file may have it, source, evidence, and its range or None. Raises
+    `InputError` for a name that is not known.
+    """
+    from squeezefilm.core.presets import materials
+
+    known = materials.library() if name is None else (materials.named(name),)
+    return [
+        {
+            "name": one.name,
+            "kind": one.kind,
+            "title": one.title,
+            "also": list(one.also),
+            "spread": one.spread,
+            "values": [
+                {
+                    "path": path,
+                    "text": str(value["value"]),
+                    "source": value["source"],
+                    "evidence": value.get("evidence", "published"),
+                    "range": value.get("range"),
+                }
+                for path, value in one.leaves()
+            ],
+        }
+        for one in known
+    ]
+
+
+def show_materials(listing: Sequence[dict[str, Any]]) -> None:
+    """Print the materials by kind with what matters most of them; of a single one all values."""
+    console = plain_console()
+    if len(listing) == 1:
+        _show_material(listing[0])
+        return
+    for kind, columns in _COLUMNS.items():
+        heading(console, f"{kind}: [actuator.{kind}] material = …")
+        rows = []
+        for one in (item for item in listing if item["kind"] == kind):
+            texts = {value["path"]: value for value in one["values"]}
+            rows.append((one["name"], *(_shown(texts[path]) for path in columns), one["title"]))
+        table(console, ("", *columns.values(), ""), rows, fixed=(0,))
+    console.print(
+        "\n* assumed. squeezefilm materials NAME lists all values with their sources. A file may "
+        "state single values beside the name, in place of the library's."
+    )
+
+
+_COLUMNS: dict[str, dict[str, str]] = {
+    "substrate": {"young_modulus": "E", "poisson_ratio": "ν", "density": "ρ"},
+    "ceramic": {
+        "charge_coefficient": "d31",
+        "in_plane_stiffness": "c11_p",
+        "density": "ρ",
+        "quality_factor": "Q",
+    },
+    "glue": {"young_modulus": "E", "poisson_ratio": "ν", "density": "ρ"},
+}
+
+
+def _shown(value: dict[str, Any]) -> str:
+    star = "*" if value["evidence"] == "assumed" else ""
+    return f"{value['text']}{star}"
+
+
+def _show_material(one: dict[str, Any]) -> None:
+    console = plain_console()
+    console.print(f"{one['name']}: {one['title']} (a {one['kind']})")
+    console.print(f"also: {', '.join(one['also'])}")
+    console.print(f"spread: {one['spread']}")
+    rows = []
+    for value in one["values"]:
+        mark = _MARKS.get(value["evidence"], "  ")
+        between = "" if value["range"] is None else " to ".join(value["range"])
+        rows.append((mark + value["path"], value["text"], between, _origin(value)))
+    table(
+        console,
+        ("", "", "range", "source"),
+        rows,
+        fixed=(0,),
+        styles=lambda row: _STYLES.get(row[0][:1], ""),
+    )

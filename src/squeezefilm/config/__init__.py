@@ -1,6 +1,0 @@
-"""TOML to the frozen dataclass a room owns. Generic: knows no display, no plate, no study."""
-
-from squeezefilm.config.load import load, load_text
-from squeezefilm.config.provenance import Provenance
-
-__all__ = ["Provenance", "load", "load_text"]

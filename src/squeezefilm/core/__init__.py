@@ -1,0 +1,1 @@
+"""What every part stands on: quantities, errors, configuration, results, files, the report kit."""

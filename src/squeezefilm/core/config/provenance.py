@@ -1,0 +1,145 @@
+"""Where a value comes from: text beside the value in the TOML file, kept beside it in memory.
+
+A value in TOML is either plain, ``thickness = "2 mm"``, or a table that says where it comes from:
+``thickness = { value = "2 mm", source = "paper, section 3.1", evidence = "published" }``. How sure
+it is may stand beside it: ``uncertainty = "0.05 mm"`` or ``"5 %"`` (a standard deviation), or
+``range = ["1.9 mm", "2.1 mm"]`` (anywhere between).
+
+A table may say it once for all numbers of its own that do not: ``source = "drawing 17"`` among its
+keys. A number that nobody gave a source is `UNSTATED`, and so is one that was changed in a copy
+while the words of its source stayed.
+"""
+
+from __future__ import annotations
+
+import copyreg
+import types
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.distributions import Distribution, Normal, Uniform
+from squeezefilm.core.errors import ConfigError, InputError
+
+
+def read_only(values: Mapping[str, Any]) -> types.MappingProxyType[str, Any]:
+    """A mapping that nobody can change, and that can be pickled with what holds it."""
+    return types.MappingProxyType(dict(values))
+
+
+copyreg.pickle(types.MappingProxyType, lambda mapping: (read_only, (dict(mapping),)))
+
+UNSTATED = "unstated"
+"""The evidence of a number whose file does not say where it is from."""
+EVIDENCE = ("measured", "published", "derived", "assumed", UNSTATED)
+_SPREADS = ("uncertainty", "range")
+_OF_TABLES = ("source", "evidence")
+_KEYS = {"value", *_OF_TABLES, *_SPREADS}
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """The source of one value and the kind of evidence behind it: measured, published, derived
+    from published values, assumed, or unstated; and how it is distributed, where the file says
+    so."""
+
+    source: str
+    evidence: str = "published"
+    distribution: Distribution | None = None
+
+
+Spread = str | tuple[str, str]
+"""An uncertainty as it is written, before the unit of its value is known."""
+
+
+class Split(NamedTuple):
+    """A tree with plain values; by path (``"actuator.thickness"``) the sources of values, their
+    spreads, and the sources that tables give for their own values."""
+
+    plain: dict[str, Any]
+    sources: dict[str, Provenance]
+    spreads: dict[str, Spread]
+    tables: dict[str, Provenance]
+
+
+def split_provenance(tree: Mapping[str, Any], *, of_tables: bool = False) -> Split:
+    """Separate values from their sources, and with `of_tables` tables from theirs. Raises
+    `ConfigError` for a malformed source or spread."""
+    found = Split({}, {}, {}, {})
+
+    def walk(node: Any, path: str) -> Any:
+        if isinstance(node, Mapping):
+            if "value" in node and set(node) <= _KEYS:
+                if set(node) > {"value"}:
+                    found.sources[path] = _provenance(node, path)
+                if (spread := _spread(node, path)) is not None:
+                    found.spreads[path] = spread
+                return node["value"]
+            if of_tables and "source" in node:
+                found.tables[path] = _provenance(node, path)
+                node = {key: item for key, item in node.items() if key not in _OF_TABLES}
+            return {key: walk(item, f"{path}.{key}" if path else key) for key, item in node.items()}
+        if isinstance(node, list):
+            return [walk(item, f"{path}.{index}") for index, item in enumerate(node)]
+        return node
+
+    found.plain.update(walk(tree, ""))
+    return found
+
+
+def _spread(node: Mapping[str, Any], path: str) -> Spread | None:
+    given = [key for key in _SPREADS if key in node]
+    if not given:
+        return None
+    if len(given) == 2:
+        raise ConfigError("uncertainty and range are both given; give one of them", key=path)
+    spread = node[given[0]]
+    if given == ["uncertainty"]:
+        if not isinstance(spread, str):
+            raise ConfigError(
+                f'uncertainty = {spread!r} is no text; write "5 %" or a quantity in the unit of '
+                "the value",
+                key=path,
+            )
+        return spread
+    whole = isinstance(spread, list) and len(spread) == 2
+    if not whole or not all(isinstance(item, str) for item in spread):
+        raise ConfigError(
+            f'range = {spread!r} is none; write two texts, like ["1.9 mm", "2.1 mm"]', key=path
+        )
+    return spread[0], spread[1]
+
+
+def distribution_of(value: float, unit: si.Unit, spread: Spread) -> Distribution:
+    """What a spread means for a value in a unit. Raises `InputError` for one that cannot be."""
+    if isinstance(spread, tuple):
+        low, high = (si.parse_quantity(text, unit) for text in spread)
+        found: Distribution = Uniform(low, high)
+        if not low <= value <= high:
+            raise InputError(
+                f"range = [{spread[0]}, {spread[1]}] leaves out the value "
+                f"{si.format_quantity(value, unit)} itself; make it wider"
+            )
+    elif spread.strip().endswith("%"):
+        share = si.parse_quantity(spread.strip().removesuffix("%").strip(), si.Unit("1")) / 100
+        found = Normal(value, share * abs(value))
+    else:
+        found = Normal(value, si.parse_quantity(spread, unit))
+    if value > 0 and found.support[0] <= 0:
+        raise InputError(
+            f"uncertainty = {spread!r} lets {si.format_quantity(value, unit)} become negative "
+            "within three standard deviations; give a range instead"
+        )
+    return found
+
+
+def _provenance(node: Mapping[str, Any], path: str) -> Provenance:
+    source, evidence = node.get("source", ""), node.get("evidence", "published")
+    if not isinstance(source, str):
+        raise ConfigError(f"source = {source!r} is no text; write where it is from", key=path)
+    if evidence not in EVIDENCE:
+        raise ConfigError(
+            f"evidence = {evidence!r} is not known; allowed: {', '.join(EVIDENCE)}", key=path
+        )
+    return Provenance(source, evidence)

@@ -1,0 +1,102 @@
+"""How sure a value is: the distributions that a description may give beside a value."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+
+_WIDEST = 3.0  # standard deviations kept of a normal distribution
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class Normal:
+    """A normal distribution cut at three standard deviations, in the unit of its quantity.
+
+    Raises `InputError` for a standard deviation that is not above 0.
+    """
+
+    mean: float
+    standard_deviation: float
+
+    def __post_init__(self) -> None:
+        si.require("uncertainty", self.standard_deviation, above=0)
+
+    @si.checked_numbers
+    def quantile(self, p: si.DimensionlessArray) -> si.FloatArray:
+        """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
+        from scipy.special import ndtr, ndtri
+
+        tail = ndtr(-_WIDEST)
+        spread = ndtri(tail + np.asarray(p, dtype=float) * (1 - 2 * tail))
+        return np.asarray(self.mean + self.standard_deviation * spread)
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        reach = _WIDEST * self.standard_deviation
+        return self.mean - reach, self.mean + reach
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class Uniform:
+    """Anywhere between two values alike. Raises `InputError` unless low < high."""
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        if not self.low < self.high:
+            raise InputError(
+                f"range = [{self.low:.6g}, {self.high:.6g}] is none; write the lower value first",
+                quantity="range",
+            )
+
+    @si.checked_numbers
+    def quantile(self, p: si.DimensionlessArray) -> si.FloatArray:
+        """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
+        return self.low + (self.high - self.low) * np.asarray(p, dtype=float)
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return self.low, self.high
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class LogNormal:
+    """A quantity whose logarithm is `Normal`: as people differ around a median. Raises `InputError`
+    for a median or a standard deviation of the logarithm that is not above 0."""
+
+    median: float
+    log_deviation: float
+
+    def __post_init__(self) -> None:
+        si.require("median", self.median, above=0)
+        si.require("log_deviation", self.log_deviation, above=0)
+
+    @property
+    def of_logarithm(self) -> Normal:
+        """How the natural logarithm is distributed."""
+        return Normal(math.log(self.median), self.log_deviation)
+
+    @si.checked_numbers
+    def quantile(self, p: si.DimensionlessArray) -> si.FloatArray:
+        """The values (in the quantity's unit, the shape of `p`) not exceeded with probability p."""
+        return np.exp(self.of_logarithm.quantile(p))
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        low, high = self.of_logarithm.support
+        return math.exp(low), math.exp(high)
+
+
+Distribution = Normal | Uniform | LogNormal

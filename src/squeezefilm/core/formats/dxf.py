@@ -1,0 +1,155 @@
+"""Drawings as DXF, which workshops cut and etch from; written by ezdxf, in millimetres."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from typing import Any
+
+from squeezefilm.core.formats.drawing import Arc, Dimension, Drawing, Item, Ordinate, Polyline, Text
+
+MILLIMETRES = 4
+"""$INSUNITS of a drawing in millimetres."""
+APPLICATION = "SQUEEZEFILM"
+"""Under which a dimension keeps the key of the value that it shows."""
+
+# What ezdxf says of itself, with the moment.
+_MADE = re.compile(r"^(\d+(?:\.\d+)+\S*) @ \d{4}-\d\d-\d\dT\S+$", re.MULTILINE)
+_BESIDE = {"DIMENSIONS": 8, "TEXT": 7}
+_WIDTHS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70)
+
+
+def dxf_text(drawing: Drawing) -> str:
+    """A drawing as the text of a DXF file (R2010), at full size.
+
+    Dimensions are entities of their own, which keep `value_of` as extended data of `APPLICATION`.
+    Raises `InputError` for a drawing in which ezdxf's own audit finds an error.
+    """
+    from squeezefilm.core.errors import InputError, optional
+
+    with optional("design", "a DXF file"):
+        from ezdxf._options import options
+        from ezdxf.filemanagement import new
+
+    found = new("R2010", setup=True)
+    found.header["$INSUNITS"] = MILLIMETRES
+    # Dashes are as long on paper whatever the scale.
+    found.header["$LTSCALE"] = 0.2 / drawing.scale
+    found.appids.add(APPLICATION)
+    for name, layer in drawing.layers.items():
+        width = min(_WIDTHS, key=lambda known: abs(known - 1e5 * layer.width))
+        found.layers.add(name, color=layer.colour, linetype=layer.line, lineweight=width)
+    for name, colour in _BESIDE.items():
+        if name not in drawing.layers:
+            found.layers.add(name, color=colour)
+    space = found.modelspace()
+    for one in drawing.items:
+        _draw(space, one)
+    audit = found.audit()
+    if audit.has_errors:
+        raise InputError(f"the drawing is not sound: {audit.errors[0].message}")
+    stream = io.StringIO()
+    # Without the moment and a random identifier: a drawing of the same things is the same file.
+    fixed = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        found.write(stream)
+    finally:
+        options.write_fixed_meta_data_for_testing = fixed
+    return _MADE.sub(r"\1", stream.getvalue())
+
+
+def _draw(space: Any, one: Item) -> None:
+    if isinstance(one, Polyline):
+        points = [(1e3 * x, 1e3 * y) for x, y in one.points]
+        space.add_lwpolyline(points, close=one.closed, dxfattribs={"layer": one.layer})
+    elif isinstance(one, Arc):
+        _arc(space, one)
+    elif isinstance(one, Text):
+        _text(space, one)
+    elif isinstance(one, Dimension):
+        _dimension(space, one)
+    else:
+        _ordinate(space, one)
+
+
+def _arc(space: Any, one: Arc) -> None:
+    centre, radius, layer = (1e3 * one.x, 1e3 * one.y), 1e3 * one.radius, {"layer": one.layer}
+    if one.is_circle:
+        space.add_circle(centre, radius, dxfattribs=layer)
+    else:
+        ends = math.degrees(one.start), math.degrees(one.end)
+        space.add_arc(centre, radius, *ends, dxfattribs=layer)
+
+
+def _text(space: Any, one: Text) -> None:
+    from ezdxf.enums import TextEntityAlignment as Align
+
+    # In its middle: so a text stands where it does in every program, whatever font that has.
+    align = {
+        "left": Align.MIDDLE_LEFT,
+        "middle": Align.MIDDLE_CENTER,
+        "right": Align.MIDDLE_RIGHT,
+    }[one.align]
+    space.add_text(
+        one.text,
+        height=1e3 * one.height,
+        rotation=math.degrees(one.angle),
+        dxfattribs={"layer": one.layer},
+    ).set_placement((1e3 * one.x, 1e3 * one.y), align=align)
+
+
+def _look(height: float) -> dict[str, Any]:
+    """The style of a dimension whose numbers are so high (mm): no zeros behind the last digit."""
+    return {
+        "dimtxt": height,
+        "dimasz": height,
+        # Filled arrows, not strokes.
+        "dimtsz": 0,
+        "dimblk": "",
+        "dimexe": 0.5 * height,
+        "dimexo": 0.5 * height,
+        "dimgap": 0.3 * height,
+        "dimdec": 4,
+        "dimzin": 8,
+        "dimscale": 1,
+        "dimlfac": 1,
+    }
+
+
+def _keep(style: Any, one: Dimension | Ordinate) -> None:
+    style.render()
+    if one.value_of:
+        style.dimension.set_xdata(APPLICATION, [(1000, one.value_of)])
+
+
+def _dimension(space: Any, one: Dimension) -> None:
+    base = (1e3 * one.at, 0) if one.upright else (0, 1e3 * one.at)
+    style = space.add_linear_dim(
+        base=base,
+        p1=(1e3 * one.x_from, 1e3 * one.y_from),
+        p2=(1e3 * one.x_to, 1e3 * one.y_to),
+        location=(1e3 * one.text_x, 1e3 * one.text_y),
+        text=f"{one.prefix}<>{one.suffix}".replace("⌀", "%%c"),
+        angle=90 if one.upright else 0,
+        text_rotation=0,
+        dimstyle="EZDXF",
+        override=_look(1e3 * one.height) | {"dimlfac": 1 / one.stretch},
+        dxfattribs={"layer": "DIMENSIONS"},
+    )
+    _keep(style, one)
+
+
+def _ordinate(space: Any, one: Ordinate) -> None:
+    add = space.add_ordinate_y_dim if one.upright else space.add_ordinate_x_dim
+    reach = 1e3 * (one.end - one.x if one.upright else one.end - one.y)
+    style = add(
+        (1e3 * one.x, 1e3 * one.y),
+        (reach, 0) if one.upright else (0, reach),
+        origin=(1e3 * one.origin_x, 1e3 * one.origin_y),
+        dimstyle="EZDXF",
+        override=_look(1e3 * one.height) | {"dimtad": 0},
+        dxfattribs={"layer": "DIMENSIONS"},
+    )
+    _keep(style, one)

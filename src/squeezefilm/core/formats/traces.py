@@ -1,0 +1,184 @@
+"""Tables of samples in CSV and Parquet: units in the names of columns, origin kept with the file.
+
+CSV is UTF-8 with a comma, one header line, and before it one comment line ``# {JSON}`` with the
+metadata, in whose texts commas and semicolons are escaped, so that no spreadsheet finds a formula
+behind one; numbers are written so that they read back as the same float, a missing one is empty.
+Parquet keeps the metadata under the key ``squeezefilm`` of the schema and needs pyarrow (the extra
+``squeezefilm[study]``); it is written for other programs, and none of this one reads it.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError, InputError, optional
+from squeezefilm.core.hard_limits import TABLE_BYTES
+from squeezefilm.core.regular_file import parsed_json, read_regular_text
+
+_NAME = re.compile(r"[a-z][A-Za-z0-9_.]*")
+_JSON_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_KEY = b"squeezefilm"
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True, eq=False)
+class Table:
+    """Columns of equal length by name (`position_m`, …), and where they are from.
+
+    Numbers are floats; NaN stands for none, infinities are refused.
+
+    Raises:
+        InputError: no column, columns of different lengths, or a name that is no identifier.
+    """
+
+    columns: Mapping[str, si.FloatArray]
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.columns:
+            raise InputError("a table needs at least one column")
+        shapes = {np.shape(column) for column in self.columns.values()}
+        if len(shapes) > 1 or len(next(iter(shapes))) != 1:
+            raise InputError(
+                f"columns of shapes {sorted(shapes)} are no table; give lists of one length"
+            )
+        for name, column in self.columns.items():
+            if not _NAME.fullmatch(name):
+                raise InputError(f"'{name}' is no name for a column; write it like position_m")
+            if np.any(np.isinf(column)):
+                raise InputError(f"the column '{name}' holds an infinity, which no table keeps")
+
+    def column(self, name: str) -> si.FloatArray:
+        """The column of that name. Raises `InputError` if there is none."""
+        if name not in self.columns:
+            raise InputError(f"there is no column '{name}'; there are {', '.join(self.columns)}")
+        return self.columns[name]
+
+
+def csv_text(table: Table) -> str:
+    """The CSV text of a table; `table_from_csv` reads an equal table back."""
+    stream = io.StringIO()
+    stream.write(f"# {_one_cell(json.dumps(dict(table.metadata), allow_nan=False))}\n")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(table.columns)
+    lists = [np.asarray(column, dtype=float).tolist() for column in table.columns.values()]
+    for row in zip(*lists, strict=True):
+        writer.writerow(["" if math.isnan(value) else repr(value) for value in row])
+    return stream.getvalue()
+
+
+def _one_cell(text: str) -> str:
+    """JSON of which no text is cut into cells, the second of which might begin like a formula."""
+    return _JSON_TEXT.sub(
+        lambda found: found.group().replace(",", "\\u002c").replace(";", "\\u003b"), text
+    )
+
+
+def table_from_csv(path: str | Path) -> Table:
+    """The table in a CSV file.
+
+    Raises:
+        ConfigError: a file that cannot be read, with the line of what is no number or has another
+            count of cells than the header.
+    """
+    text = text_of_file(path)
+    metadata: dict[str, Any] = {}
+    lines = text.rstrip().splitlines()
+    start = 0
+    if lines and lines[0].startswith("#"):
+        start = 1
+        try:
+            metadata = parsed_json(lines[0][1:])
+        except ValueError:
+            metadata = {"comment": lines[0][1:].strip()}
+        if not isinstance(metadata, dict):
+            metadata = {"comment": metadata}
+    if len(lines) <= start:
+        raise ConfigError("has no header line", file=path)
+    rows = csv.reader(lines[start:])
+    try:
+        names = [name.strip() for name in next(rows)]
+        if len(set(names)) < len(names):
+            raise ConfigError("names a column twice", file=path, line=start + 1)
+        values = [_numbers(row, names, path, start + number) for number, row in enumerate(rows, 2)]
+    except csv.Error as error:
+        raise ConfigError(f"is no CSV: {error}", file=path) from error
+    array = np.array(values, dtype=float).reshape(len(values), len(names))
+    try:
+        return Table({name: array[:, k].copy() for k, name in enumerate(names)}, metadata)
+    except InputError as error:
+        raise ConfigError(str(error), file=path, line=start + 1) from error
+
+
+def _numbers(row: list[str], names: list[str], path: str | Path, line: int) -> list[float]:
+    if len(row) != len(names):
+        raise ConfigError(
+            f"has {len(row)} cells where the header has {len(names)}", file=path, line=line
+        )
+    try:
+        return [float(cell) for cell in row]
+    except ValueError:
+        pass  # A cell is empty, or no number: which one is looked up.
+    found = []
+    for name, cell in zip(names, row, strict=True):
+        try:
+            found.append(float(cell) if cell.strip() else math.nan)
+        except ValueError as error:
+            raise ConfigError(
+                f"'{cell}' is no number; write one with a point, like 0.0125",
+                file=path,
+                line=line,
+                key=name,
+            ) from error
+    return found
+
+
+def text_of_file(path: str | Path) -> str:
+    """The UTF-8 text of a file. Raises `ConfigError` for one that cannot be read so."""
+    return read_regular_text(path, TABLE_BYTES, "a CSV file")
+
+
+def parquet_bytes(table: Table) -> bytes:
+    """The Parquet file of a table, columns as 64-bit floats.
+
+    Raises:
+        InputError: where pyarrow is not installed.
+    """
+    columns = {
+        name: np.asarray(column, dtype=float).tolist() for name, column in table.columns.items()
+    }
+    return parquet_of_columns(columns, table.metadata)
+
+
+def parquet_of_columns(columns: Mapping[str, Sequence[Any]], metadata: Mapping[str, Any]) -> bytes:
+    """The Parquet file of columns of one length by name, of numbers or of texts; None is null.
+
+    Raises:
+        InputError: where pyarrow is not installed.
+    """
+    arrow, parquet = _arrow()
+    arrays = [arrow.array(column) for column in columns.values()]
+    note = json.dumps(dict(metadata), allow_nan=False).encode()
+    held = arrow.table(arrays, names=list(columns)).replace_schema_metadata({_KEY: note})
+    stream = io.BytesIO()
+    parquet.write_table(held, stream)
+    return stream.getvalue()
+
+
+def _arrow() -> tuple[ModuleType, ModuleType]:
+    with optional("study", "Parquet (not CSV)"):
+        import pyarrow
+        import pyarrow.parquet
+    return pyarrow, pyarrow.parquet

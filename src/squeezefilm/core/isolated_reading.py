@@ -1,0 +1,260 @@
+"""Reading of files by C code in a child process, so that a damaged file ends the child only.
+
+MATLAB files, Universal Files and pictures are taken apart by libraries that a changed byte can
+crash or make unpack to gigabytes. A child reads them, with limits of memory and of processor time
+where the system has them (POSIX; macOS keeps none of memory) and of elapsed time everywhere. What
+it read comes back as JSON and arrays of floats, never as pickled objects. One child reads many
+files, and another is started after a crash: a start costs about half a second, once a process.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import importlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConfigError, MissingPackageError
+from squeezefilm.core.hard_limits import READING_MEMORY, READING_TIME
+
+Read = tuple[Any, list[si.FloatArray]]
+"""What a function in the child returns: facts (anything that JSON holds), and arrays."""
+
+_PATIENCE: si.Second = 4 * READING_TIME.most
+"""How long a child may take for one file by the clock on the wall."""
+_FLOATS = np.dtype("<f8")
+_LONGEST_HEAD = 16_000_000
+_LEAVE: si.Second = 2.0
+
+
+class IsolatedReader:
+    """A child process that reads files, started when the first is read.
+
+    Args:
+        memory: what the child may use (bytes of address space).
+        processor_time: what it may use for one file.
+        patience: how long one file may take by the clock on the wall.
+    """
+
+    def __init__(
+        self,
+        memory: float = READING_MEMORY.most,
+        processor_time: si.Second = READING_TIME.most,
+        patience: si.Second = _PATIENCE,
+    ) -> None:
+        self._memory, self._processor_time = memory, processor_time
+        self._patience = patience
+        self._turn = threading.Lock()
+        # By this process: a fork of it must not talk with the child of its parent.
+        self._children: dict[int, subprocess.Popen[bytes]] = {}
+
+    def read(
+        self,
+        function: Callable[..., Read],
+        *arguments: str | float | None,
+        data: bytes = b"",
+        file: str | Path,
+    ) -> Read:
+        """What a function of a module returns for `data` and `arguments`, called in the child.
+
+        `file` is what messages name. Raises `ConfigError`: what the function raises of this kind,
+        and where the child crashed or reached a limit.
+        """
+        head = {
+            "function": [function.__module__, function.__qualname__],
+            "arguments": arguments,
+            "bytes": len(data),
+            "processor_time": self._processor_time,
+        }
+        with self._turn:
+            child = self._started()
+            overdue = threading.Event()
+            watch = threading.Timer(self._patience, _end_late, (child, overdue))
+            watch.start()
+            try:
+                answer = _exchange(child, json.dumps(head).encode() + b"\n" + data)
+            finally:
+                watch.cancel()
+            if answer is None:
+                self.end()
+                raise ConfigError(self._why(child, overdue.is_set()), file=file)
+        facts, arrays, refused = answer
+        if refused is not None:
+            raise ConfigError(**{"file": str(file), **refused})
+        return facts, arrays
+
+    def end(self) -> None:
+        """Let the child go; another is started for the next file."""
+        child = self._children.pop(os.getpid(), None)
+        if child is None:
+            return
+        assert child.stdin is not None
+        assert child.stdout is not None
+        with contextlib.suppress(OSError):
+            child.stdin.close()
+        try:
+            child.wait(_LEAVE)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.wait()
+        child.stdout.close()
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        """The child of this process, alive."""
+        child = self._children.get(os.getpid())
+        if child is not None and child.poll() is None:
+            return child
+        self.end()
+        # Where this process finds its modules, and never the folder it is in.
+        paths = os.pathsep.join(path for path in sys.path if path)
+        threads = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
+        child = subprocess.Popen(
+            [
+                sys.executable,
+                "-P",
+                "-m",
+                "squeezefilm.core.isolated_reading",
+                str(int(self._memory)),
+            ],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, **threads, "PYTHONPATH": paths},
+            # Ctrl-C is for the process that waits; this one ends with it.
+            start_new_session=True,
+        )
+        self._children[os.getpid()] = child
+        return child
+
+    def _why(self, child: subprocess.Popen[bytes], is_late: bool) -> str:
+        """Why there is no answer from a child that ended, and what to do."""
+        time_ran_out = is_late or -child.returncode == getattr(signal, "SIGXCPU", None)
+        if time_ran_out:
+            allowed = si.format_quantity(self._processor_time, si.Unit("s"))
+            return (
+                f"cannot be read: reading it takes more than {allowed} ({READING_TIME.name}: "
+                f"{READING_TIME.reason}); export it again with less data"
+            )
+        code = -child.returncode
+        name = signal.Signals(code).name if code in set(signal.Signals) else f"code {-code}"
+        return (
+            f"cannot be read: the process that read it crashed ({name}), as it does on damaged "
+            "files; nothing else was lost. Export it again, or save its table as CSV"
+        )
+
+
+def _end_late(child: subprocess.Popen[bytes], overdue: threading.Event) -> None:
+    overdue.set()
+    child.kill()
+
+
+def _exchange(
+    child: subprocess.Popen[bytes], request: bytes
+) -> tuple[Any, list[si.FloatArray], dict[str, Any] | None] | None:
+    """Facts, arrays and refusal that a child answers; None where it ended before."""
+    assert child.stdin is not None
+    assert child.stdout is not None
+    try:
+        child.stdin.write(request)
+        child.stdin.flush()
+        head = json.loads(child.stdout.readline(_LONGEST_HEAD))
+        arrays = []
+        for shape in head["shapes"]:
+            size = int(np.prod(shape)) * _FLOATS.itemsize
+            if size > READING_MEMORY.most:
+                return None
+            content = child.stdout.read(size)
+            if len(content) < size:
+                return None
+            arrays.append(np.frombuffer(content, _FLOATS).astype(float).reshape(shape))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return head["facts"], arrays, head["refused"]
+
+
+_READER = IsolatedReader()
+atexit.register(_READER.end)
+
+read_isolated = _READER.read
+"""`IsolatedReader.read` of the child that all of this process shares."""
+
+
+def _serve(requests: IO[bytes], answers: IO[bytes]) -> None:
+    """Answer requests until there are no more: what the child does."""
+    while line := requests.readline():
+        head = json.loads(line)
+        _limit_processor_time(head["processor_time"])
+        data = requests.read(head["bytes"])
+        answers.write(_answer(head, data))
+        answers.flush()
+
+
+def _answer(head: dict[str, Any], data: bytes) -> bytes:
+    """A line of JSON, and the arrays behind it."""
+    facts: Any = None
+    arrays: Sequence[si.FloatArray] = ()
+    refused = None
+    module, name = head["function"]
+    try:
+        facts, arrays = getattr(importlib.import_module(module), name)(data, *head["arguments"])
+        contents = [np.ascontiguousarray(array, _FLOATS).tobytes() for array in arrays]
+    except ConfigError as error:
+        refused = {key: getattr(error, key) for key in ("message", "file", "line", "column", "key")}
+        refused = {key: value for key, value in refused.items() if value is not None}
+        arrays, contents = (), []
+    except MissingPackageError as error:
+        refused, contents = {"message": str(error)}, []
+    except MemoryError:
+        arrays, contents = (), []
+        allowed = f"{READING_MEMORY.most / 1e9:g} GB ({READING_MEMORY.name}"
+        refused = {
+            "message": f"cannot be read: reading it takes more than {allowed}: "
+            f"{READING_MEMORY.reason}); export it again with less data"
+        }
+    shapes = [np.shape(array) for array in arrays]
+    told = json.dumps({"facts": facts, "shapes": shapes, "refused": refused}).encode()
+    return b"".join((told, b"\n", *contents))
+
+
+def _limit_processor_time(seconds: si.Second) -> None:
+    """End this process where it works so much longer (POSIX)."""
+    with contextlib.suppress(ImportError, OSError, ValueError):
+        import resource
+
+        hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+        ends = int(time.process_time() + seconds) + 1
+        resource.setrlimit(resource.RLIMIT_CPU, (ends, hard))
+
+
+def _limit_memory(most: int) -> None:
+    """Give this process no more address space, and leave no picture of it where it crashes."""
+    with contextlib.suppress(ImportError, OSError, ValueError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_AS, (most, resource.getrlimit(resource.RLIMIT_AS)[1]))
+
+
+def _main() -> None:
+    # What a library prints must not come between answers.
+    answers = os.dup(1)
+    os.dup2(2, 1)
+    _limit_memory(int(sys.argv[1]))
+    with os.fdopen(answers, "wb") as out, open(0, "rb", closefd=False) as requests:
+        _serve(requests, out)
+
+
+if __name__ == "__main__":
+    _main()

@@ -1,0 +1,193 @@
+"""A `Drawing` as a figure of the size of its paper: what SVG and PDF show is what the DXF holds."""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squeezefilm.core.formats.drawing import (
+    Arc,
+    Dimension,
+    Drawing,
+    Layer,
+    Ordinate,
+    Polyline,
+    Text,
+    arrows_outside,
+)
+from squeezefilm.core.kit import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_INCH, _POINT = 25.4e-3, 25.4e-3 / 72
+# Of the font: the height of a capital over the size of the letters.
+_CAPITAL = 0.729
+# What an AutoCAD index stands for here; that of a CAD program's own palette is near it.
+_COLOURS = {
+    1: style.ORANGE, 3: style.GREEN, 5: style.BLUE, 6: style.PURPLE, 7: style.INK, 8: style.MUTED,
+    21: style.MINUS, 45: style.METAL, 151: style.PLUS,
+}  # fmt: skip
+_DASHES = {"CONTINUOUS": "-", "DASHED": (0, (6, 3)), "DASHDOT": (0, (9, 3, 1.5, 3))}
+_THIN = 0.18e-3 / _POINT
+
+
+def sheet_figure(drawing: Drawing) -> Figure:
+    """The drawing on its paper, to scale where it is printed at full size."""
+    return _figure((drawing, (0.0, 0.0, *drawing.paper)))
+
+
+def views_figure(drawing: Drawing) -> Figure:
+    """Its views only, for a page that has tables and notes of its own."""
+    return _figure((drawing, drawing.views))
+
+
+@style.drawn
+def _figure(shown: tuple[Drawing, tuple[float, float, float, float]]) -> Figure:
+    """A window (left, bottom, right, top in m of paper) of a drawing."""
+    from matplotlib.figure import Figure
+
+    drawing, (left, bottom, right, top) = shown
+    figure = Figure(figsize=((right - left) / _INCH, (top - bottom) / _INCH))
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set_axis_off()
+    (x, y), scale = drawing.corner, drawing.scale
+    axes.set(xlim=(x + left / scale, x + right / scale), ylim=(y + bottom / scale, y + top / scale))
+    for order, one in enumerate(drawing.items):
+        if isinstance(one, Polyline):
+            _polyline(axes, one, drawing.layers[one.layer], order)
+        elif isinstance(one, Arc):
+            _arc(axes, one, drawing.layers[one.layer], order)
+        elif isinstance(one, Text):
+            _text(axes, one.text, (one.x, one.y), one.height * drawing.scale, one.angle, one.align)
+        elif isinstance(one, Dimension):
+            _dimension(axes, one, drawing.scale)
+        else:
+            _ordinate(axes, one, drawing.scale)
+    return figure
+
+
+def pdf(figure: Figure) -> bytes:
+    """A figure as a PDF of its own size, without the moment it was made."""
+    stream = io.BytesIO()
+    with style.rc():
+        figure.savefig(stream, format="pdf", metadata={"CreationDate": None})
+    return stream.getvalue()
+
+
+def _look(layer: Layer, closed: bool) -> dict[str, Any]:
+    colour, filled = _COLOURS[layer.colour], closed and layer.fill != "none"
+    fill = style.PAPER if layer.fill == "paper" else colour
+    return {
+        "facecolor": fill if filled else "none",
+        "edgecolor": style.INK if filled else colour,
+        "lw": layer.width / _POINT,
+        "ls": _DASHES[layer.line],
+    }
+
+
+def _polyline(axes: Axes, one: Polyline, layer: Layer, order: int) -> None:
+    from matplotlib.patches import Polygon
+
+    look = _look(layer, one.closed)
+    points = np.array(one.points)
+    axes.add_patch(Polygon(points, closed=one.closed, zorder=2 + order * 1e-4, **look))
+
+
+def _arc(axes: Axes, one: Arc, layer: Layer, order: int) -> None:
+    from matplotlib.patches import Arc as Bow
+    from matplotlib.patches import Circle
+
+    centre, above = (one.x, one.y), 2 + order * 1e-4
+    look = _look(layer, one.is_circle)
+    if one.is_circle:
+        axes.add_patch(Circle(centre, one.radius, zorder=above, **look))
+        return
+    ends = math.degrees(one.start), math.degrees(one.end)
+    size = 2 * one.radius
+    bow = Bow(centre, size, size, theta1=ends[0], theta2=ends[1], zorder=above)
+    bow.set(edgecolor=look["edgecolor"], lw=look["lw"], ls=look["ls"])
+    axes.add_patch(bow)
+
+
+def _text(
+    axes: Axes,
+    text: str,
+    at: tuple[float, float],
+    height: float,
+    angle: float = 0.0,
+    align: str = "middle",
+) -> None:
+    """A text whose capitals are so high on paper (m)."""
+    axes.text(
+        *at,
+        style.plain(text, 400),
+        fontsize=height / _CAPITAL / _POINT,
+        rotation=math.degrees(angle),
+        ha={"left": "left", "middle": "center", "right": "right"}[align],
+        va="center_baseline",
+        rotation_mode="anchor",
+        color=style.INK,
+        zorder=6,
+    )
+
+
+def _line(axes: Axes, *points: tuple[float, float]) -> None:
+    x, y = zip(*points, strict=True)
+    axes.plot(x, y, color=style.MUTED, lw=_THIN, ls="-", zorder=5, solid_capstyle="butt")
+
+
+def _arrow(axes: Axes, tip: tuple[float, float], towards: tuple[float, float]) -> None:
+    """An arrow's head (m): its tip, and the vector from its foot to it."""
+    from matplotlib.patches import Polygon
+
+    (x, y), (dx, dy) = tip, towards
+    foot, across = (x - dx, y - dy), (-dy / 6, dx / 6)
+    corners = (
+        tip,
+        (foot[0] + across[0], foot[1] + across[1]),
+        (foot[0] - across[0], foot[1] - across[1]),
+    )
+    axes.add_patch(Polygon(np.array(corners), facecolor=style.MUTED, edgecolor="none", zorder=5))
+
+
+def _dimension(axes: Axes, one: Dimension, scale: float) -> None:
+    size = one.height
+    if one.upright:
+        ends = (one.y_from, one.x_from), (one.y_to, one.x_to)
+    else:
+        ends = (one.x_from, one.y_from), (one.x_to, one.y_to)
+
+    def turned(along: float, across: float) -> tuple[float, float]:
+        return (across, along) if one.upright else (along, across)
+
+    for along, across in ends:
+        way = math.copysign(0.5 * size, one.at - across)
+        if abs(one.at - across) > size:
+            _line(axes, turned(along, across + way), turned(along, one.at + way))
+    low, high = sorted((ends[0][0], ends[1][0]))
+    inside = not arrows_outside(high - low, size)
+    _line(axes, turned(low if inside else low - 2.2 * size, one.at),
+          turned(high if inside else high + 2.2 * size, one.at))  # fmt: skip
+    way = size if inside else -size
+    _arrow(axes, turned(low, one.at), turned(-way, 0.0))
+    _arrow(axes, turned(high, one.at), turned(way, 0.0))
+    _text(axes, one.said, (one.text_x, one.text_y), size * scale)
+
+
+def _ordinate(axes: Axes, one: Ordinate, scale: float) -> None:
+    size = one.height
+    start = one.x if one.upright else one.y
+    way = math.copysign(1.0, one.end - start)
+    if one.upright:
+        _line(axes, (one.x + 0.5 * size * way, one.y), (one.end, one.y))
+        at = (one.end + 0.4 * size * way, one.y)
+        _text(axes, one.said, at, size * scale, 0.0, "left" if way > 0 else "right")
+        return
+    _line(axes, (one.x, one.y + 0.5 * size * way), (one.x, one.end))
+    at = (one.x, one.end + 0.4 * size * way)
+    _text(axes, one.said, at, size * scale, math.pi / 2, "left" if way > 0 else "right")

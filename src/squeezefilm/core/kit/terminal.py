@@ -1,0 +1,112 @@
+"""What the command line prints: progress while it works, tables of what came out."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from squeezefilm.core.kit.numbers import printable
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+@contextmanager
+def progress(enabled: bool) -> Iterator[Callable[[str], None]]:
+    """Show on stderr what is going on: a line that vanishes at a terminal, plain lines elsewhere.
+
+    Yields the function to tell each step to.
+    """
+    if not enabled:
+        yield lambda _: None
+        return
+    if not sys.stderr.isatty():
+
+        def line(text: str) -> None:
+            print(f"  {printable(text)} …", file=sys.stderr, flush=True)
+
+        yield line
+        return
+    from rich.console import Console
+    from rich.text import Text
+
+    with Console(stderr=True).status("starting") as status:
+        yield lambda text: status.update(Text(f"{printable(text)} …"))
+
+
+def plain_console() -> Console:
+    """A console on standard output, without colour where that is no terminal."""
+    from rich.console import Console
+
+    # A terminal of another encoding shows a question mark for σ; it must not end the run.
+    reconfigure = getattr(sys.stdout, "reconfigure", None)
+    if reconfigure is not None:
+        reconfigure(errors="replace")
+    return Console(highlight=False, markup=False, emoji=False)
+
+
+def table(
+    console: Console,
+    head: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    *,
+    fixed: Iterable[int] = (),
+    styles: Callable[[Sequence[str]], str] | None = None,
+) -> None:
+    """Print a table; the columns `fixed` are not wrapped. Cells are user's text: no markup."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, show_header=any(head))
+    whole = set(fixed)
+    for number, name in enumerate(head):
+        table.add_column(name, no_wrap=number in whole, overflow="fold")
+    for row in rows:
+        cells = ["\n".join(_kept(line) for line in cell.split("\n")) for cell in row]
+        table.add_row(*(Text(cell) for cell in cells), style=styles(row) if styles else None)
+    console.print(table)
+
+
+def _kept(line: str) -> str:
+    """A printable line with its indent."""
+    return " " * (len(line) - len(line.lstrip(" "))) + printable(line)
+
+
+def heading(console: Console, text: str) -> None:
+    """Print a heading."""
+    from rich.text import Text
+
+    console.print()
+    console.print(Text(printable(text), style="bold"))
+
+
+def show_rows(
+    title: str,
+    rows: Iterable[Sequence[str]],
+    warnings: Iterable[str] = (),
+    *,
+    fixed: Iterable[int] = (0,),
+) -> Console:
+    """Print a heading, rows of quantity, value and remark, and warnings; the console to go on."""
+    console = plain_console()
+    heading(console, title)
+    table(console, ("", "", ""), rows, fixed=fixed)
+    for text in warnings:
+        console.print(f"! {printable(text)}")
+    return console
+
+
+def bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
+    """Wrapped sentences, each behind a word that says what kind it is."""
+    from rich.table import Table
+    from rich.text import Text
+
+    grid = Table.grid(padding=(0, 2))
+    grid.add_column(no_wrap=True)
+    grid.add_column(overflow="fold")
+    for word, text, style in items:
+        grid.add_row(Text(printable(word), style=style), Text(printable(text)))
+    console.print(grid)

@@ -1,0 +1,146 @@
+"""Refusing a value in words: no real number, not within its bounds, not among the words allowed."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.quantities.units import FloatArray, Unit, did_you_mean, format_quantity
+
+__all__ = [
+    "real_numbers",
+    "require",
+    "require_alike",
+    "require_one_of",
+    "returned",
+]
+
+_PURE = Unit("1")
+
+HOLDS: dict[str, Callable[[Any, Any], Any]] = {
+    "above": operator.gt,
+    "at_least": operator.ge,
+    "below": operator.lt,
+    "at_most": operator.le,
+}
+
+
+def real_numbers(name: str, value: Any) -> FloatArray:
+    """A value as an array of floats. Raises `InputError` for what is no real number or array."""
+    try:
+        array = np.asarray(getattr(value, "magnitude", value))
+        if array.dtype.kind in "fiu" or (array.dtype.kind == "O" and is_whole(value)):
+            return np.asarray(array, dtype=float)
+    except (OverflowError, ValueError):
+        # A whole number above every float, or rows of unequal length.
+        pass
+    raise InputError(
+        f"{name} = {shortened(value)} cannot be used: it must be a real number, or an array of "
+        "real numbers, that a float can hold",
+        quantity=name,
+    )
+
+
+def is_whole(value: Any) -> bool:
+    """Whether a value is a whole number, and no truth value."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
+def shortened(value: Any) -> str:
+    """A value as a message shows it, however long it is."""
+    if is_whole(value):
+        return f"a whole number of {int(value).bit_length()} bits"
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def require(
+    name: str,
+    value: Any,
+    unit: Unit = _PURE,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
+    axes: int | None = None,
+) -> None:
+    """Refuse a value (scalar or array) that is no number, not finite or not within the bounds (SI),
+    or an array of another number of axes.
+
+    Raises `InputError` that names the quantity, the offending value with its unit and the bound.
+    """
+    array = real_numbers(name, value)
+    if axes is not None and array.ndim != axes:
+        raise InputError(
+            f"{name} has the shape {array.shape}; an array of {axes} axes is wanted", quantity=name
+        )
+    bounds = {"above": above, "at_least": at_least, "below": below, "at_most": at_most}
+    given = {word: bound for word, bound in bounds.items() if bound is not None}
+    good = np.isfinite(array)
+    for word, bound in given.items():
+        good = good & HOLDS[word](array, bound)
+    if good.all():
+        return
+    offender = float(array.ravel()[np.flatnonzero(~good)[0]])
+    wanted = [f"{word.replace('_', ' ')} {format_quantity(given[word], unit)}" for word in given]
+    raise InputError(
+        f"{name} = {format_quantity(offender, unit)} cannot be used: it must be "
+        + " and ".join(["finite", *wanted])
+        + _as_percentage(offender, unit, given),
+        quantity=name,
+    )
+
+
+def _as_percentage(value: float, unit: Unit, bounds: dict[str, float]) -> str:
+    """What to write where a number of percent probably stands for a share; empty for any other."""
+    most = min((bounds[word] for word in ("below", "at_most") if word in bounds), default=np.inf)
+    share = value / 100
+    held = all(HOLDS[word](share, bound) for word, bound in bounds.items())
+    if unit != _PURE or most > 1 or value <= 1 or not held:
+        return ""
+    return f'; if {value:g} % is meant, write "{value:g} %" or {share:.6g}'
+
+
+def require_alike(**series: Any) -> None:
+    """Refuse series, by their names, that are no rows of values or not of one length (None: left
+    out). Raises `InputError` that says how many values each has."""
+    given = {name: values for name, values in series.items() if values is not None}
+    try:
+        shapes = {name: np.shape(values) for name, values in given.items()}
+    except ValueError as error:
+        raise InputError(f"{', '.join(given)} must be rows of numbers: {error}") from error
+    if all(len(shape) == 1 for shape in shapes.values()) and len(set(shapes.values())) < 2:
+        return
+    shown = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+    raise InputError(f"the shapes of {shown} differ; give arrays of equal length")
+
+
+def require_one_of(name: str, value: Any, allowed: Iterable[Any]) -> None:
+    """Refuse a word that is not among those allowed. Raises `InputError` that lists them."""
+    allowed = tuple(allowed)
+    if not isinstance(value, str | int) or value not in allowed:
+        words = [str(one) for one in allowed]
+        hint = did_you_mean(value, words) if isinstance(value, str) else ""
+        raise InputError(
+            f"{name} = {shortened(value)} is not known.{hint} Allowed: {', '.join(words)}",
+            quantity=name,
+        )
+
+
+def returned(name: str, values: Any, given: Any, what: str) -> FloatArray:
+    """What a callable `name` returned where an array was `given`, as floats.
+
+    Raises `InputError` unless it has the shape of that array: `what` says what must be returned.
+    """
+    array = np.asarray(values, dtype=float)
+    if array.shape != given.shape:
+        raise InputError(
+            f"{name} returned values of shape {array.shape} where {given.shape} was given; it must "
+            f"return {what}"
+        )
+    return array

@@ -1,0 +1,81 @@
+"""The units' names in annotations: ``def f(length: si.Metre) -> si.Hertz``.
+
+`Metre` is a scalar, `MetreArray` an array, and `MetreLike` either, for closed forms that broadcast.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from squeezefilm.core.quantities.units import FloatArray, FloatLike, Unit
+
+Dimensionless = Annotated[float, Unit("1")]
+Metre = Annotated[float, Unit("m")]
+SquareMetre = Annotated[float, Unit("m2")]
+CubicMetre = Annotated[float, Unit("m3")]
+Second = Annotated[float, Unit("s")]
+Hertz = Annotated[float, Unit("Hz")]
+PerMetre = Annotated[float, Unit("1/m")]
+Radian = Annotated[float, Unit("rad")]
+MetrePerSecond = Annotated[float, Unit("m/s")]
+Kilogram = Annotated[float, Unit("kg")]
+KilogramLike = Annotated[FloatLike, Unit("kg")]
+Newton = Annotated[float, Unit("N")]
+NewtonMetre = Annotated[float, Unit("N*m")]
+NewtonPerMetre = Annotated[float, Unit("N/m")]
+NewtonPerVolt = Annotated[float, Unit("N/V")]
+NewtonSecondPerMetre = Annotated[float, Unit("N*s/m")]
+Pascal = Annotated[float, Unit("Pa")]
+PascalSecond = Annotated[float, Unit("Pa*s")]
+KilogramPerCubicMetre = Annotated[float, Unit("kg/m3")]
+KilogramPerMetre = Annotated[float, Unit("kg/m")]
+KilogramPerSquareMetre = Annotated[float, Unit("kg/m2")]
+Volt = Annotated[float, Unit("V")]
+VoltPerSecond = Annotated[float, Unit("V/s")]
+SquareVoltSecond = Annotated[float, Unit("V2*s")]
+Ampere = Annotated[float, Unit("A")]
+Joule = Annotated[float, Unit("J")]
+Ohm = Annotated[float, Unit("ohm")]
+Siemens = Annotated[float, Unit("A/V")]
+Henry = Annotated[float, Unit("V*s/A")]
+PascalPerMetre = Annotated[float, Unit("Pa/m")]
+PascalSecondPerMetre = Annotated[float, Unit("Pa*s/m")]
+Farad = Annotated[float, Unit("F")]
+FaradPerMetre = Annotated[float, Unit("F/m")]
+MetrePerVolt = Annotated[float, Unit("m/V")]
+CoulombPerSquareMetre = Annotated[float, Unit("C/m2")]
+SquareMetrePerNewton = Annotated[float, Unit("m2/N")]
+Kelvin = Annotated[float, Unit("K")]
+"""A difference of temperatures."""
+AbsoluteKelvin = Annotated[float, Unit("K", absolute=True)]
+Decibel = Annotated[float, Unit("dB")]
+"""A level; its description says re what."""
+Watt = Annotated[float, Unit("W")]
+KelvinPerWatt = Annotated[float, Unit("K/W")]
+JoulePerKelvin = Annotated[float, Unit("J/K")]
+JoulePerKilogramKelvin = Annotated[float, Unit("J/kg/K")]
+JoulePerCubicMetreKelvin = Annotated[float, Unit("J/m3/K")]
+PerKelvin = Annotated[float, Unit("1/K")]
+SecondPerMetre = Annotated[float, Unit("s/m")]
+VoltPerMetre = Annotated[float, Unit("V/m")]
+
+DimensionlessArray = Annotated[FloatArray, Unit("1")]
+MetreArray = Annotated[FloatArray, Unit("m")]
+SecondArray = Annotated[FloatArray, Unit("s")]
+HertzArray = Annotated[FloatArray, Unit("Hz")]
+PascalArray = Annotated[FloatArray, Unit("Pa")]
+NewtonArray = Annotated[FloatArray, Unit("N")]
+MetrePerSecondArray = Annotated[FloatArray, Unit("m/s")]
+VoltArray = Annotated[FloatArray, Unit("V")]
+MetrePerVoltArray = Annotated[FloatArray, Unit("m/V")]
+
+DimensionlessLike = Annotated[FloatLike, Unit("1")]
+MetreLike = Annotated[FloatLike, Unit("m")]
+SecondLike = Annotated[FloatLike, Unit("s")]
+HertzLike = Annotated[FloatLike, Unit("Hz")]
+MetrePerSecondLike = Annotated[FloatLike, Unit("m/s")]
+NewtonPerMetreLike = Annotated[FloatLike, Unit("N/m")]
+NewtonSecondPerMetreLike = Annotated[FloatLike, Unit("N*s/m")]
+NewtonLike = Annotated[FloatLike, Unit("N")]
+PascalLike = Annotated[FloatLike, Unit("Pa")]
+MetrePerVoltLike = Annotated[FloatLike, Unit("m/V")]

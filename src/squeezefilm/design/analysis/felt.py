@@ -1,0 +1,254 @@
+"""The finest grating that is felt, beside the finest that survives the resonator, by finger speed.
+
+As described, and over the draws of a friction's interval: of each draw µ′/µ over amplitude and
+speed, its amplitude, envelope, force and friction without vibration. The observer's senses stay as
+they are: an interval says what the display leaves open, not how people differ.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.physics.chain.prediction import Prediction
+from squeezefilm.physics.contact.finger.people import rest_friction_factor
+from squeezefilm.physics.display import DECAY_LENGTH, Display
+from squeezefilm.physics.perception.felt import (
+    Rubbed,
+    finest_felt,
+    grating_evidence,
+    switched_amplitude,
+    tried_periods,
+)
+from squeezefilm.physics.perception.observer import Observer, load_observer
+from squeezefilm.physics.render.fidelity.survival import EXPLORING_SPEEDS
+from squeezefilm.physics.render.resonator.envelope import envelope_time_constant, finest_period
+from squeezefilm.physics.uncertainty.drawn import KeptDraws
+from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, mixture_of
+from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, ends
+from squeezefilm.physics.uncertainty.uncertainty import sobol_points
+
+DRAWS = 64
+_KNOTS = 17
+_KEPT: KeptDraws[si.FloatArray] = KeptDraws("draws-felt", si.FloatArray)
+
+Felt = Callable[[si.MetreArray], si.DimensionlessArray]
+
+
+@dataclass(frozen=True)
+class FeltAt:
+    """At one finger speed (m/s): the finest period (m) that keeps 90 % of its swing of amplitude
+    (`survives`), the finest that is `felt` as described (None: none), and the `interval` of that
+    over the draws (None at an end where so many of them have none; None without draws). `never` is
+    the share of the draws in which no period is felt."""
+
+    speed: si.MetrePerSecond
+    survives: si.Metre
+    felt: si.Metre | None
+    interval: tuple[si.Metre | None, si.Metre | None] | None = None
+    never: si.Dimensionless | None = None
+
+
+@dataclass(frozen=True)
+class FeltGratings:
+    """The finest square grating that is felt, by speed, that of the prediction (`speed`) among
+    them: friction switched between that without vibration and that at the display's amplitude.
+    `observer` felt it, with a d′ of `criterion`; `why_no_interval` says why there is none."""
+
+    observer: str
+    criterion: si.Dimensionless
+    at: tuple[FeltAt, ...]
+    speed: si.MetrePerSecond
+    level: si.Dimensionless = LEVEL
+    draws: int = 0
+    why_no_interval: str = ""
+    model: str = "steady strokes, first-order envelope, the pad's three constants; senses fitted"
+
+    @property
+    def here(self) -> FeltAt:
+        """What is felt at the prediction's speed."""
+        return next(one for one in self.at if one.speed == self.speed)
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers for ``--json``, with units in the keys: those at the prediction's speed,
+        then at each."""
+        return {
+            **_row(self.here),
+            "observer": self.observer,
+            "detection_criterion_d_prime": self.criterion,
+            "interval_level": self.level,
+            "draws": self.draws,
+            "why_no_interval": self.why_no_interval,
+            "model": self.model,
+            "by_speed": [_row(one) for one in self.at],
+        }
+
+
+def _row(one: FeltAt) -> dict[str, Any]:
+    return {
+        "finger_speed_m_per_s": one.speed,
+        "finest_period_survives_m": one.survives,
+        "finest_period_felt_m": one.felt,
+        "finest_period_felt_interval_m": one.interval and list(one.interval),
+        "share_never_felt": one.never,
+    }
+
+
+def felt_gratings(
+    display: Display,
+    prediction: Prediction,
+    *,
+    draws: int = DRAWS,
+    speeds: tuple[Annotated[si.MetrePerSecond, si.Above(0.0)], ...] = EXPLORING_SPEEDS,
+) -> FeltGratings | None:
+    """The finest gratings that are felt where a prediction was made, at the prediction's finger
+    speed and at others.
+
+    `draws` is a power of two (0: no interval); the observer is the preset "fingertip". None where
+    nothing vibrates. Raises what the friction's law raises at the amplitude.
+    """
+    p = prediction
+    if p.vibration_amplitude == 0 or p.relative_friction == 1:
+        return None
+    senses = load_observer()
+    tau = p.envelope_time_constant
+
+    def described(
+        amplitude: si.MetreArray, speed: si.MetrePerSecond = 0.0
+    ) -> si.DimensionlessArray:
+        return np.asarray(p.friction(amplitude, np.full(amplitude.shape, speed)))
+
+    base, pad = p.friction_coefficient * p.normal_force, display.finger.fingerpad
+    nominal, speeds = [], tuple(sorted({p.speed, *speeds}))
+    for speed in speeds:
+        law = functools.partial(described, speed=speed)
+        nominal.append(_finest(senses, tau, p.vibration_amplitude, law, Rubbed(base, pad, speed)))
+    found, why = (None, "no draws were asked for")
+    if draws and p.touch.law is not None:
+        found, why = _drawn(display, p, senses, speeds, draws)
+    rows = []
+    for k, speed in enumerate(speeds):
+        column = None if found is None else found[:, k]
+        low, _, high = (np.nan,) * 3 if column is None else ends(column)
+        rows.append(
+            FeltAt(
+                speed,
+                float(finest_period(speed, tau)),
+                _known(nominal[k]),
+                None if column is None else (_known(low), _known(high)),
+                None if column is None else float(np.mean(np.isinf(column))),
+            )
+        )
+    count = 0 if found is None else draws
+    return FeltGratings(
+        senses.name, senses.detection_criterion, tuple(rows), p.speed, LEVEL, count, why
+    )
+
+
+def _finest(
+    senses: Observer, tau: si.Second, high: si.Metre, law: Felt, rubbed: Rubbed
+) -> si.Metre:
+    period = tried_periods()
+    amplitude = switched_amplitude(period / rubbed.speed, tau, high)
+    return finest_felt(senses, period, grating_evidence(senses, period, amplitude, law, rubbed))
+
+
+def _drawn(
+    display: Display,
+    p: Prediction,
+    senses: Observer,
+    speeds: tuple[si.MetrePerSecond, ...],
+    count: int,
+) -> tuple[si.MetreArray | None, str]:
+    """The finest period felt (m) of each draw at each speed as `_felt_of_draws` has it; None with
+    the reason where too many draws are refused."""
+    mixture = mixture_of(display, p)
+    points = sobol_points(mixture, count, seed=1)
+    make = functools.partial(_felt_of_draws, mixture, points, senses, speeds)
+    found = _KEPT.found(mixture, points, (senses, speeds), make)
+    lost = float(np.mean(np.isnan(found[:, 0])))
+    if lost > MOST_REFUSED:
+        return None, f"{lost:.1%} of the draws are refused, more than {MOST_REFUSED:.0%}"
+    return found, ""
+
+
+@as_drawn()
+def _felt_of_draws(
+    mixture: Mixture,
+    points: si.DimensionlessArray,
+    senses: Observer,
+    speeds: tuple[si.MetrePerSecond, ...],
+) -> si.MetreArray:
+    """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
+    none is, NaN where the draw is refused."""
+    found = np.full((len(points), len(speeds)), np.nan)
+    for number, draw in enumerate(mixture.draws(points)):
+        try:
+            high = mixture.outcome(points[number], draw).amplitude
+            rest = _rest_friction_factor(mixture, draw, points[number])
+            found[number] = _felt_of(mixture, draw, high, senses, speeds, rest)
+        except SqueezefilmError:
+            continue
+    return found
+
+
+def _rest_friction_factor(
+    mixture: Mixture, draw: Draw, point: si.DimensionlessArray
+) -> si.Dimensionless:
+    """The friction at rest of a drawn person over the described one; 1 where the person is known.
+
+    A sum of coordinates, modulo 1, is uniform and independent of each of them: so the points of the
+    friction serve for this number too.
+    """
+    people = any(
+        input_.path == DECAY_LENGTH and getattr(input_, "origin", "") == "assumed"
+        for input_ in mixture.inputs
+    )
+    if not people:
+        return 1.0
+    described = mixture.display.finger.contact_decay_length
+    ratio = np.array([draw.display.finger.contact_decay_length / described])
+    share = np.clip(np.array([float(point.sum()) % 1.0]), 1e-6, 1 - 1e-6)
+    return float(rest_friction_factor(share, ratio)[0])
+
+
+def _felt_of(
+    mixture: Mixture,
+    draw: Draw,
+    high: si.Metre,
+    senses: Observer,
+    speeds: tuple[si.MetrePerSecond, ...],
+    rest_factor: si.Dimensionless,
+) -> list[si.Metre]:
+    law, every = mixture.law(draw), np.array(speeds)
+    knots = high * np.linspace(0.0, 1.0, _KNOTS) ** 2
+    own, even = law.over_speeds(knots, every, "own"), law.on_even_wave
+    # As `between_limits` has it.
+    alike = own if even is law else even.over_speeds(knots, every, "own")
+    stiff = even.over_speeds(knots, every, "one-gap") - alike
+    friction = np.clip(own + (1 - draw.skin_compliance) * stiff, 0.0, 1.0)
+    mode = mixture.mode(draw)
+    tau = float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
+    base = rest_factor * law.friction_coefficient * draw.normal_force
+    pad = draw.display.finger.fingerpad
+    found = []
+    for speed, row in zip(speeds, friction, strict=True):
+        known = functools.partial(_tabulated, knots=knots, row=row)
+        found.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
+    return found
+
+
+def _tabulated(
+    amplitude: si.MetreArray, knots: si.MetreArray, row: si.DimensionlessArray
+) -> si.DimensionlessArray:
+    return np.asarray(np.interp(amplitude, knots, row))
+
+
+def _known(value: si.Metre) -> si.Metre | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,179 @@
+"""Rows of a working point that several verbs show: place, heat, sound, the finger's speed, what
+a plate asks of its amplifier; each a quantity, its value, a remark."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit.numbers import HZ, SPEED, A, M, Row, S, V, W, shown, signed
+from squeezefilm.physics.chain.active_area import CRITERIA, percent
+from squeezefilm.physics.chain.pad_place import place_words
+from squeezefilm.physics.plate.heat.states import COEFFICIENT_SHARES, EMISSIVITIES
+
+if TYPE_CHECKING:
+    from squeezefilm.design.analysis.area_odds import JudgedArea
+    from squeezefilm.physics.chain.prediction import Prediction
+    from squeezefilm.physics.plate.electronics import ElectricalLoad
+    from squeezefilm.physics.plate.heat.warming import Warming
+    from squeezefilm.physics.plate.sound import SoundField
+
+KELVIN = si.Unit("K")
+FARAD, HENRY = si.Unit("F"), si.Unit("H")
+
+
+def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
+    """Where the friction is meant, and what it is over the active area: quantity, value, remark."""
+    where = place_words(p.place)
+    said = p.place_said.replace(f"{where}, ", "").replace(f", {where}", "")
+    rows = [("Place of the finger", where, said)]
+    area = None if judged is None else judged.area
+    if area is None or area.best_place is None or area.worst_place is None:
+        return [
+            *rows,
+            ("µ′/µ over the active area", "not known", "" if area is None else area.why_not),
+        ]
+    places = f"at {place_words(area.best_place)} and {place_words(area.worst_place)}"
+    shares = ", ".join(f"{percent(area.share_below(one))} below {one:.2f}" for one in CRITERIA)
+    return [
+        *rows,
+        (
+            "µ′/µ over the active area",
+            f"{area.best:.2f} to {area.worst:.2f}",
+            f"{places}; median {area.median:.2f}; {shares}",
+        ),
+    ]
+
+
+def heat_rows(heat: Warming | None) -> list[Row]:
+    """Temperature, drift and amplitude of the warm plate: quantity, value, remark."""
+    if heat is None:
+        return [("Temperature rise", "not known", "nor is the power that the plate loses")]
+    follows, stays = heat.tracked, heat.fixed
+    at = f"at a fixed {shown(heat.frequency, HZ)}"
+    fallen = (
+        "a tenth is never gone"
+        if heat.time_to_fall is None
+        else f"a tenth is gone after {shown(heat.time_to_fall, S, 2)}"
+    )
+    rises, drifts = "", ""
+    if heat.rise_range is not None:
+        low, high = EMISSIVITIES
+        between = _between(heat.rise_range, KELVIN)
+        rises = f"assumed {between} (emissivity {low:g} to {high:g}); "
+    if heat.drift_range is not None:
+        low, high = COEFFICIENT_SHARES
+        between = _between(heat.drift_range, HZ)
+        too = ", too" if rises else ""
+        drifts = f"assumed {between} (temperature coefficient {low:g} to {high:g} times{too}); "
+    resistance = si.format_quantity(heat.thermal_resistance, si.Unit("K/W"), 3)
+    return [
+        (
+            "Temperature rise",
+            signed(follows.temperature_rise, KELVIN),
+            f"{rises}if the drive follows; {signed(stays.temperature_rise, KELVIN)} if fixed",
+        ),
+        (
+            "Drift of the resonance",
+            signed(follows.resonance_drift, HZ),
+            f"{drifts}{signed(stays.resonance_drift, HZ)} if fixed; half-bandwidth "
+            f"{shown(heat.half_bandwidth, HZ, 3)}",
+        ),
+        (
+            "Amplitude warm",
+            shown(follows.amplitude, M, 3),
+            "if the drive follows the resonance, without a finger",
+        ),
+        (
+            "",
+            shown(stays.amplitude, M, 3),
+            f"{at}, of {shown(heat.cold_amplitude, M, 3)} cold; {fallen}",
+        ),
+        (
+            "Thermal resistance",
+            resistance,
+            f"time constant {shown(heat.thermal_time, S, 2)}; assumed: " + "; ".join(heat.assumed),
+        ),
+    ]
+
+
+def _between(ends: tuple[float, float], unit: si.Unit) -> str:
+    """A range as people read it, signs shown."""
+    low, high = (signed(end, unit) for end in ends)
+    same_unit = low.split()[-1] == high.split()[-1]
+    return f"{low.split()[0] if same_unit else low} to {high}"
+
+
+def sound_rows(sound: SoundField, direction: str) -> list[Row]:
+    """Sound pressure levels by distance; `direction` says where they are loudest."""
+    guidance = sound.guidance
+    limit = "no guidance" if guidance is None else f"guidance {guidance.level_dB:.0f} dB"
+    return [
+        (
+            f"Sound at {distance:g} m",
+            f"{level:.0f} dB",
+            f"{direction}; {limit}" if number == 0 else "",
+        )
+        for number, (distance, level) in enumerate(
+            zip(sound.distances, sound.sound_pressure_level_dB, strict=True)
+        )
+    ]
+
+
+def speed_row(p: Prediction) -> Row:
+    """The finger's speed that the friction is for: quantity, value, remark."""
+    return "Finger speed", shown(p.speed, SPEED), "of sliding"
+
+
+def reduction_row(p: Prediction) -> Row:
+    """What vibration takes away of the friction."""
+    reduction, coefficient = f"{p.friction_reduction:.3f}", f"{p.friction_coefficient:.3g}"
+    return "Friction reduction µ − µ′", reduction, f"of µ = {coefficient}"
+
+
+def electronics_rows(load: ElectricalLoad | None) -> list[Row]:
+    """Current, power, slew, inductors, and which class of amplifier can do it."""
+    if load is None:
+        return [
+            ("Electrical load", "not known", "it takes a voltage, and an admittance solved near it")
+        ]
+    at = f"at {shown(load.voltage, V)} and {shown(load.frequency, HZ)}, without a finger"
+    each = f"{load.channels} ceramics in parallel, {{}} each on average"
+    rows = [("Electrical load", "assumed in part", load.assumed)] if load.assumed else []
+    if load.capacitance is not None and load.capacitance_per_channel is not None:
+        one = shown(load.capacitance_per_channel, FARAD, 3)
+        together = each.format(one) if load.channels > 1 else "beside the mode"
+        rows.append(("Electrode capacitance", shown(load.capacitance, FARAD, 3), together))
+    split = f"; {each.format(shown(load.current_per_channel, A, 3))}" if load.channels > 1 else ""
+    rows += [
+        ("Drive current, peak", shown(load.current, A, 3), at + split),
+        (
+            "Drive power",
+            shown(load.real_power, W, 3),
+            f"of {load.apparent_power:.3g} VA apparent; power factor {load.power_factor:.2f}",
+        ),
+        ("Slew rate", f"{load.slew_rate / 1e6:.3g} V/µs", "the sine's steepest slope"),
+    ]
+    if load.parallel_inductance is not None and load.series_inductance is not None:
+        rows += [
+            (
+                "Matching inductor",
+                f"{shown(load.parallel_inductance, HENRY, 3)} parallel",
+                f"the amplifier then gives {shown(load.matched_current, A, 3)} at the same voltage",
+            ),
+            (
+                "",
+                f"{shown(load.series_inductance, HENRY, 3)} in series",
+                f"the amplifier then gives {shown(load.matched_voltage, V, 3)} for "
+                f"{shown(load.voltage, V, 3)} at the ceramics",
+            ),
+        ]
+    for number, check in enumerate(load.amplifiers):
+        rows.append(
+            (
+                "Amplifier" if number == 0 else "",
+                "can" if check.suffices else "cannot",
+                f"{check.kind}, such as {check.part}: {check.why} ({check.source})",
+            )
+        )
+    return rows

@@ -1,0 +1,245 @@
+"""The numbers one decides from, as rows of quantity, value and remark: for page and terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit.numbers import (
+    HZ,
+    PER_VOLT,
+    SPEED,
+    A,
+    M,
+    N,
+    Row,
+    S,
+    V,
+    W,
+    printable,
+    shown,
+    span,
+)
+from squeezefilm.design.analysis.report.decisions import felt_rows
+from squeezefilm.design.analysis.report.point_rows import heat_rows, place_rows, reduction_row
+from squeezefilm.physics.chain.pad_place import place_words
+
+if TYPE_CHECKING:
+    from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.other_models import MeasuredBeside
+    from squeezefilm.physics.chain.prediction import Prediction
+    from squeezefilm.physics.plate.working_mode import WorkingMode
+
+
+class Rows(NamedTuple):
+    """Rows of one subject under its heading; those that are `said` stand in the verdict, too."""
+
+    heading: str
+    rows: list[Row]
+    said: list[Row]
+
+
+def decision_rows(analysis: Analysis) -> list[Rows]:
+    """The key numbers by subject, in the order of the chain."""
+    p = analysis.prediction
+    groups = [
+        Rows("Vibration", with_measured(vibration_rows(p), analysis.measured, p.voltage), []),
+        Rows("Friction", friction_rows(analysis), place_rows(p, analysis.active_area)),
+        Rows("Textures", texture_rows(analysis), []),
+    ]
+    if p.voltage:
+        sound = _sound_rows(analysis)
+        groups += [
+            Rows("Electrical load", _electrical_rows(analysis), []),
+            Rows("Heat", heat_rows(p.heat)[:2], []),
+            Rows("Sound", sound, [] if analysis.ears is None else sound),
+        ]
+    return groups
+
+
+def working_point(p: Prediction) -> str:
+    """What the key numbers are at, in words."""
+    driven = shown(p.vibration_amplitude, M, 3) if p.voltage is None else shown(p.voltage, V)
+    return (
+        f"at {driven} and {shown(p.frequency, HZ)}, finger of {shown(p.normal_force, N)} at "
+        f"{shown(p.speed, SPEED)} on {printable(p.surface.name)}"
+    )
+
+
+def vibration_rows(p: Prediction) -> list[Row]:
+    """Resonance and drive, and the amplitude with and without the finger."""
+    mode, free = p.mode, p.touch.free_amplitude
+    # The resonance is defined to many digits only: an off-resonance drive is worth a remark.
+    off = abs(p.frequency / mode.resonance_frequency - 1) > 1e-6
+    at = f"{shown(p.frequency, HZ)}, {'beside the' if off else 'the'} resonance"
+    per_volt = shown(mode.amplitude_per_volt, PER_VOLT)
+    place = p.law.place
+    of = "at antinodes" if place is None else f"at {place.antinode_said}"
+    drive, made = ("Drive", "none", f"amplitude given, at {at}"), f"zero-to-peak, {of}"
+    if p.voltage is not None:
+        drive = ("Drive", shown(p.voltage, V), f"peak, at {at}")
+        made = f"{per_volt} × {shown(p.voltage, V)}, {of}"
+        if off:
+            made = f"{of}; at the resonance {per_volt}"
+    kept = f"the finger leaves {100 * p.touch.kept:.3g} %"
+    if p.touch.mode is None:
+        kept = "the finger is taken to change nothing: no modal mass is known"
+    held, under_finger = shown(p.vibration_amplitude, M, 3), list[Row]()
+    # A finger at the antinode has that amplitude: no number is printed twice.
+    if place is not None and shown(p.amplitude_at_place, M, 3) != held:
+        where = f"r.m.s. over its contact, at {place_words(p.place)}"
+        under_finger = [("Amplitude under the finger", shown(p.amplitude_under_pad, M, 3), where)]
+    return [
+        ("Resonance frequency", shown(mode.resonance_frequency, HZ), _solved(mode)),
+        drive,
+        ("Amplitude, free", shown(free, M, 3), made),
+        ("Amplitude, finger on", held, f"{of}; {kept}"),
+        *under_finger,
+    ]
+
+
+def with_measured(
+    rows: Iterable[Row], beside: Iterable[MeasuredBeside], voltage: si.Volt | None
+) -> list[Row]:
+    """Rows whose remarks begin with what was measured of their quantity on the real display, and by
+    how much the computed number differs; of an amplitude at another voltage (V) that is said."""
+    said = dict[str, str]()
+    for one in beside:
+        more = "+" if one.difference > 0 else "−"
+        text = f"{more}{si.percent(abs(one.difference))} on measured "
+        text += shown(one.measured, si.Unit(one.unit), 3)
+        if one.voltage not in (None, voltage):
+            text += f" at {shown(one.voltage, V)}"
+        said[one.quantity] = f"{text} ({printable(one.source) or 'source not stated'})"
+    return [
+        (label, value, "; ".join(part for part in (said.get(label), remark) if part))
+        for label, value, remark in rows
+    ]
+
+
+def _solved(mode: WorkingMode) -> str:
+    """The mode's label, with the solver's error where one solved it."""
+    if mode.frequency_error is None:
+        return mode.label
+    return f"{mode.label}, solved to ± {shown(mode.frequency_error, HZ, 2)}"
+
+
+def friction_rows(analysis: Analysis) -> list[Row]:
+    """The friction with its interval, what it is of, and what the paper's criterion takes."""
+    p, unsure = analysis.prediction, analysis.uncertainty
+    said = "1 without vibration"
+    if unsure is not None:
+        interval = f"{si.percent(unsure.level)} interval, median {unsure.median:.2f}"
+        said = f"{span(*unsure.interval)} ({interval})"
+    finger = f"{shown(p.normal_force, N)} at {shown(p.speed, SPEED)}"
+    name = printable(p.surface.name)
+    reached = _reached(analysis.own_curve.amplitude_for_criterion)
+    return [
+        ("Relative friction µ′/µ", f"{p.relative_friction:.2f}", said),
+        *_rival_rows(analysis),
+        *place_rows(p, analysis.active_area),
+        ("Surface roughness", shown(p.surface.roughness, M), f"{name}; finger {finger}"),
+        ("Amplitude for µ′/µ = 0.7", reached, "as the paper asks, under the finger"),
+    ]
+
+
+def _rival_rows(analysis: Analysis) -> list[Row]:
+    """Between what rival models lie, beside the width of the interval, which leaves them out."""
+    rivals, unsure = analysis.rivals.values(), analysis.uncertainty
+    if unsure is None or not rivals:
+        return []
+    low, high = unsure.interval
+    said = f"interval {high - low:.2f} wide, without them"
+    return [("Rival models give µ′/µ", span(min(rivals), max(rivals)), said)]
+
+
+def _reached(amplitude: float | None) -> str:
+    return "out of reach" if amplitude is None else shown(amplitude, M, 3)
+
+
+def texture_rows(analysis: Analysis) -> list[Row]:
+    """How fast the amplitude can follow, and what grating that lets through."""
+    tau, table = analysis.envelope_time_constant, analysis.fidelity
+    band = f"a bandwidth of {shown(analysis.envelope_bandwidth, HZ, 3)}"
+    rows = [("Envelope time constant", shown(tau, S, 3), band)]
+    speed = analysis.prediction.speed
+    if table is not None:
+        rows.append(_grating(analysis, int(np.argmin(np.abs(table.speeds - speed)))))
+    return [*rows, *felt_rows(analysis.felt, speed)]
+
+
+def _grating(analysis: Analysis, at: int) -> Row:
+    """The finest grating at one of the table's speeds."""
+    table = analysis.fidelity
+    assert table is not None, "nothing is rendered"
+    left = f"{si.percent(table.fundamental_at_limit)} of its wave"
+    return (
+        f"Finest grating at {shown(float(table.speeds[at]), SPEED)}",
+        shown(float(table.finest_period[at]), M, 3),
+        f"{si.percent(table.kept)} of its swing, {left} kept",
+    )
+
+
+def _electrical_rows(analysis: Analysis) -> list[Row]:
+    """What the free plate takes from its amplifier at the drive's frequency, and of which kind."""
+    load = analysis.drive_electronics
+    if load is None:
+        said = "it takes a voltage, and an admittance solved near it"
+        return [("Current", "not known", said)]
+    real = f"{shown(load.real_power, W, 3)} of it real"
+    able = {
+        can: [check.part for check in load.amplifiers if check.suffices == can]
+        for can in (True, False)
+    }
+    each = [
+        f"{' and '.join(parts)} {'can' if can else 'cannot'}"
+        for can, parts in able.items()
+        if parts
+    ]
+    return [
+        (
+            "Current",
+            shown(load.current, A, 3),
+            "zero-to-peak, without a finger" + ("; of an assumed ceramic" if load.assumed else ""),
+        ),
+        ("Apparent power", f"{load.apparent_power:.3g} VA", real),
+        ("Amplifiers that can", f"{len(able[True])} of {len(load.amplifiers)}", "; ".join(each)),
+    ]
+
+
+def _sound_rows(analysis: Analysis) -> list[Row]:
+    ears = analysis.ears
+    if ears is None:
+        said = "no face was solved here; squeezefilm plate solves plates, discs and stators"
+        return [("Sound", "not known", said)]
+    levels = " and ".join(f"{one.guidance.level_dB:.0f} dB" for one in ears.limits)
+    limit = f"guidance {levels}" if levels else "no guidance"
+    range_of = f"{ears.low_dB:.0f} to {ears.high_dB:.0f} dB, loudest direction; {limit}"
+    return [(f"Sound at {ears.distance:g} m", f"{ears.level_dB:.0f} dB", range_of)]
+
+
+def more_rows(analysis: Analysis) -> list[Row]:
+    """What the key numbers are made of, and what follows from them: for an appendix."""
+    p = analysis.prediction
+    floats = _reached(analysis.own_curve.zero_friction_amplitude)
+    rows = [
+        ("Quality factor", f"{p.mode.quality_factor:.4g}", ""),
+        ("Half wavelength", shown(p.mode.half_wavelength, M), ""),
+        ("Squeeze number", f"{p.squeeze_number:.4g}", ""),
+        ("Mean pressure", f"{p.mean_pressure:.4f}", "over ambient, contact and period"),
+        reduction_row(p),
+        ("Amplitude for no friction", floats, "the finger floats"),
+    ]
+    if analysis.fidelity is not None:
+        rows += [_grating(analysis, at) for at in range(len(analysis.fidelity.speeds))]
+    rows += heat_rows(p.heat)[2:] if p.voltage else []
+    return with_measured(rows, analysis.measured, p.voltage)
+
+
+def unsaid_warnings(analysis: Analysis) -> list[str]:
+    """The warnings that the verdict does not already say word for word."""
+    said = {finding.text for finding in analysis.verdict}
+    return [text for text in analysis.prediction.warnings if text not in said]

@@ -1,0 +1,214 @@
+"""The drawing of a rectangular plate: plan from the ceramics' side, section, table of ceramics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.formats.drawing import Arc, Drawing, Polyline, millimetres, rectangle
+from squeezefilm.design.fabrication.report.section_view import Cut, best_cut, section_view
+from squeezefilm.design.fabrication.report.sheet_parts import (
+    LETTER,
+    NUMBER,
+    VIEWS,
+    Sheet,
+    notes,
+    origin_rows,
+    scale_for,
+    scale_said,
+    table,
+    title_block,
+    tolerance_said,
+)
+from squeezefilm.design.fabrication.wiring import ANTIPHASE, Electrode
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.parts import Rectangle
+
+if TYPE_CHECKING:
+    from squeezefilm.design.fabrication.fabricate import Fabrication
+
+_ROOM = (172.0, 150.0)
+_MIDDLE = 122.0
+_ABOVE = 26.0
+HEAD = ("No.", "x", "y", "Length", "Width", "Thick", "Joined to", "Poled")
+
+
+def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
+    """The drawing of a plate; `common` are notes that every sheet has."""
+    plate = made.display.actuator
+    assert isinstance(plate, RectangularPlate)
+    below = sum(one.face == "bottom" for one in plate.patches) * 2 >= len(plate.patches)
+    face = "bottom" if below else "top"
+    scale = scale_for(plate.length, plate.width, _ROOM)
+    size_x, size_y = 1e3 * scale * plate.length, 1e3 * scale * plate.width
+    top = VIEWS[3] - _ABOVE
+    # Seen from below, y runs down the sheet.
+    sign = -1.0 if below else 1.0
+    sheet = Sheet(scale, (_MIDDLE - size_x / 2, top if below else top - size_y))
+    cut = best_cut(made.parts)
+    _plan(sheet, made, plate, face, sign)
+    _cut_marks(sheet, plate, cut, sign)
+    whole = _dimensions(sheet, made, plate, sign)
+    low = top - size_y - 34.0
+    extra = section_view(sheet, made, made.parts, _MIDDLE, low, _keys_of_thickness(plate))
+    rows = [
+        ("Scale, sheet", f"{scale_said(scale)}, A3; lengths in mm"),
+        ("Substrate", plate.substrate.name),
+        ("Ceramic", plate.ceramic.name),
+        ("Glue", "none" if plate.glue is None else f"{millimetres(plate.glue.thickness)} mm"),
+        ("Mass", f"{1e3 * made.mass:.4g} g, assembled"),
+        *origin_rows(made.display),
+    ]
+    block = title_block(sheet, made.display.title, made.display.name, rows)
+    y = table(sheet, HEAD, electrode_rows(made.electrodes), VIEWS[3], block + 110.0)
+    notes(sheet, [*_said(plate, face, whole), *extra, *common], y - 3.0)
+    return sheet.drawing()
+
+
+def electrode_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
+    """Where each ceramic lies and what its outer electrode is joined to, in millimetres."""
+    rows = []
+    for one in electrodes:
+        shape = one.footprint
+        assert isinstance(shape, Rectangle)
+        sizes = (shape.x, shape.y, shape.length, shape.width, one.thickness)
+        poled = "away" if one.poling > 0 else "towards"
+        where = "" if one.face == "bottom" else " (top)"
+        rows.append((f"{one.ceramic}{where}", *map(millimetres, sizes), one.connection, poled))
+    return rows
+
+
+def _plan(sheet: Sheet, made: Fabrication, plate: RectangularPlate, face: str, sign: float) -> None:
+    def placed(layer: str, x: float, y: float, length: float, width: float) -> Polyline:
+        return rectangle(layer, x, y if sign > 0 else -y - width, length, width)
+
+    sheet.add(placed("BODY", 0.0, 0.0, plate.length, plate.width))
+    sheet.add(placed("OUTLINE", 0.0, 0.0, plate.length, plate.width))
+    for one in made.electrodes:
+        shape = one.footprint
+        assert isinstance(shape, Rectangle)
+        at = (shape.x, shape.y, shape.length, shape.width)
+        if one.face != face:
+            sheet.add(placed("CERAMICS_OTHER_FACE", *at))
+            continue
+        layer = "CERAMICS_B" if one.connection == ANTIPHASE else "CERAMICS"
+        if plate.glue is not None:
+            sheet.add(placed("GLUE", *at))
+        sheet.add(placed(layer, *at), placed("ELECTRODES", *at))
+        _label(sheet, one, shape, sign)
+    for held in plate.supports:
+        sheet.add(placed("SUPPORTS", held.x, held.y, held.length, held.width))
+    over = 3.0 * sheet.unit
+    for at_ in made.nodal.positions:
+        if made.nodal.axis == "x":
+            ends = (at_, -over), (at_, plate.width + over)
+        else:
+            ends = (-over, at_), (plate.length + over, at_)
+        sheet.interrupted(Polyline("NODAL_LINES", tuple((x, sign * y) for x, y in ends)))
+
+
+def poling_mark(sheet: Sheet, x: si.Metre, y: si.Metre, towards_viewer: bool) -> None:
+    """A circle with a dot (the arrow's tip, towards the viewer) or with a cross (its feathers)."""
+    r = 1.1 * sheet.unit
+    sheet.kept_free.append((x - 1.4 * r, y - 1.4 * r, x + 1.4 * r, y + 1.4 * r))
+    sheet.add(Arc("POLING", x, y, r))
+    if towards_viewer:
+        sheet.add(Arc("POLING", x, y, 0.25 * r))
+        return
+    d = r * math.sqrt(0.5)
+    sheet.add(Polyline("POLING", ((x - d, y - d), (x + d, y + d))))
+    sheet.add(Polyline("POLING", ((x - d, y + d), (x + d, y - d))))
+
+
+def _label(sheet: Sheet, one: Electrode, shape: Rectangle, sign: float) -> None:
+    """Number and connection in the middle of a ceramic, and its poling, where there is room."""
+    x, y = shape.x + shape.length / 2, sign * (shape.y + shape.width / 2)
+    # One pole looks at the viewer, who sees the outer face.
+    said = f"{one.ceramic} {one.connection}"
+    wide, high = shape.length / sheet.unit, shape.width / sheet.unit
+    long = len(said) * LETTER * NUMBER + 1.0
+    u = sheet.unit
+    if wide >= long and high >= 9.0:
+        places, angle = ((x, y + 2.2 * u), (x, y - 2.2 * u)), 0.0
+    elif wide >= long + 4.0 and high >= NUMBER + 0.5:
+        places, angle = ((x - 2.0 * u, y), (x + (long / 2 + 0.6) * u, y)), 0.0
+    elif high >= long + 4.0 and wide >= NUMBER + 0.5:
+        places, angle = ((x, y - 2.0 * u), (x, y + (long / 2 + 0.6) * u)), math.pi / 2
+    else:
+        return
+    text, mark = places
+    sheet.label(said, *text, angle)
+    poling_mark(sheet, *mark, one.poling > 0)
+
+
+def _cut_marks(sheet: Sheet, plate: RectangularPlate, cut: Cut, sign: float) -> None:
+    """Where the section is taken: a short line and a letter on each side."""
+    u, reach = sheet.unit, 6.0
+    for end, way in ((0.0, -1.0), (plate.length if not cut.upright else plate.width, 1.0)):
+        if cut.upright:
+            y = sign * (end + way * reach * u)
+            line = ((cut.at, sign * (end + way * 0.5 * u)), (cut.at, y))
+            place = (cut.at + 2.2 * u, sign * (end + way * (reach - 1.5) * u))
+        else:
+            y = sign * cut.at
+            line = ((end + way * 0.5 * u, y), (end + way * reach * u, y))
+            place = (end + way * (reach - 1.5) * u, y + 2.2 * u)
+        sheet.add(Polyline("CENTRE_LINES", line))
+        paper = (place[0] / u + sheet.origin[0], place[1] / u + sheet.origin[1])
+        sheet.write("A", *paper, NUMBER, "middle")
+
+
+def _dimensions(sheet: Sheet, made: Fabrication, plate: RectangularPlate, sign: float) -> bool:
+    """Sizes of plate and first ceramic, places of all of them; whether all places have a number."""
+
+    def tolerance(path: str) -> str:
+        return tolerance_said(made.display, path)
+
+    low, high = min(0.0, sign * plate.width), max(0.0, sign * plate.width)
+    key = "actuator.length"
+    sheet.across(0.0, plate.length, high, 17.0, value_of=key, suffix=tolerance(key))
+    key = "actuator.width"
+    sheet.upright(low, high, 0.0, -17.0, value_of=key, suffix=tolerance(key), beside=False)
+    first, path = plate.patches[0], "actuator.patches.0"
+    edge = high
+    key = f"{path}.length"
+    sheet.across(first.x, first.x + first.length, edge, 9.5, value_of=key, suffix=tolerance(key))
+    if first.width < plate.width - 1e-9:
+        low_y, high_y = sorted((sign * first.y, sign * (first.y + first.width)))
+        key = f"{path}.width"
+        sheet.upright(low_y, high_y, 0.0, -8.0, value_of=key, suffix=tolerance(key))
+    patches = list(enumerate(plate.patches))
+    x = {one.x: (one.x, one.x, f"actuator.patches.{n}.x") for n, one in reversed(patches)}
+    y = {one.y: (one.y, sign * one.y, f"actuator.patches.{n}.y") for n, one in reversed(patches)}
+    whole = sheet.ordinates(x.values(), low, -7.5)
+    if len(y) > 1 or 0.0 not in y:
+        whole &= sheet.ordinates(y.values(), plate.length, 8.5, upright=True)
+    return whole
+
+
+def _keys_of_thickness(plate: RectangularPlate) -> dict[int, str]:
+    keys = {0: "actuator.thickness"}
+    for n in range(1, len(plate.patches) + 1):
+        keys[n] = f"actuator.patches.{n - 1}.thickness"
+        keys[-n] = "actuator.glue.thickness"
+    return keys
+
+
+def _said(plate: RectangularPlate, face: str, whole: bool) -> Iterable[str]:
+    """Notes of a plate."""
+    other = sum(one.face != face for one in plate.patches)
+    side = "below, where x runs right and y down" if face == "bottom" else "above"
+    yield f"Plan seen from {side}. Places are from the corner of the plate at x = y = 0."
+    if other:
+        hidden = "the upper face" if face == "bottom" else "the lower face"
+        yield f"Dashed: {other} ceramics on {hidden}."
+    if not whole:
+        yield "Places too near to each other for a number are in the table only."
+    if plate.supports:
+        thick = " or ".join(sorted({millimetres(one.thickness) for one in plate.supports}))
+        faces = " and ".join(sorted({one.face for one in plate.supports}))
+        yield f"Dashed, violet: foam, {thick} mm thick, on the {faces} face."
+    if plate.clamped_edges:
+        yield f"Clamped edges: {', '.join(plate.clamped_edges)}."

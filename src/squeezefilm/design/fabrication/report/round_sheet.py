@@ -1,0 +1,216 @@
+"""The drawing of a disc or of a motor's stator: plan from the ceramic's side, section, sectors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from squeezefilm.core.formats.drawing import Arc, Drawing, Polyline, millimetres
+from squeezefilm.design.fabrication.report.rectangular_sheet import poling_mark
+from squeezefilm.design.fabrication.report.section_view import section_view
+from squeezefilm.design.fabrication.report.sheet_parts import (
+    LETTER,
+    NUMBER,
+    VIEWS,
+    Sheet,
+    notes,
+    origin_rows,
+    scale_for,
+    scale_said,
+    table,
+    title_block,
+    tolerance_said,
+)
+from squeezefilm.design.fabrication.wiring import Electrode
+from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate
+from squeezefilm.physics.plate.parts import Part, Sector, teeth_of
+
+if TYPE_CHECKING:
+    from squeezefilm.design.fabrication.fabricate import Fabrication
+
+_ROOM = (160.0, 145.0)
+_MIDDLE = 118.0
+_ABOVE = 24.0
+HEAD = ("Sector", "From", "To", "Joined to", "Poled")
+
+
+def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
+    """The drawing of a disc or a stator; `common` are notes that every sheet has."""
+    actuator = made.display.actuator
+    assert isinstance(actuator, DiscPlate | AnnularStator)
+    shape = _ring(made.parts, "substrate")
+    outer = shape.outer_radius
+    scale = scale_for(2 * outer, 2 * outer, _ROOM)
+    reach = 1e3 * scale * outer
+    sheet = Sheet(scale, (_MIDDLE, VIEWS[3] - _ABOVE - reach))
+    _plan(sheet, made, shape)
+    lines = _diameters(actuator)
+    for number, (diameter, key, prefix) in enumerate(lines):
+        half = diameter / 2
+        # From where it leaves the body, so that its lines cross nothing.
+        rim = -math.sqrt(max(outer**2 - half**2, 0.0))
+        away = -(reach + 8.0 + 7.0 * number) - rim / sheet.unit
+        key_said = tolerance_said(made.display, key)
+        sheet.across(-half, half, rim, away, value_of=key, prefix=prefix, suffix=key_said)
+    if isinstance(actuator, AnnularStator):
+        ends = shape.inner_radius, shape.outer_radius
+        rim = math.sqrt(outer**2 - ends[0] ** 2)
+        away = reach + 8.0 - rim / sheet.unit
+        sheet.across(*ends, rim, away, y_to=0.0, value_of="actuator.radial_width")
+    # Of the teeth one stands for all of them.
+    teeth = [one for one in made.parts if one.kind == "substrate"][1:]
+    shown = [one for one in made.parts if one not in teeth[1:]]
+    low = sheet.origin[1] - reach - 16.0 - 7.0 * len(lines)
+    extra = section_view(sheet, made, shown, _MIDDLE, low, _keys_of_thickness(actuator))
+    rows = [
+        ("Scale, sheet", f"{scale_said(scale)}, A3; lengths in mm"),
+        *_materials(made.parts),
+        ("Mass", f"{1e3 * made.mass:.4g} g, assembled"),
+        *origin_rows(made.display),
+    ]
+    block = title_block(sheet, made.display.title, made.display.name, rows)
+    y = table(sheet, HEAD, sector_rows(made.electrodes), VIEWS[3], block + 110.0)
+    notes(sheet, [*_said(made), *extra, *common], y - 3.0)
+    return sheet.drawing()
+
+
+def sector_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
+    """From where to where each electrode goes, and what it is joined to."""
+    rows = []
+    for one in electrodes:
+        shape = one.footprint
+        assert isinstance(shape, Sector)
+        ends = (f"{math.degrees(angle):.6g}°" for angle in (shape.start, shape.end))
+        poled = "away" if one.poling > 0 else "towards"
+        rows.append((one.name, *ends, one.connection, poled))
+    return rows
+
+
+def _ring(parts: Sequence[Part], kind: str) -> Sector:
+    shape = next(one.footprint for one in parts if one.kind == kind)
+    assert isinstance(shape, Sector)
+    return shape
+
+
+def _polar(radius: float, angle: float) -> tuple[float, float]:
+    """A place, seen from below: angles go round clockwise."""
+    return radius * math.cos(angle), -radius * math.sin(angle)
+
+
+def _plan(sheet: Sheet, made: Fabrication, body: Sector) -> None:
+    ceramic, actuator = _ring(made.parts, "ceramic"), made.display.actuator
+    sheet.add(Arc("BODY", 0.0, 0.0, body.outer_radius), Arc("OUTLINE", 0.0, 0.0, body.outer_radius))
+    if any(one.kind == "glue" for one in made.parts):
+        sheet.add(Arc("GLUE", 0.0, 0.0, ceramic.outer_radius))
+    sheet.add(Arc("CERAMICS", 0.0, 0.0, ceramic.outer_radius))
+    if ceramic.inner_radius > body.inner_radius + 1e-9:
+        sheet.add(Arc("BODY", 0.0, 0.0, ceramic.inner_radius))
+    if body.inner_radius > 0:
+        sheet.add(Arc("HOLES", 0.0, 0.0, body.inner_radius))
+    for one in made.electrodes:
+        shape = one.footprint
+        assert isinstance(shape, Sector)
+        _electrode(sheet, one, shape)
+    if isinstance(actuator, AnnularStator):
+        sheet.interrupted(Arc("CENTRE_LINES", 0.0, 0.0, actuator.mean_diameter / 2))
+        # The teeth are on the other face: their walls, beyond the rim.
+        over = body.outer_radius + 2.0 * sheet.unit
+        for ends in teeth_of(actuator):
+            for angle in ends:
+                line = _polar(body.outer_radius, angle), _polar(over, angle)
+                sheet.add(Polyline("CERAMICS_OTHER_FACE", line))
+    for radius in made.nodal.radii:
+        sheet.interrupted(Arc("NODAL_LINES", 0.0, 0.0, radius))
+    for angle in made.nodal.angles:
+        ends_ = body.inner_radius, body.outer_radius + 3.0 * sheet.unit
+        sheet.interrupted(Polyline("NODAL_LINES", tuple(_polar(one, angle) for one in ends_)))
+    if body.inner_radius == 0:
+        r = body.outer_radius + 4.0 * sheet.unit
+        sheet.add(Polyline("CENTRE_LINES", ((0.0, -r), (0.0, r))))
+
+
+def _electrode(sheet: Sheet, one: Electrode, shape: Sector) -> None:
+    u = sheet.unit
+    if shape.is_whole:
+        sheet.add(Arc("ELECTRODES", 0.0, 0.0, shape.outer_radius))
+        if shape.inner_radius > 0:
+            sheet.add(Arc("ELECTRODES", 0.0, 0.0, shape.inner_radius))
+    else:
+        ends = (-shape.end, -shape.start)
+        for radius in (shape.outer_radius, shape.inner_radius):
+            if radius > 0:
+                sheet.add(Arc("ELECTRODES", 0.0, 0.0, radius, *ends))
+        for angle in (shape.start, shape.end):
+            wall = tuple(_polar(r, angle) for r in (shape.inner_radius, shape.outer_radius))
+            sheet.add(Polyline("ELECTRODES", wall))
+    middle = (shape.inner_radius + shape.outer_radius) / 2
+    angle = (shape.start + shape.end) / 2
+    if shape.is_whole:
+        # Beside the nodal circle of a full disc, and on a ring's own middle.
+        angle = -math.pi / 4
+    x, y = _polar(middle, angle)
+    said = f"{one.name} {one.connection}"
+    wide = (shape.end - shape.start) * middle / u
+    deep = (shape.outer_radius - shape.inner_radius) / u
+    if min(wide, deep) < len(said) * LETTER * NUMBER + 1.0 or deep < 8.0:
+        poling_mark(sheet, x, y, one.poling > 0)
+        return
+    sheet.label(said, x, y + 2.2 * u)
+    poling_mark(sheet, x, y - 2.2 * u, one.poling > 0)
+
+
+def _diameters(actuator: DiscPlate | AnnularStator) -> list[tuple[float, str, str]]:
+    """Diameters (m), the smallest first, with their keys and what stands before the number."""
+    if isinstance(actuator, AnnularStator):
+        mean, width = actuator.mean_diameter, actuator.radial_width
+        return [
+            (mean - width, "", "⌀"),
+            (mean, "actuator.mean_diameter", "mean ⌀"),
+            (mean + width, "", "⌀"),
+        ]
+    found = [
+        (actuator.ceramic_inner_diameter, "actuator.ceramic_inner_diameter", "ceramic ⌀"),
+        (actuator.inner_diameter, "actuator.inner_diameter", "⌀"),
+        (actuator.ceramic_outer_diameter, "actuator.ceramic_outer_diameter", "ceramic ⌀"),
+        (actuator.diameter, "actuator.diameter", "⌀"),
+    ]
+    return sorted((one for one in found if one[0] > 0), key=lambda one: one[0])
+
+
+def _keys_of_thickness(actuator: DiscPlate | AnnularStator) -> dict[int, str]:
+    if isinstance(actuator, AnnularStator):
+        return {}
+    return {
+        0: "actuator.thickness",
+        1: "actuator.ceramic_thickness",
+        -1: "actuator.glue.thickness",
+    }
+
+
+def _materials(parts: Sequence[Part]) -> Iterable[tuple[str, str]]:
+    for kind, said in (("substrate", "Substrate"), ("ceramic", "Ceramic")):
+        yield said, next(one.material for one in parts if one.kind == kind)
+    glue = [one for one in parts if one.kind == "glue"]
+    yield "Glue", f"{millimetres(glue[0].thickness)} mm" if glue else "none"
+
+
+def _said(made: Fabrication) -> Iterable[str]:
+    """Notes of a round body."""
+    yield "Plan seen from below. Angles are from x to the right, clockwise as seen here."
+    actuator = made.display.actuator
+    if isinstance(actuator, AnnularStator):
+        count = len(teeth_of(actuator))
+        if count:
+            pitch, slot = (
+                millimetres(one or 0.0) for one in (actuator.tooth_pitch, actuator.slot_width)
+            )
+            yield (
+                f"{count} teeth on the upper face, a pitch of {pitch} mm on the mean diameter, "
+                f"slots of {slot} mm: ticks beyond the rim are their walls."
+            )
+    assumed = sorted({one.assumed for one in made.parts if one.assumed})
+    for text in assumed:
+        yield f"NOT TO BE MADE BY THESE THICKNESSES: {text}."
+    if len(made.electrodes) > 1:
+        yield "Neighbouring sectors are poled in opposite directions and joined to one output."

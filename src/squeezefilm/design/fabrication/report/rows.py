@@ -1,0 +1,159 @@
+"""Bill, electrodes, expected numbers and test plan as rows of text, for page, terminal and CSV."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit.folder import csv_text
+from squeezefilm.core.kit.numbers import shown
+from squeezefilm.design.fabrication.report.rectangular_sheet import HEAD as CERAMICS
+from squeezefilm.design.fabrication.report.rectangular_sheet import electrode_rows
+from squeezefilm.design.fabrication.report.round_sheet import HEAD as SECTORS
+from squeezefilm.design.fabrication.report.round_sheet import sector_rows
+from squeezefilm.design.fabrication.wiring import leads_of
+from squeezefilm.measure.calibration.solved_answers import FRICTION
+from squeezefilm.physics.plate.layout import RectangularPlate
+
+if TYPE_CHECKING:
+    from squeezefilm.design.fabrication.bill import BillRow
+    from squeezefilm.design.fabrication.fabricate import Fabrication
+    from squeezefilm.design.fabrication.test_plan import Check
+
+BILL = ("Item", "What", "Count", "Material", "Size", "Made", "Mass", "Remark")
+STEP = ("Read", "As described", "Expected", "Measured", "Inside", "Remark")
+EXPECTED = ("Quantity", "As described", "Expected", "Remark")
+_PLAN = (
+    "step",
+    "what to do",
+    "kind of recording",
+    "file",
+    "read",
+    "answer",
+    "conditions (SI)",
+    "as described (SI)",
+    "low (SI)",
+    "high (SI)",
+    "level",
+    "unit",
+    "measured (SI)",
+    "inside",
+)
+_BILL = ("item", "what", "count", "material", "size", "made", "mass_kg", "in_mass", "remark")
+_KEY = ("resonance_frequency", "amplitude_per_volt", "quality_factor", "mass", FRICTION)
+
+
+def said(value: float | None, unit: str, digits: int = 4) -> str:
+    """A value as people read it; a dash where it is not known."""
+    if value is None:
+        return "–"
+    if unit == "kg":
+        return f"{1e3 * value:.{digits}g} g"
+    return f"{value:.{digits}g}" if unit == "1" else shown(value, si.Unit(unit), digits)
+
+
+def expected_said(check: Check) -> str:
+    """The interval of a check in words; a dash without one."""
+    if check.interval is None:
+        return "–"
+    low, high = (said(end, check.unit, 3) for end in check.interval)
+    level = "" if check.level is None else f" ({si.percent(check.level)})"
+    return f"{low} to {high}{level}"
+
+
+def expected_rows(made: Fabrication) -> list[tuple[str, ...]]:
+    """The numbers that one looks for first, once each, in the order of the plan."""
+    found: dict[tuple[str, str], tuple[str, ...]] = {}
+    for step in made.steps:
+        for one in step.checks:
+            key = one.answer in _KEY or one.what.startswith(("Amplitude at", "Free amplitude"))
+            if key and one.value is not None:
+                row = (one.what, said(one.value, one.unit), expected_said(one), one.remark)
+                found.setdefault((one.what, one.unit), row)
+    return list(found.values())
+
+
+def step_rows(checks: Iterable[Check]) -> list[tuple[str, ...]]:
+    """What is to be read in one step, with empty places for what is measured."""
+    return [
+        (one.what, said(one.value, one.unit), expected_said(one), "", "☐", one.remark)
+        for one in checks
+    ]
+
+
+def bill_rows(bill: Sequence[BillRow]) -> list[tuple[str, ...]]:
+    """The bill, and its sum."""
+    rows = [
+        (
+            f"{number}",
+            one.what,
+            f"{one.count}",
+            one.material,
+            one.size,
+            one.made,
+            said(one.mass, "kg"),
+            one.remark,
+        )
+        for number, one in enumerate(bill, 1)
+    ]
+    total = sum(one.mass or 0.0 for one in bill if one.in_mass)
+    return [*rows, ("", "Sum", "", "", "", "", said(total, "kg"), "of what the display is made of")]
+
+
+def bill_csv(bill: Sequence[BillRow]) -> str:
+    """The bill as CSV, masses in kilograms."""
+    rows = [
+        (
+            number,
+            one.what,
+            one.count,
+            one.material,
+            one.size,
+            one.made,
+            one.mass,
+            "yes" if one.in_mass else "no",
+            one.remark,
+        )
+        for number, one in enumerate(bill, 1)
+    ]
+    return csv_text(_BILL, rows)
+
+
+def layout_rows(made: Fabrication) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Head and rows of the electrodes, lengths in millimetres."""
+    if isinstance(made.display.actuator, RectangularPlate):
+        return CERAMICS, electrode_rows(made.electrodes)
+    return SECTORS, sector_rows(made.electrodes)
+
+
+def lead_rows(made: Fabrication) -> list[tuple[str, ...]]:
+    """What is joined to what."""
+    return [(one.name, ", ".join(one.electrodes), one.to) for one in leads_of(made.electrodes)]
+
+
+def plan_csv(made: Fabrication) -> str:
+    """The plan as CSV in SI units, with empty columns for what is measured."""
+    rows = []
+    for step in made.steps:
+        for one in step.checks:
+            low, high = one.interval or (None, None)
+            under = "; ".join(f"{name}={value:.9g}" for name, value in one.conditions)
+            numbers = ("" if end is None else f"{end:.9g}" for end in (one.value, low, high))
+            rows.append(
+                (
+                    step.name,
+                    step.do,
+                    step.kind,
+                    step.file,
+                    one.what,
+                    one.answer,
+                    under,
+                    *numbers,
+                    "" if one.level is None else f"{one.level:g}",
+                    one.unit,
+                    "",
+                    "",
+                )
+            )
+    return csv_text(_PLAN, rows)

@@ -1,0 +1,176 @@
+"""The section of an assembly, its thicknesses drawn larger than its width, and said so."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.formats.drawing import millimetres, rectangle
+from squeezefilm.design.fabrication.report.sheet_parts import (
+    LETTER,
+    NUMBER,
+    SMALL,
+    VIEWS,
+    Sheet,
+    tolerance_said,
+)
+from squeezefilm.design.fabrication.wiring import ANTIPHASE
+from squeezefilm.physics.plate.parts import Part, Rectangle, Sector
+
+if TYPE_CHECKING:
+    from squeezefilm.design.fabrication.fabricate import Fabrication
+
+_STRETCHES = (200, 100, 50, 20, 10, 5, 2, 1)
+_LAYERS = {"substrate": "BODY", "ceramic": "CERAMICS", "glue": "GLUE"}
+
+
+@dataclass(frozen=True)
+class Cut:
+    """Where an assembly is cut: along x at y = `at` (m), or, `upright`, along y at x = `at`."""
+
+    upright: bool
+    at: si.Metre
+
+
+@si.checked_numbers
+def stretch_for(height: si.Metre, scale: si.Dimensionless, room: float = 34.0) -> int:
+    """How many times larger thicknesses are drawn so that a height (m) fits the room (mm)."""
+    fits = (one for one in _STRETCHES if 1e3 * height * scale * one <= room)
+    return next(fits, 1)
+
+
+def spans(part: Part, cut: Cut) -> list[tuple[si.Metre, si.Metre]]:
+    """From where to where a part is met along a cut (m)."""
+    shape = part.footprint
+    if isinstance(shape, Sector):
+        # Through the middle: both sides of it.
+        if shape.inner_radius == 0:
+            return [(-shape.outer_radius, shape.outer_radius)]
+        outer, inner = shape.outer_radius, shape.inner_radius
+        return [(-outer, -inner), (inner, outer)]
+    assert isinstance(shape, Rectangle)
+    low, extent = (shape.x, shape.length) if cut.upright else (shape.y, shape.width)
+    if not low <= cut.at <= low + extent:
+        return []
+    start, along = (shape.y, shape.width) if cut.upright else (shape.x, shape.length)
+    return [(start, start + along)]
+
+
+def best_cut(parts: Sequence[Part]) -> Cut:
+    """The cut through the middle of some ceramic that meets most of them; along x, in the plate's
+    middle, where that meets as many."""
+    base = next(one.footprint for one in parts if one.kind == "substrate")
+    if isinstance(base, Sector):
+        return Cut(False, 0.0)
+    ceramics = [one for one in parts if one.kind == "ceramic"]
+    options = [Cut(False, base.width / 2), Cut(True, base.length / 2)]
+    for one in ceramics:
+        shape = one.footprint
+        assert isinstance(shape, Rectangle)
+        options.append(Cut(False, shape.y + shape.width / 2))
+        options.append(Cut(True, shape.x + shape.length / 2))
+    return max(options, key=lambda cut: sum(bool(spans(one, cut)) for one in ceramics))
+
+
+def section_view(
+    sheet: Sheet,
+    made: Fabrication,
+    parts: Sequence[Part],
+    middle: float,
+    top: float,
+    keys: Mapping[int, str],
+) -> tuple[str, ...]:
+    """Draw the best cut through `parts` about a `middle` with its upper face at `top` (mm of
+    paper), with the thicknesses of the substrate and, at the right end, of what is bonded to each
+    face; `keys` are those of the description by what they are of (0: the substrate, n: ceramic n,
+    −n: its glue). Notes of tolerances that have no room beside their numbers."""
+    cut = best_cut(parts)
+    met = [(one, found) for one in parts if (found := spans(one, cut))]
+    high, low = max(one.top for one, _ in met), min(one.bottom for one, _ in met)
+    stretch = stretch_for(high - low, sheet.scale)
+    ends = [end for _, found in met for span in found for end in span]
+    _, y_top = sheet.at(0.0, top)
+    centre, _ = sheet.at(middle, 0.0)
+    shift = centre - (min(ends) + max(ends)) / 2
+    turned = {one.ceramic for one in made.electrodes if one.connection == ANTIPHASE}
+
+    def height(z: float) -> float:
+        return y_top + stretch * (z - high)
+
+    for one, found in met:
+        other = one.kind == "ceramic" and one.number in turned
+        layer = "CERAMICS_B" if other else _LAYERS[one.kind]
+        for start, end in found:
+            thick = stretch * one.thickness
+            sheet.add(rectangle(layer, start + shift, height(one.bottom), end - start, thick))
+    base, said = met[0][0], []
+    right = max(ends) + shift
+    for one in (base, *_stacks(met)):
+        number = {"ceramic": one.number, "glue": -one.number}.get(one.kind, 0)
+        key = keys.get(number, "") if one is base or number else ""
+        said.append((one, key, tolerance_said(made.display, key) if key else ""))
+    room = VIEWS[2] + 4.0 - (right / sheet.unit + sheet.origin[0])
+    fits = max(end for *_, end in _columns(said)) <= room
+    for one, key, tolerance, away, _ in _columns(said if fits else [(*s[:2], "") for s in said]):
+        where = max(end for span in spans(one, cut) for end in span) + shift
+        sheet.upright(
+            height(one.bottom), height(one.top), where, away + (right - where) / sheet.unit,
+            stretch=stretch, value_of=key, suffix=f"{_what(one)}{tolerance}", beside=True,
+        )  # fmt: skip
+    bottom = top - 1e3 * (high - low) * sheet.scale * stretch
+    label = "Section A–A" if isinstance(base.footprint, Rectangle) else "Section through the middle"
+    larger = f"; heights drawn {stretch} times larger" if stretch > 1 else ""
+    sheet.write(f"{label}{larger}", middle, bottom - 6.0, SMALL, "middle")
+    sheet.lowest = bottom - 12.0
+    stated = [
+        f"{one.kind} {millimetres(one.thickness)}{tolerance}"
+        for one, _, tolerance in said
+        if tolerance
+    ]
+    return () if fits or not stated else (f"Thicknesses: {'; '.join(stated)}.",)
+
+
+_Said = tuple[Part, str, str]
+
+
+def _what(one: Part) -> str:
+    return " glue" if one.kind == "glue" else ""
+
+
+def _columns(said: Sequence[_Said]) -> list[tuple[Part, str, str, float, float]]:
+    """Each with how far from the section's right end its dimension stands, and where it ends (mm);
+    those above the substrate have their own columns over those below it."""
+    found: list[tuple[Part, str, str, float, float]] = []
+    first, away, was_above = 7.0, 7.0, False
+    for number, (one, key, tolerance) in enumerate(said):
+        above = number > 0 and one.kind != "substrate" and one.bottom > 0
+        if above and not was_above:
+            away = first
+        was_above = above
+        letters = len(f"{millimetres(one.thickness)}{_what(one)}{tolerance}")
+        end = away + (letters * LETTER + 0.6) * NUMBER
+        found.append((one, key, tolerance, away, end))
+        away = end + 3.0 * NUMBER
+        if one.kind == "substrate":
+            first = away
+    return found
+
+
+def _stacks(met: Sequence[tuple[Part, list[tuple[float, float]]]]) -> list[Part]:
+    """A tooth where there are any; of each face the rightmost ceramic that was met, and its glue,
+    which is last: its number stands beside its short arrows, where no other line runs."""
+    found = [one for one, _ in met if one.kind == "substrate"][1:2]
+    for upper in (False, True):
+        ceramics = [
+            (max(span), one)
+            for one, ends in met
+            if one.kind == "ceramic" and (one.bottom > 0) == upper
+            for span in ends
+        ]
+        if ceramics:
+            last = max(ceramics, key=lambda pair: pair[0])[1]
+            glue = [one for one, _ in met if one.kind == "glue" and one.number == last.number]
+            found += [last, *glue]
+    return found

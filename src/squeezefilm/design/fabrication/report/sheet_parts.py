@@ -1,0 +1,371 @@
+"""What every sheet has, in millimetres of paper: its frame, tables, notes and title block."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.distributions import Normal
+from squeezefilm.core.formats.drawing import (
+    Arc,
+    Dimension,
+    Drawing,
+    Item,
+    Layer,
+    Ordinate,
+    Polyline,
+    Text,
+    arrows_outside,
+    millimetres,
+    rectangle,
+)
+from squeezefilm.core.kit.numbers import printable
+from squeezefilm.core.results import stamp
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.uncertainty.parameters import value_at
+
+LAYERS = {
+    "FRAME": Layer(7, width=0.35e-3),
+    "OUTLINE": Layer(7, width=0.5e-3),
+    "BODY": Layer(45, width=0.35e-3, fill="own"),
+    "CERAMICS": Layer(151, width=0.35e-3, fill="own"),
+    "CERAMICS_B": Layer(21, width=0.35e-3, fill="own"),
+    "CERAMICS_OTHER_FACE": Layer(8, "DASHED", 0.25e-3),
+    "ELECTRODES": Layer(5, width=0.18e-3),
+    "GLUE": Layer(3, width=0.18e-3, fill="own"),
+    "HOLES": Layer(7, width=0.35e-3, fill="paper"),
+    "POLING": Layer(7, width=0.25e-3),
+    "SUPPORTS": Layer(6, "DASHED", 0.25e-3),
+    "NODAL_LINES": Layer(1, "DASHDOT", 0.18e-3),
+    "CENTRE_LINES": Layer(8, "DASHDOT", 0.18e-3),
+    "DIMENSIONS": Layer(8, width=0.18e-3),
+    "TEXT": Layer(7, width=0.18e-3),
+}
+"""By their names in the DXF."""
+
+PAPER = (420.0, 297.0)
+"""A3, landscape (mm)."""
+VIEWS = (14.0, 14.0, 252.0, 283.0)
+"""Where the views are: left, bottom, right, top (mm)."""
+COLUMN = (258.0, 412.0)
+"""The left and right end of the column of tables (mm)."""
+NUMBER, SMALL, HEAD = 2.5, 2.0, 2.5
+"""Heights of capitals (mm): of dimensions, of tables, of headings."""
+_SCALES = (100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
+# The width of a usual letter over the height of a capital; generous, fonts differ.
+LETTER = 0.88
+# Of a line that labels may interrupt.
+_PIECES = 720
+
+
+@si.checked_numbers
+def scale_for(width: si.Metre, height: si.Metre, room: tuple[float, float]) -> si.Dimensionless:
+    """The largest usual scale at which something (m) fits a room on paper (mm)."""
+    for scale in _SCALES:
+        if 1e3 * scale * width <= room[0] and 1e3 * scale * height <= room[1]:
+            return scale
+    return min(room[0] / (1e3 * width), room[1] / (1e3 * height))
+
+
+@si.checked_numbers
+def scale_said(scale: si.Dimensionless) -> str:
+    """2:1, 1:5."""
+    return f"{scale:g}:1" if scale >= 1 else f"1:{1 / scale:.6g}"
+
+
+@dataclass
+class Sheet:
+    """A drawing as it is composed: `scale` is paper over thing; places on paper are in millimetres
+    from its lower left corner, and `origin` is where the thing's own (0, 0) lies there. Boxes that
+    are `kept_free` (left, bottom, right, top in m) are not crossed by lines that are `interrupted`.
+    The views end at `lowest` (mm), `noted` is what the notes say.
+    """
+
+    scale: float
+    origin: tuple[float, float]
+    items: list[Item] = field(default_factory=list)
+    kept_free: list[tuple[float, float, float, float]] = field(default_factory=list)
+    noted: list[str] = field(default_factory=list)
+    lowest: float = VIEWS[1]
+
+    @property
+    def unit(self) -> si.Metre:
+        """What a millimetre of paper is of the thing (m)."""
+        return 1e-3 / self.scale
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """A place on paper (mm) as one of the thing (m)."""
+        return (x - self.origin[0]) * self.unit, (y - self.origin[1]) * self.unit
+
+    def add(self, *items: Item) -> None:
+        """More items, over those that are there."""
+        self.items += items
+
+    def write(
+        self,
+        text: str,
+        x: float,
+        y: float,
+        height: float = SMALL,
+        align: str = "left",
+        angle: float = 0.0,
+    ) -> None:
+        """A text at a place on paper (mm), capitals so high (mm)."""
+        place, size = self.at(x, y), height * self.unit
+        self.add(Text(printable(text), *place, size, align, angle))  # type: ignore[arg-type] # an alignment
+
+    def label(self, text: str, x: si.Metre, y: si.Metre, angle: float = 0.0) -> None:
+        """A text about a place of the thing (m), which lines then leave free."""
+        size = NUMBER * self.unit
+        along, across = len(text) * LETTER * size / 2, 0.8 * size
+        wide, high = (across, along) if angle else (along, across)
+        self.kept_free.append((x - wide, y - high, x + wide, y + high))
+        self.add(Text(printable(text), x, y, size, "middle", angle))
+
+    def interrupted(self, line: Polyline | Arc) -> None:
+        """A straight line or an arc, left out where labels are."""
+
+        def place(share: float) -> tuple[float, float]:
+            if isinstance(line, Arc):
+                angle = line.start + share * (line.end - line.start)
+                turn = math.cos(angle), math.sin(angle)
+                return line.x + line.radius * turn[0], line.y + line.radius * turn[1]
+            (x, y), (x_to, y_to) = line.points[0], line.points[-1]
+            return x + share * (x_to - x), y + share * (y_to - y)
+
+        shares = [k / _PIECES for k in range(_PIECES + 1)]
+        free = [self._is_free(*place(share)) for share in shares]
+        if all(free):
+            self.add(line)
+            return
+        start = None
+        for share, is_free in zip([*shares, 1.0], [*free, False], strict=True):
+            if is_free and start is None:
+                start = share
+            elif not is_free and start is not None:
+                end = share - (0.0 if share == 1.0 and free[-1] else 1 / _PIECES)
+                if end > start:
+                    self.add(self._piece(line, start, end, place))
+                start = None
+
+    @staticmethod
+    def _piece(
+        line: Polyline | Arc,
+        start: float,
+        end: float,
+        place: Callable[[float], tuple[float, float]],
+    ) -> Item:
+        if isinstance(line, Arc):
+            turn = line.end - line.start
+            return replace(line, start=line.start + start * turn, end=line.start + end * turn)
+        return replace(line, points=(place(start), place(end)))
+
+    def _is_free(self, x: float, y: float) -> bool:
+        return not any(a <= x <= c and b <= y <= d for a, b, c, d in self.kept_free)
+
+    def box(self, layer: str, left: float, bottom: float, right: float, top: float) -> None:
+        """A rectangle on paper (mm)."""
+        (x, y), (x_to, y_to) = self.at(left, bottom), self.at(right, top)
+        self.add(rectangle(layer, x, y, x_to - x, y_to - y))
+
+    def rule(self, x: float, y: float, x_to: float, y_to: float, layer: str = "FRAME") -> None:
+        """A straight line on paper (mm)."""
+        self.add(Polyline(layer, (self.at(x, y), self.at(x_to, y_to))))
+
+    def across(
+        self,
+        x_from: si.Metre,
+        x_to: si.Metre,
+        y: si.Metre,
+        away: float,
+        *,
+        y_to: si.Metre | None = None,
+        value_of: str = "",
+        prefix: str = "",
+        suffix: str = "",
+    ) -> None:
+        """A horizontal dimension of two places of the thing at a height (m; the second may be at
+        another), its line so many millimetres of paper `away` from it, above where that is
+        positive. Its number stands over the line, or where it is wider than that, at its right."""
+        size = NUMBER * self.unit
+        at, said = y + away * self.unit, f"{prefix}{millimetres(abs(x_to - x_from))}{suffix}"
+        width, extent = len(said) * LETTER * size, abs(x_to - x_from)
+        text_x, text_y = (x_from + x_to) / 2, at + 0.9 * size
+        if width > extent:
+            beyond = 2.6 * size if arrows_outside(extent, size) else 0.8 * size
+            text_x, text_y = max(x_from, x_to) + width / 2 + beyond, at
+        ends = (x_from, y, x_to, y if y_to is None else y_to)
+        self.add(
+            Dimension(
+                *ends, at, text_x, text_y, size,
+                prefix=prefix, suffix=suffix, value_of=value_of,
+            )
+        )  # fmt: skip
+
+    def upright(
+        self,
+        y_from: si.Metre,
+        y_to: si.Metre,
+        x: si.Metre,
+        away: float,
+        *,
+        stretch: float = 1.0,
+        value_of: str = "",
+        suffix: str = "",
+        beside: bool = False,
+    ) -> None:
+        """A vertical dimension of two places of the thing at an x (m), its line so many millimetres
+        of paper `away`, to the right where that is positive. Its number stands across the line on
+        the far side of it: `beside` it, or above its upper end where it is short."""
+        size = NUMBER * self.unit
+        at = x + away * self.unit
+        said = f"{millimetres(abs(y_to - y_from) / stretch)}{suffix}"
+        half = len(said) * LETTER * size / 2
+        text_x = at + (half + 0.6 * size) * (1 if away > 0 else -1)
+        text_y = (y_from + y_to) / 2
+        if not beside and arrows_outside(abs(y_to - y_from), size):
+            text_y = max(y_from, y_to) + 1.6 * size
+        self.add(
+            Dimension(
+                x, y_from, x, y_to, at, text_x, text_y, size, upright=True,
+                stretch=stretch, suffix=suffix, value_of=value_of,
+            )
+        )  # fmt: skip
+
+    def ordinates(
+        self,
+        places: Iterable[tuple[si.Metre, si.Metre, str]],
+        edge: si.Metre,
+        away: float,
+        *,
+        upright: bool = False,
+    ) -> bool:
+        """Distances from the origin (m) of places (coordinate, its sign on the sheet as drawn,
+        key), at the ends of leaders from an `edge` (m). Those that stand too near to the one before
+        are left out; whether none was."""
+        size, last, whole = NUMBER * self.unit, None, True
+        for one, drawn, key in sorted(places, key=lambda place: place[0]):
+            if last is not None and one - last < 1.5 * size:
+                whole = False
+                continue
+            last = one
+            end = edge + away * self.unit
+            x, y = (edge, drawn) if upright else (drawn, edge)
+            self.add(Ordinate(x, y, 0.0, 0.0, end, size, upright, key))
+        return whole
+
+    def drawing(self) -> Drawing:
+        """What was composed."""
+        paper = (1e-3 * PAPER[0], 1e-3 * PAPER[1])
+        left, _, right, top = VIEWS
+        views = tuple(1e-3 * one for one in (left - 4.0, self.lowest, right + 4.0, top + 4.0))
+        return Drawing(
+            LAYERS,
+            tuple(self.items),
+            self.scale,
+            paper,
+            self.at(0.0, 0.0),
+            (views[0], views[1], views[2], views[3]),
+            tuple(self.noted),
+        )
+
+
+def table(
+    sheet: Sheet, head: Sequence[str], rows: Sequence[Sequence[str]], top: float, bottom: float
+) -> float:
+    """A table in the column, its head at `top` (mm); rows that do not fit above `bottom` are
+    counted in the last one. Where it ends (mm)."""
+    left, right, step = *COLUMN, 4.6
+    most = max(1, int((top - bottom) / step) - 2)
+    shown = [list(row) for row in rows[:most]]
+    weights = [max(len(row[k]) for row in (head, *shown)) + 2 for k in range(len(head))]
+    ends = [left]
+    for one in weights:
+        ends.append(ends[-1] + one * (right - left) / sum(weights))
+    y = top - step / 2
+    for number, row in enumerate((head, *shown)):
+        for k, cell in enumerate(row):
+            room = max(3, int((ends[k + 1] - ends[k] - 1.5) / (LETTER * SMALL)))
+            said = cell if len(cell) <= room else cell[: room - 1] + "…"
+            sheet.write(said, ends[k] + 0.8, y)
+        y -= step
+        if number == 0:
+            sheet.rule(left, y + step / 2, right, y + step / 2)
+    if len(rows) > most:
+        sheet.write(f"and {len(rows) - most} more: electrodes.csv has all", left + 0.8, y)
+        y -= step
+    return y + step / 2
+
+
+def notes(sheet: Sheet, texts: Iterable[str], top: float) -> float:
+    """Numbered notes in the column from `top` down (mm); where they end (mm)."""
+    left, right = COLUMN
+    letters = int((right - left - 6) / (LETTER * SMALL))
+    y, step = top - 2.0, 3.5
+    for number, text in enumerate(texts, 1):
+        sheet.noted.append(text)
+        for at, line in enumerate(textwrap.wrap(printable(text), letters)):
+            if at == 0:
+                sheet.write(f"{number}", left + 0.8, y)
+            sheet.write(line, left + 5.5, y)
+            y -= step
+        y -= 0.7
+    return y
+
+
+def title_block(sheet: Sheet, title: str, name: str, rows: Sequence[tuple[str, str]]) -> float:
+    """The frame and, in its lower right corner, title, name and rows of what is to be said; where
+    it begins (mm)."""
+    left, right = COLUMN
+    sheet.box("FRAME", 8.0, 8.0, PAPER[0] - 8.0, PAPER[1] - 8.0)
+    step, bottom = 4.8, 8.0
+    top = bottom + step * len(rows) + 17.0
+    sheet.box("FRAME", left, bottom, right, top)
+    letters = int((right - left - 4) / (LETTER * HEAD))
+    lines = textwrap.wrap(printable(title), letters, max_lines=2, placeholder=" …")
+    for number, line in enumerate(lines):
+        sheet.write(line, left + 2.0, top - 4.0 - 4.4 * number, HEAD)
+    said = textwrap.shorten(printable(name), 70, placeholder=" …")
+    sheet.write(said, left + 2.0, top - 14.0, SMALL)
+    y = top - 17.0
+    room = int((right - left - 36.0) / (LETTER * SMALL))
+    for what, value in rows:
+        sheet.rule(left, y, right, y)
+        sheet.write(what, left + 2.0, y - step / 2)
+        told = printable(value)
+        sheet.write(
+            told if len(told) <= room else told[: room - 1] + "…", left + 34.0, y - step / 2
+        )
+        y -= step
+    sheet.rule(left + 32.0, bottom, left + 32.0, top - 17.0)
+    return top
+
+
+def origin_rows(display: Display) -> list[tuple[str, str]]:
+    """Which description the sheet is of, and when it was drawn by what."""
+    made = stamp(display)
+    return [
+        ("SHA-256", str(made["config_sha256"])[:32] + " …"),
+        ("Drawn by", f"squeezefilm {made['squeezefilm_version']}"),
+        ("Date (UTC)", str(made["created_utc"])[:10]),
+    ]
+
+
+def tolerance_said(display: Display, path: str) -> str:
+    """What the description says of how far a length may be off, behind its number: " ±0.1" (two
+    standard deviations, or half of an even range), or both ends of another; "" where it says
+    nothing."""
+    origin = display.provenance.get(path)
+    spread = None if origin is None else origin.distribution
+    if spread is None:
+        return ""
+    if isinstance(spread, Normal):
+        return f" ±{millimetres(2 * spread.standard_deviation)}"
+    low, high = spread.support
+    value = value_at(display, path)[0]
+    if abs(low + high - 2 * value) < 1e-3 * (high - low):
+        return f" ±{millimetres((high - low) / 2)}"
+    return f" ({millimetres(low)} to {millimetres(high)})"

@@ -1,0 +1,336 @@
+"""The plan of a bench for a display that was just built: steps in the order of the day, each with
+the numbers it should give."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from squeezefilm.core import quantities as si
+from squeezefilm.design.fabrication.nodal_lines import NodalLines
+from squeezefilm.measure.calibration.blind import Predicted
+from squeezefilm.measure.calibration.solved_answers import FRICTION
+from squeezefilm.physics.chain.pad_place import place_words
+from squeezefilm.physics.chain.prediction import Prediction
+from squeezefilm.physics.plate.electronics import ElectricalLoad
+from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
+
+SMALL_SIGNAL: si.Dimensionless = 0.1
+"""Of the drive's voltage: for what is to be linear."""
+_BAND, _POINTS = 8.0, 201
+_HZ, _V, _M = si.Unit("Hz"), si.Unit("V"), si.Unit("m")
+
+
+@dataclass(frozen=True)
+class Check:
+    """One number to be read: `answer` is its name for a calibration ("" where it has none) under
+    `conditions` (SI); `value` is that of the display as described, `interval` holds `level` of what
+    is expected of the built one (None where that is not known)."""
+
+    what: str
+    answer: str
+    unit: str
+    value: float | None
+    interval: tuple[float, float] | None = None
+    level: si.Dimensionless | None = None
+    conditions: tuple[tuple[str, float], ...] = ()
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class TestStep:
+    """One step: what to do, in sentences; the `kind` of recording and its `file` (both "" where
+    none is kept), and what to read."""
+
+    __test__ = False
+
+    name: str
+    do: str
+    kind: str
+    file: str
+    checks: tuple[Check, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What the plan is made of: everything is computed already."""
+
+    prediction: Prediction
+    expected: tuple[Predicted, ...]
+    mass: si.Kilogram
+    nodal: NodalLines
+    load: ElectricalLoad | None
+    uncertainty: UncertainFriction | None
+
+
+_OF_DRAWS = "zero-to-peak; as friction's interval, which allows no error of the plate's model"
+_UNITS = {
+    "mass": "kg",
+    "resonance_frequency": "Hz",
+    "parallel_resonance_frequency": "Hz",
+    "coupling_coefficient": "1",
+    "static_capacitance": "F",
+    "quality_factor": "1",
+    "amplitude_per_volt": "m/V",
+    "half_wavelength": "m",
+    FRICTION: "1",
+}
+
+
+def test_plan(known: Known) -> tuple[TestStep, ...]:
+    """The steps, each recording named as `squeezefilm measure calibrate` finds it in its folder."""
+    steps = [
+        _weighing(known),
+        _impedance(known),
+        _response(known),
+        _line(known),
+        _grid(known),
+        _decay(known),
+        _voltages(known),
+        _strokes(known),
+    ]
+    return tuple(one for one in steps if one is not None)
+
+
+test_plan.__test__ = False  # type: ignore[attr-defined] # pytest collects by name
+
+
+def _of(known: Known, answer: str, what: str, value: float | None, remark: str = "") -> Check:
+    """A check of an answer, with the interval that was drawn of it."""
+    found = [one for one in known.expected if one.answer == answer]
+    interval, level = (found[0].interval, found[0].level) if found else (None, None)
+    if value is None and found:
+        value = found[0].median
+    return Check(what, answer, _UNITS[answer], value, interval, level, (), remark)
+
+
+def _weighing(known: Known) -> TestStep:
+    return TestStep(
+        "Weigh it",
+        "Weigh the assembly with its glue cured, before leads are soldered.",
+        "",
+        "",
+        (_of(known, "mass", "Mass", known.mass),),
+    )
+
+
+def _volts(volts: si.Volt) -> str:
+    return si.format_quantity(volts, _V, 3)
+
+
+def _band(known: Known) -> str:
+    mode = known.prediction.mode
+    half = mode.resonance_frequency / (2 * mode.quality_factor)
+    low, high = (mode.resonance_frequency + side * _BAND * half for side in (-1, 1))
+    # As far as the resonance may lie, the band goes along.
+    for one in known.expected:
+        if one.answer in ("resonance_frequency", "parallel_resonance_frequency"):
+            low, high = min(low, one.interval[0] - 2 * half), max(high, one.interval[1] + 2 * half)
+    points = max(_POINTS, 8 * math.ceil((high - low) / half))
+    ends = " to ".join(si.format_quantity(one, _HZ, 4) for one in (low, high))
+    return f"from {ends} in {points} points"
+
+
+def _impedance(known: Known) -> TestStep:
+    p, load = known.prediction, known.load
+    static = None if load is None else load.capacitance
+    checks = [
+        _of(known, "resonance_frequency", "Resonance", p.mode.resonance_frequency),
+        _of(known, "parallel_resonance_frequency", "Parallel resonance", None),
+        _of(
+            known,
+            "coupling_coefficient",
+            "Coupling coefficient",
+            None,
+            "√(1 − fs²/fp²): follows from the two above",
+        ),
+        _of(known, "static_capacitance", "Static capacitance", static),
+        _of(known, "quality_factor", "Quality factor", p.mode.quality_factor),
+    ]
+    return TestStep(
+        "Impedance sweep",
+        f"Sweep all driven electrodes together, joined as in operation, at 1 V or less, "
+        f"{_band(known)}, without a finger and held as in operation.",
+        "impedance",
+        "impedance.csv",
+        tuple(one for one in checks if one.value is not None),
+    )
+
+
+def _response(known: Known) -> TestStep:
+    p = known.prediction
+    volts = SMALL_SIGNAL * (p.voltage or 0.0)
+    at = place_words(p.mode.lobe)
+    return TestStep(
+        "Frequency response",
+        f"Point the vibrometer at the best antinode, {at}; sweep at {_volts(volts)} "
+        f"(zero-to-peak), {_band(known)}.",
+        "frequency response",
+        "frequency-response.csv",
+        (
+            _of(known, "resonance_frequency", "Resonance", p.mode.resonance_frequency),
+            _of(known, "quality_factor", "Quality factor", p.mode.quality_factor),
+            _of(known, "amplitude_per_volt", "Amplitude per volt", p.mode.amplitude_per_volt),
+        ),
+    )
+
+
+def _line(known: Known) -> TestStep:
+    p, nodal = known.prediction, known.nodal
+    half = p.mode.half_wavelength
+    checks = [_of(known, "half_wavelength", "Half wavelength", half)]
+    of_shape = "of the shape as described; no interval was computed"
+    checks += [
+        Check(f"Nodal line {n} at {nodal.axis}", "", "m", at, remark=of_shape)
+        for n, at in enumerate(nodal.positions, 1)
+    ]
+    checks += [
+        Check(f"Nodal circle {n}, radius", "", "m", at, remark=of_shape)
+        for n, at in enumerate(nodal.radii, 1)
+    ]
+    along = "across the nodal lines, through the best antinode, from the plate's edge"
+    if nodal.radii:
+        along = "along a diameter"
+    elif nodal.angles:
+        along = "along the mean circumference"
+    step = si.format_quantity(half / 10, _M, 2)
+    return TestStep(
+        "Line scan",
+        f"At the measured resonance, scan {along} in steps of {step} or less.",
+        "line scan",
+        "line-scan.csv",
+        tuple(checks),
+    )
+
+
+def _grid(known: Known) -> TestStep | None:
+    mode = known.prediction.mode
+    if mode.solid is None:
+        return None
+    step = si.format_quantity(mode.half_wavelength / 4, _M, 2)
+    likeness = Check(
+        f"Likeness with {mode.label}",
+        "",
+        "1",
+        1.0,
+        (0.95, 1.0),
+        remark="modal assurance criterion; below 0.95 the fit calls it none of the shapes",
+    )
+    return TestStep(
+        "Grid scan",
+        f"At the measured resonance, scan the whole face in steps of {step} or less.",
+        "grid scan",
+        "grid-scan.csv",
+        (likeness,),
+    )
+
+
+def _decay(known: Known) -> TestStep:
+    p = known.prediction
+    quality = _of(known, "quality_factor", "Quality factor", p.mode.quality_factor)
+    ends = None
+    if quality.interval is not None:
+        scale = p.envelope_time_constant / p.mode.quality_factor
+        ends = (quality.interval[0] * scale, quality.interval[1] * scale)
+    tau = Check(
+        "Time constant of the envelope",
+        "",
+        "s",
+        p.envelope_time_constant,
+        ends,
+        quality.level,
+        remark="Q/(π f0), with Q's interval",
+    )
+    return TestStep(
+        "Ring-down",
+        "Drive at the measured resonance, switch the drive off (electrodes shorted, not open), and "
+        "record at the best antinode with 13 samples a period or more.",
+        "ring-down",
+        "ring-down.csv",
+        (quality, tau),
+    )
+
+
+def _voltages(known: Known) -> TestStep | None:
+    p, load, unsure = known.prediction, known.load, known.uncertainty
+    if not p.voltage:
+        return None
+    levels = ", ".join(_volts(share * p.voltage) for share in (SMALL_SIGNAL, 0.3, 0.6, 1.0))
+    per_volt = _of(known, "amplitude_per_volt", "", None).interval
+    ends = None if per_volt is None else (per_volt[0] * p.voltage, per_volt[1] * p.voltage)
+    free = p.mode.amplitude_per_volt * p.voltage
+    level = known.expected[0].level if known.expected else None
+    linear = "linear in the voltage: a plate that softens or warms gives less"
+    checks = [
+        Check(f"Free amplitude at {_volts(p.voltage)}", "", "m", free, ends, level, (), linear)
+    ]
+    if load is not None:
+        said = "zero-to-peak; as described, no interval was computed"
+        checks.append(Check("Drive current", "", "A", load.current, remark=said))
+        checks.append(Check("Drive power", "", "W", load.real_power, remark="without a finger"))
+    if unsure is not None and unsure.power is not None:
+        ends, level = unsure.power_interval, unsure.level
+        checks.append(Check("Power with a finger", "", "W", unsure.power, ends, level))
+    if p.heat is not None:
+        rise, said = p.heat.tracked.temperature_rise, "where the drive follows the resonance"
+        checks.append(Check("Temperature rise", "", "K", rise, remark=said))
+    return TestStep(
+        "Voltage sweeps",
+        f"Repeat the frequency response at {levels} in a mixed order, up and down.",
+        "voltage sweeps",
+        "voltage-sweeps.csv",
+        tuple(checks),
+    )
+
+
+def _strokes(known: Known) -> TestStep:
+    p, unsure = known.prediction, known.uncertainty
+    ends = None if unsure is None else unsure.amplitude_interval
+    if ends is not None and ends[0] == ends[1]:
+        ends = None  # a stator's amplitude is what its description says, and nothing moves it
+    level = None if unsure is None else unsure.level
+    force, speed = si.format_quantity(p.normal_force, si.Unit("N"), 3), 1e3 * p.speed
+    checks = [
+        Check(
+            "Friction coefficient without vibration",
+            "",
+            "1",
+            p.friction_coefficient,
+            remark=f"of '{p.surface.name}', as described",
+        ),
+        Check(
+            "Amplitude at the antinode, finger on",
+            "",
+            "m",
+            p.vibration_amplitude,
+            ends,
+            level,
+            (),
+            "zero-to-peak" if ends is None else _OF_DRAWS,
+        ),
+    ]
+    for one in known.expected:
+        if one.answer == FRICTION:
+            amplitude = one.conditions["vibration_amplitude"]
+            here = math.isclose(amplitude, p.vibration_amplitude, rel_tol=1e-3)
+            what = f"µ′/µ at {si.format_quantity(amplitude, _M, 3)}"
+            value = p.relative_friction if here else p.law.at(amplitude)
+            under = tuple(one.conditions.items())
+            checks.append(Check(what, FRICTION, "1", float(value), one.interval, one.level, under))
+    if not any(one.answer == FRICTION for one in known.expected):
+        ends = None if unsure is None else unsure.interval
+        checks.append(Check("µ′/µ", FRICTION, "1", p.relative_friction, ends, level))
+    return TestStep(
+        "Friction bench",
+        f"Strokes at {speed:.3g} mm/s with {force} on '{p.surface.name}', at these amplitudes "
+        "(with the finger on) and without vibration, in a mixed order, ten strokes each or more.",
+        "friction bench",
+        "friction-bench.csv",
+        tuple(checks),
+    )
+
+
+def ticked(steps: Sequence[TestStep]) -> int:
+    """How many numbers a plan has to tick."""
+    return sum(len(one.checks) for one in steps)

@@ -1,0 +1,136 @@
+"""Which electrode is connected to what: groups in phase and in antiphase, poling, leads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
+from squeezefilm.physics.plate.parts import Footprint, Part, Rectangle, Sector, parts_of
+from squeezefilm.physics.plate.ring.body import ring_body
+
+IN_PHASE, ANTIPHASE, GROUND, OPEN = "A", "B", "ground", "open"
+
+
+@dataclass(frozen=True)
+class Electrode:
+    """The outer electrode of a ceramic, or of a sector of it; it covers all of its footprint.
+
+    `connection` is "A" (driven in phase), "B" (driven in antiphase), "ground", "open" or "shunt n"
+    with its own `shunt_resistance` to ground. `poling` is +1 where the ceramic is poled away from
+    the plate. The bonded side of every ceramic is ground.
+    """
+
+    name: str
+    ceramic: int
+    footprint: Footprint
+    face: str
+    connection: str
+    poling: int
+    thickness: si.Metre
+    shunt_resistance: si.Ohm | None = None
+
+
+def electrodes_of(actuator: Actuator, parts: Sequence[Part] | None = None) -> tuple[Electrode, ...]:
+    """The outer electrodes of an actuator, as the solver has them; `parts` spares computing these.
+
+    A disc with nodal diameters and a stator have sectors of one ceramic that are poled in turn
+    under one connection, which does what sectors poled alike and driven in turn would do. Raises as
+    `parts_of`.
+    """
+    if isinstance(actuator, RectangularPlate):
+        return _of_plate(actuator)
+    ceramic = next(one for one in parts or parts_of(actuator) if one.kind == "ceramic")
+    ring = ceramic.footprint
+    assert isinstance(ring, Sector), "a round body has a round ceramic"
+    return tuple(
+        Electrode(
+            f"E{number}",
+            1,
+            Sector(ring.inner_radius, ring.outer_radius, start, end),
+            "bottom",
+            IN_PHASE,
+            sign,
+            ceramic.thickness,
+        )
+        for number, (start, end, sign) in enumerate(ring_body(actuator).drive.sectors, 1)
+    )
+
+
+def _of_plate(plate: RectangularPlate) -> tuple[Electrode, ...]:
+    found, shunts = [], 0
+    for number, patch in enumerate(plate.patches, 1):
+        connection = IN_PHASE if patch.polarity > 0 else ANTIPHASE
+        if patch.electrode == "shunted":
+            shunts += 1
+            connection = f"shunt {shunts}"
+        elif patch.electrode != "driven":
+            connection = {"shorted": GROUND, "open": OPEN}[patch.electrode]
+        where = Rectangle(patch.x, patch.y, patch.length, patch.width)
+        found.append(
+            Electrode(
+                f"E{number}",
+                number,
+                where,
+                patch.face,
+                connection,
+                patch.poling,
+                patch.thickness,
+                patch.shunt_resistance,
+            )
+        )
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class Lead:
+    """A wire: what it joins, and how many electrodes hang on it."""
+
+    name: str
+    electrodes: tuple[str, ...]
+    to: str
+
+
+def leads_of(electrodes: Sequence[Electrode]) -> tuple[Lead, ...]:
+    """One lead for each connection, and one of the bonded sides, which are ground."""
+    by: dict[str, list[str]] = {}
+    for one in electrodes:
+        if one.connection != OPEN:
+            by.setdefault(one.connection, []).append(one.name)
+    ends = {
+        IN_PHASE: "amplifier output A, +V",
+        ANTIPHASE: "amplifier output B, −V: the same voltage, its sign reversed",
+        GROUND: "ground",
+    }
+    shunts = {
+        one.connection: "ground through "
+        + si.format_quantity(one.shunt_resistance or 0.0, si.Unit("ohm"))
+        for one in electrodes
+        if one.shunt_resistance is not None
+    }
+    found = [Lead(name, tuple(names), (ends | shunts)[name]) for name, names in sorted(by.items())]
+    return (*found, Lead("bonded sides", tuple(one.name for one in electrodes), "ground"))
+
+
+def wiring_said(electrodes: Sequence[Electrode]) -> tuple[str, ...]:
+    """How the electrodes are driven, in sentences."""
+    groups = {one.connection for one in electrodes}
+    said = [
+        "The bonded side of every ceramic is ground. On a substrate that does not conduct, order "
+        "ceramics whose electrode wraps around, or bond a foil under each."
+    ]
+    if {IN_PHASE, ANTIPHASE} <= groups:
+        said.append(
+            "Group B is driven with the same voltage as group A, its sign reversed: two amplifier "
+            "outputs, or a transformer. One output does for both where the ceramics of group B are "
+            "bonded with their poling the other way round; the layout above is not drawn so."
+        )
+    if any(isinstance(one.footprint, Sector) and not one.footprint.is_whole for one in electrodes):
+        said.append(
+            "The sectors are poled in turn and joined to one output. Sectors that are all poled "
+            "alike do the same where neighbours are driven with opposite signs."
+        )
+    if OPEN in groups:
+        said.append("Open electrodes are joined to nothing.")
+    return tuple(said)

@@ -1,0 +1,1 @@
+"""What `film` shows: a map over squeeze number and excursion."""

@@ -1,0 +1,228 @@
+"""The figures of a friction: models side by side, map, what to measure next, ripple."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
+from squeezefilm.core.kit.folder import json_text, write_folder
+from squeezefilm.core.kit.model_looks import look_of
+from squeezefilm.core.kit.numbers import SPEED, M, N, shown
+from squeezefilm.core.kit.page_style import FigureOf, drawn_figures, picture_files
+from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.figure import Figure
+
+    from squeezefilm.design.friction.command import FrictionAnalysis
+    from squeezefilm.physics.chain.friction import FrictionLaw
+    from squeezefilm.physics.chain.prediction import Prediction
+
+_NAMES_OF_PARAMETERS = {
+    "finger.asperities.roughness": "roughness of skin and surface",
+    "finger.asperities.modulus": "modulus of the outermost skin",
+    "finger.asperities.hurst_exponent": "Hurst exponent of the roughness",
+    "finger.asperities.longest_wavelength": "longest wave of the roughness",
+    "finger.asperities.shortest_wavelength": "shortest wave of the roughness",
+    "finger.asperities.reference_gap": "gap of the asperities",
+    "finger.asperities.decay_length": "decay length of the asperities",
+    "finger.plateau_width": "width of a ridge's plateau",
+    "finger.contact_length": "length of the contact",
+    "finger.contact_decay_length": "decay length of the contact's pressure",
+    "finger.decay_speed_exponent": "growth of the decay length with speed",
+    "finger.contact_area_exponent": "growth of the contact with force",
+    "finger.normal_force": "force of the finger",
+    "finger.moisture": "moisture of the finger",
+    "height_law": "law of the heights",
+    "gas.slip": "slip law of the gas",
+    "actuator.quality_factor": "quality factor",
+    "skin_compliance": "softness of the pad",
+}
+
+
+@style.drawn
+def models(result: FrictionAnalysis) -> Figure:
+    """Every model's µ′/µ against amplitude, the working point with its interval."""
+    curves, p, unsure = result.curves, result.prediction, result.uncertainty
+    said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
+    figure = style.new_figure(
+        f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(p.surface.name, 20)} {said}: the "
+        "model decides; two are fitted to measured curves",
+        f"as in the legend; {shown(p.normal_force, N)}",
+        5.4,
+    )
+    axes = figure.subplots()
+    for curve in curves:
+        color, dashes, name = look_of(curve.model)
+        name += f", at {shown(p.speed, SPEED)}" if MODEL_KINDS[curve.model].fitted else ""
+        x, width = 1e6 * curve.amplitude, 2.4 if curve.model == p.model else 1.4
+        axes.plot(x, curve.relative_friction, color=color, ls=dashes, lw=width, label=name)
+    at, words = 1e6 * p.vibration_amplitude, f"{p.relative_friction:.2f}"
+    if unsure is not None:
+        low, high = unsure.interval
+        style.interval(axes, at, low, high)
+        words += f" ({low:.2f}–{high:.2f}, {si.percent(unsure.level)}, median {unsure.median:.2f})"
+    style.mark(axes, at, p.relative_friction, 8, f"this display, {p.model}: {words}")
+    style.friction_axes(axes, 1e6 * float(curves[0].amplitude[-1]))
+    style.legend_below(axes, columns=2)
+    return figure
+
+
+@style.drawn
+def predictions(found: Sequence[Prediction]) -> Figure:
+    """Predicted friction against amplitude: each law, and on it the working points."""
+    first = found[0]
+    said = f"µ′/µ = {first.relative_friction:.2f} at {shown(first.vibration_amplitude, M, 3)}"
+    if len(found) > 1:
+        frictions = [one.relative_friction for one in found]
+        said = f"{len(found)} predictions: µ′/µ from {min(frictions):.2f} to {max(frictions):.2f}"
+    figure = style.new_figure(said, ", ".join(dict.fromkeys(one.model for one in found)), 4.4)
+    axes = figure.subplots()
+    reach: dict[FrictionLaw, float] = {}
+    for one in found:
+        reach[one.law] = max(reach.get(one.law, 0.5e-6), one.vibration_amplitude)
+    for number, (law, highest) in enumerate(reach.items()):
+        color, dashes = style.LINES[number % len(style.LINES)]
+        table = law.table(highest)
+        axes.plot(1e6 * table.amplitude, table.at_speed(law.speed), color=color, ls=dashes)
+    for one in found:
+        style.mark(axes, 1e6 * one.vibration_amplitude, one.relative_friction, 7)
+    style.friction_axes(axes)
+    return figure
+
+
+@style.drawn
+def friction_map(result: FrictionAnalysis) -> Figure:
+    """µ′/µ over amplitude and force, the working point marked."""
+    found, p = result.map, result.prediction
+    figure = style.new_figure(
+        f"µ′/µ is {p.relative_friction:.2f} at {shown(p.vibration_amplitude, M, 3)} and "
+        f"{shown(p.normal_force, N, 3)}; over these ranges it goes from "
+        f"{np.nanmin(found.relative_friction):.2f} to {np.nanmax(found.relative_friction):.2f}",
+        found.model,
+        4.8,
+    )
+    axes = figure.subplots()
+    levels = np.linspace(0, 1, 11)
+    surface = 1e6 * found.amplitude, found.normal_force, found.relative_friction
+    filled = axes.contourf(*surface, levels=levels, cmap="cividis")
+    lines = axes.contour(*surface, levels=levels[1:-1:2], colors=style.PAPER, linewidths=1.0)
+    axes.clabel(lines, fmt=lambda v: f"{v:.1f}", fontsize=9)
+    here = 1e6 * p.vibration_amplitude, p.normal_force
+    style.mark(axes, *here, 9, "this display", color=style.ORANGE, clip_on=True)
+    figure.colorbar(filled, ax=axes, label="relative friction µ′/µ")
+    axes.set(yscale="log", xlabel="vibration amplitude, zero-to-peak (µm)")
+    axes.set(ylabel="normal force (N)")
+    style.plain_log(axes.yaxis)
+    style.legend_below(axes)
+    return figure
+
+
+@style.drawn
+def uncertainty(result: FrictionAnalysis) -> Figure:
+    """Left: how µ′/µ is distributed. Right: which parameter makes it so."""
+    unsure = result.uncertainty
+    assert unsure is not None, "asked without samples"
+    low, high = unsure.interval
+    first = next(one for one in unsure.influences if one.parameter.knowledge == "measurable")
+    figure = style.new_figure(
+        f"{unsure.sentence}; to know it better, measure the {_name(first.parameter.path)}",
+        f"{unsure.model}, {unsure.refused.evaluations} draws",
+        4.8,
+    )
+    left, right = figure.subplots(1, 2, width_ratios=[1, 1.15])
+    left.hist(unsure.samples, bins=24, range=(0, 1), color=style.BLUE, alpha=0.85)
+    left.axvspan(
+        low, high, color=style.BAND, zorder=0, label=f"{si.percent(unsure.level)} interval"
+    )
+    name = f"as described: {unsure.nominal:.2f}"
+    left.axvline(unsure.nominal, color=style.INK, lw=1.6, label=name)
+    name = f"median: {unsure.median:.2f}"
+    left.axvline(unsure.median, color=style.INK, lw=1.6, ls=(0, (4, 2)), label=name)
+    left.set(xlabel="relative friction µ′/µ", ylabel="draws", xlim=(0, 1))
+    style.legend_below(left, columns=1)
+    ranked = unsure.influences[:8][::-1]
+    rows = np.arange(len(ranked))
+    whole = [100 * max(i.total, 0) for i in ranked]
+    errors = [100 * i.total_error for i in ranked]
+    known = [i.parameter.knowledge == "measurable" for i in ranked]
+    for of_group, color, name in (
+        (known, style.BLUE, "could be measured"),
+        ([not one for one in known], style.ORANGE, "nobody knows"),
+    ):
+        here = np.flatnonzero(of_group)
+        look = {**style.BARS, "color": color}
+        right.barh(
+            here,
+            np.take(whole, here),
+            xerr=np.take(errors, here),
+            ecolor=style.MUTED,
+            label=name,
+            **look,
+        )
+    right.set_yticks(rows, [_name(i.parameter.path) for i in ranked])
+    right.set(xlabel="share of the variance of µ′/µ (%)", xlim=(0, None))
+    right.grid(visible=False, axis="y")
+    style.legend_below(right, columns=1)
+    return figure
+
+
+@style.drawn
+def ripple(result: FrictionAnalysis) -> Figure:
+    """The friction as the pad moves along the standing wave, at constant amplitude."""
+    found = result.ripple
+    assert found is not None, "nothing vibrates"
+    half, model = found.half_wavelength, result.prediction.model
+    lifted = MODEL_KINDS[model].friction == "lift"
+    x = np.concatenate([found.position, found.position + half, [2 * half]])
+    y = np.concatenate([found.relative_friction] * 2 + [found.relative_friction[:1]])
+    figure = style.new_figure(
+        f"The wave itself is felt: {100 * found.ripple:.2g} % of ripple every "
+        f"{shown(half, M, 3)} under a contact of {shown(found.contact_length, M, 3)}",
+        f"{model if lifted else 'partial-levitation'}, ridge by ridge",
+        4.0,
+    )
+    axes = figure.subplots()
+    axes.plot(1e3 * x, y, color=style.BLUE, label="relative friction of the whole pad")
+    axes.axhline(found.mean, **style.REFERENCE, label=f"mean {found.mean:.2f}")
+    for node in (0.5 * half, 1.5 * half):
+        name = "nodal lines" if node < half else None
+        axes.axvline(1e3 * node, color=style.INK, lw=0.9, ls=(0, (1, 2)), label=name)
+    axes.set(xlabel="centre of the pad, from an antinode (mm)", ylabel="relative friction µ′/µ")
+    axes.set(xlim=(0, 2e3 * half), ylim=(0, 1.04))
+    style.legend_below(axes)
+    return figure
+
+
+def _name(path: str) -> str:
+    if path.startswith("surfaces."):
+        return "roughness of the surface"
+    return _NAMES_OF_PARAMETERS.get(path, path.split(".", 1)[-1].replace("_", " "))
+
+
+FIGURES = (
+    FigureOf("models", "Friction by every model", models),
+    FigureOf("map", "Friction over amplitude and force", friction_map),
+    FigureOf("uncertainty", "How sure it is", uncertainty, has=lambda one: one.uncertainty),
+    FigureOf("ripple", "The standing wave", ripple, has=lambda one: one.ripple),
+)
+
+
+def write_friction(result: FrictionAnalysis, folder: Path) -> Path:
+    """Write friction.json, and the figures as PNG, into `folder`; the folder."""
+    summary = result.summary()
+    found = result.map
+    summary["map"] = {
+        "vibration_amplitude_m": found.amplitude,
+        "normal_force_N": found.normal_force,
+        "relative_friction": found.relative_friction,
+    }
+    pictures = picture_files(drawn_figures(FIGURES, result, "friction-"))
+    write_folder(folder, {"friction.json": json_text(summary), **pictures})
+    return folder

@@ -1,0 +1,322 @@
+"""What `squeezefilm plate` computes: the modes of a plate in a band, and its harmonic response.
+
+`solve_plate` takes whatever a display has: a rectangle, which is solved here, a disc or a stator.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import re
+from dataclasses import KW_ONLY, dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import called_with
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.hard_limits import NODAL_LINES, require_within
+from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
+from squeezefilm.design.analysis.sound import plate_sound
+from squeezefilm.design.plate.hurry import Hurry
+from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring
+from squeezefilm.design.plate.solved import ModeRow, Remarks, SolvedBody
+from squeezefilm.physics.display import Display, NamedDisplay
+from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.physics.plate.circuit import EquivalentCircuit
+from squeezefilm.physics.plate.elements.nodal_lines import line_distance
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.shear.modes import shear_mode
+from squeezefilm.physics.plate.solid.modes import Label, PlateModes, check_band
+from squeezefilm.physics.plate.solid.resonances import antinode, label_name
+from squeezefilm.physics.plate.solid.response import HarmonicResponse
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.working import SolidMode, response_frequencies, solid_mode
+from squeezefilm.physics.plate.sound import SoundField
+from squeezefilm.physics.plate.working_mode import WorkingMode, solid_working_mode
+from squeezefilm.physics.plausibility.checks import require_plausible
+
+# Estimated error (relative) of the band's modes above which a finer mesh is taken.
+_BESIDE = 3e-3
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PlateAnalysis(SolvedBody):
+    """The solved plate: table of modes, the working mode as every verb has it, its response.
+
+    `solid` is the solved mode behind `mode`, `modes` those of the band, whose table is `rows`;
+    `response` is that of `solid`, at the number of frequencies that was asked for.
+    """
+
+    display: Display
+    plate: RectangularPlate
+    mode: WorkingMode
+    solid: SolidMode
+    working_label: Label
+    modes: PlateModes
+    rows: tuple[ModeRow, ...]
+    working: ModeRow
+    response: HarmonicResponse
+    resonance: int
+    beam_frequency: si.Hertz
+    beam_amplitude_per_volt: si.MetrePerVolt
+    shear_frequency: si.Hertz | None
+    sound: SoundField
+    objections: tuple[str, ...] = ()
+
+    remarks = Remarks(
+        "(estimated)",
+        "largest, upper face",
+        "from the losses of its materials",
+        "loudest direction",
+    )
+
+    @property
+    def largest_per_volt(self) -> si.MetrePerVolt:
+        """See `SolidMode` (m/V)."""
+        return self.solid.largest_per_volt
+
+    @property
+    def circuit(self) -> EquivalentCircuit | None:
+        """See `SolidMode.circuit`."""
+        return self.solid.circuit
+
+    @property
+    def circuit_said(self) -> str:
+        """See `SolidMode.circuit_said`."""
+        return self.solid.circuit_said
+
+    @property
+    def model(self) -> str:
+        """What made the numbers."""
+        return self.modes.model
+
+    @property
+    def status(self) -> str:
+        """How good the table is, in words."""
+        return self.modes.status
+
+    def _particulars(self) -> dict[str, Any]:
+        return {
+            "beam": {
+                "model": "timoshenko_beam_plane_strain",
+                "frequency_Hz": self.beam_frequency,
+                "amplitude_m_per_V": self.beam_amplitude_per_volt,
+            },
+            "shear_plate": None
+            if self.shear_frequency is None
+            else {
+                "model": "shear_plate",
+                "frequency_Hz": self.shear_frequency,
+                "error_against_solid": self.shear_frequency / self.working.frequency - 1,
+            },
+        }
+
+
+def parse_mode(text: str) -> tuple[int, int]:
+    """The label of a mode from text such as ``"8,0"``. Raises `InputError` for anything else."""
+    parts = text.strip("() ").split(",")
+    if len(parts) == 2 and all(re.fullmatch(r"\s*[0-9]{1,9}\s*", part) for part in parts):
+        label = int(parts[0]), int(parts[1])
+        for lines in label:
+            require_within(NODAL_LINES, max(lines, NODAL_LINES.least), "mode")
+        return label
+    raise InputError(f"mode '{text}' is no mode; write nodal lines across length, width: 8,0")
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class PlateRequest:
+    """What `solve_plate` is asked for."""
+
+    display: NamedDisplay
+    _: KW_ONLY
+    mode: tuple[int, int] | None = None
+    band: tuple[si.Hertz, si.Hertz] | None = None
+    points: int = 200
+    progress: SayProgress | None = None
+    budget: si.Second | None = None
+
+
+@called_with(PlateRequest)
+def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
+    """The modes of a display's plate in a band, and the response around the working mode.
+
+    `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. The mode and
+    its response are those of `solid_mode`, which every other verb reads too. Within a `budget` (s)
+    meshes are left coarser, with larger errors, and the other modes of the band left out, as time
+    asks.
+
+    Raises `InputError` for a display without a rectangular plate or one that cannot be right (see
+    `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and what `solve_modes`
+    raises: a band with no mode, a mode that is not found.
+    """
+    display, band = asked.display, asked.band
+    plate = _driven_plate(display)
+    if band is not None:
+        check_band(band)
+    tell = asked.progress or (lambda _: None)
+    label = asked.mode or plate.working_label
+    found = solved_plate(plate, label, band, _Teller(asked.budget, tell))
+    solid = found.solid
+    response, at = _resampled(solid, asked.points)
+    tell("airborne sound")
+    return PlateAnalysis(
+        display=display,
+        plate=plate,
+        mode=solid_working_mode(plate, solid, label),
+        solid=solid,
+        working_label=label,
+        modes=found.modes,
+        rows=tuple(mode_row(found.modes, index) for index in range(found.modes.count)),
+        working=dataclasses.replace(
+            mode_row(solid.modes, solid.index), alone_per_volt=solid.alone_per_volt
+        ),
+        response=response,
+        resonance=at,
+        beam_frequency=found.beam.mode.frequency,
+        beam_amplitude_per_volt=found.beam.amplitude_per_volt,
+        shear_frequency=found.shear_frequency,
+        sound=plate_sound(response, at, solid.frequency, display.drive.voltage),
+        objections=(*require_plausible(display), *found.left_out),
+    )
+
+
+def _resampled(solid: SolidMode, points: int) -> tuple[HarmonicResponse, int]:
+    """A mode's response at so many frequencies, its resonance among them; and which that is."""
+    if points == solid.response.frequencies.size:
+        return solid.response, solid.resonance
+    top = float(solid.response.frequencies[solid.resonance])
+    asked = response_frequencies(solid.frequency, solid.quality_factor, points)
+    known = solid.response.frequencies[[0, -1]]
+    frequencies = np.union1d(np.clip(asked, *known), top)
+    return solid.response.at(frequencies), int(np.searchsorted(frequencies, top))
+
+
+@dataclass(frozen=True)
+class _Teller:
+    """A budget (s), which the answer depends on, and who is told, which it does not."""
+
+    budget: si.Second | None
+    tell: SayProgress = field(compare=False)
+
+
+class SolvedPlate(NamedTuple):
+    """What a plate's analysis knows of the plate alone, whatever drives it and by which voltage."""
+
+    solid: SolidMode
+    modes: PlateModes
+    beam: BeamResponse
+    shear_frequency: si.Hertz | None
+    left_out: tuple[str, ...]
+
+
+# A sweep over voltage asks the same plate at every point; one keeps 10 to 100 MB.
+@functools.lru_cache(maxsize=2)
+def solved_plate(
+    plate: RectangularPlate,
+    label: Label,
+    band: tuple[si.Hertz, si.Hertz] | None,
+    teller: _Teller,
+) -> SolvedPlate:
+    """The solves behind `analyze_plate`; those of the last two plates are kept."""
+    tell, hurry = teller.tell, Hurry.of(plate, label, Pace(teller.budget))
+    tell(f"mode ({label[0]},{label[1]}) and its response")
+    solid = solid_mode(plate, label, pace=Pace(teller.budget, said_with_time_left(tell)))
+    frequency, modes = solid.frequency, solid.modes
+    wanted = band or (0.92 * frequency, 1.08 * frequency)
+    if hurry.allows_band(plate, wanted):
+        tell("all modes in the band")
+        shares = said_with_time_left(tell)
+        modes = solve_modes(
+            plate, band=wanted, tolerance=_BESIDE, deadline=hurry.whole, progress=shares
+        )
+    return SolvedPlate(
+        solid,
+        modes,
+        beam_response(plate),
+        _shear_frequency(plate, label, frequency),
+        hurry.left_out(solid.modes, modes),
+    )
+
+
+@reads_text
+@called_with(PlateRequest)
+def solve_plate(asked: PlateRequest) -> PlateAnalysis | RingAnalysis:
+    """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's
+    response at `points` frequencies.
+
+    Arguments and errors are those of `analyze_plate` and `analyze_ring`.
+    """
+    given, actuator = dict(vars(asked)), asked.display.actuator
+    require_plausible(asked.display)
+    if isinstance(actuator, RectangularPlate):
+        return analyze_plate(**given)
+    pace = Pace(given.pop("budget"))
+    return analyze_ring(**given, pace=pace)
+
+
+def _driven_plate(display: Display) -> RectangularPlate:
+    """The display's rectangular plate, refused where it has none, or one that nothing drives."""
+    plate = display.actuator
+    if not isinstance(plate, RectangularPlate):
+        raise InputError(
+            f"display '{display.name}' has a {plate.type} and no rectangular plate; analyze_ring "
+            "solves discs and stators"
+        )
+    if not any(patch.electrode == "driven" for patch in plate.patches):
+        raise InputError(
+            "no electrode is driven; give at least one patch electrode = 'driven'",
+            quantity="patches",
+        )
+    return plate
+
+
+def _shear_frequency(
+    plate: RectangularPlate, label: tuple[int, int], near: si.Hertz
+) -> si.Hertz | None:
+    """The same mode by the screening model; None where it has no such mode nearby."""
+    try:
+        return shear_mode(plate, label, near).frequency
+    except InputError:
+        return None
+
+
+def mode_row(modes: PlateModes, index: int) -> ModeRow:
+    """One line of the table of modes: that of the mode number `index` of a solved plate."""
+    label, frequency = modes.labels[index], float(modes.frequencies[index])
+    quality, force = float(modes.quality_factors[index]), float(modes.drive_forces[index])
+    shape, nodes = modes.shapes[index], modes.nodal_positions(index)
+    answer = quality * abs(force) / (2 * np.pi * frequency) ** 2
+    return ModeRow(
+        label=label_name(label),
+        frequency=frequency,
+        frequency_error=float(modes.errors[index]),
+        quality_factor=quality,
+        alone_per_volt=answer * antinode(shape, label),
+        coupling_coefficient=float(modes.couplings[index]),
+        coupling_coefficient_error=float(modes.coupling_errors[index]),
+        parallel_resonance_frequency=float(modes.open_frequencies[index]),
+        parallel_resonance_frequency_error=float(modes.open_errors[index]),
+        modal_force=force,
+        half_wavelength=line_distance(nodes) if nodes.size >= 2 else None,
+    )
+
+
+def parse_band(text: str) -> tuple[si.Hertz, si.Hertz]:
+    """A band from text such as ``"25 kHz..45 kHz"`` (or with a colon between). Raises `InputError`
+    for anything else."""
+    from squeezefilm.core.quantities import parse_quantity
+
+    parts = text.split(".." if ".." in text else ":")
+    if len(parts) != 2:
+        raise InputError(f"band '{text}' is no band; write two frequencies: 25 kHz..45 kHz")
+    low, high = (parse_quantity(part.strip(), si.Unit("Hz")) for part in parts)
+    if low >= high:
+        raise InputError(
+            f"band runs from {si.format_quantity(low, si.Unit('Hz'))} down to "
+            f"{si.format_quantity(high, si.Unit('Hz'))}; write the lower frequency first"
+        )
+    return low, high

@@ -1,0 +1,239 @@
+"""Driven modes as they are listed: beside their neighbours, with what to write to choose one."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.plate.elements.nodal_lines import profiles
+from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
+from squeezefilm.physics.plate.solid.resonances import DrivenMode, Moving, strongest_neighbour
+from squeezefilm.physics.plate.solid.screening import SCREENING_ERROR, symmetry_in_words
+from squeezefilm.physics.plate.working_mode import CROWDED, WorkingMode
+
+_HZ, _PER_VOLT = si.Unit("Hz"), si.Unit("m/V")
+
+HEARING: si.Hertz = 20e3
+"""Below it people hear a plate; the young and animals somewhat above it too."""
+
+SAME_LABEL: si.Dimensionless = 0.1
+"""Two modes of one label are worth telling apart if the weaker has this share of the stronger."""
+
+DRIVEN_SHARE: si.Dimensionless = 1e-3
+"""Share of the strongest mode's amplitude per volt below which a mode counts as not driven."""
+
+# A product of one profile along and one across makes this share of a shape with straight lines.
+_STRAIGHT = 0.6
+
+
+@dataclass(frozen=True)
+class ListedMode:
+    """One driven mode: its label, frequency, Q and amplitude per volt on the drive at resonance.
+
+    `alone_per_volt` is at its antinode, of this mode alone, zero to peak, without a finger.
+    `neighbour` is the mode that adds most at this one's resonance, `neighbour_distance` how far it
+    lies in half-bandwidths f/2Q of its own, `neighbour_share` how much it adds, over this mode's
+    amplitude. `unique` is whether no other mode of the list with at least a tenth of its amplitude
+    has the label. `straightness` is the share of the shape that has straight nodal lines, `choice`
+    what to write into the display's file to work in this mode; None where there is no such thing. A
+    mode is `perhaps_audible` where the error of its frequency reaches into the hearing range.
+    """
+
+    label: str
+    frequency: si.Hertz
+    quality_factor: si.Dimensionless
+    alone_per_volt: si.MetrePerVolt
+    symmetry: str
+    audible: bool
+    neighbour: str | None = None
+    neighbour_distance: si.Dimensionless | None = None
+    neighbour_share: si.Dimensionless = 0.0
+    unique: bool = True
+    straightness: si.Dimensionless | None = None
+    choice: str | None = None
+    perhaps_audible: bool = False
+
+    @property
+    def half_bandwidth(self) -> si.Hertz:
+        """f/2Q: so far from resonance the amplitude is down to 71 %."""
+        return self.frequency / (2 * self.quality_factor)
+
+    @property
+    def crowded(self) -> bool:
+        """Whether a neighbour takes part in what moves at this mode's resonance."""
+        return self.neighbour_share >= CROWDED
+
+    @property
+    def hidden(self) -> bool:
+        """Whether a neighbour moves more than this mode does at its own resonance."""
+        return self.neighbour_share >= 1
+
+
+@dataclass(frozen=True)
+class Suggestion:
+    """What to write into the display's file, and why; `mode` is None where nothing fits."""
+
+    mode: ListedMode | None
+    text: str
+
+
+def listed_mode(mode: DrivenMode) -> ListedMode:
+    """A screened mode as it is listed, its neighbours not looked at yet."""
+    return ListedMode(
+        label=mode.name,
+        frequency=mode.frequency,
+        quality_factor=mode.quality_factor,
+        alone_per_volt=mode.alone_per_volt,
+        symmetry=symmetry_in_words(mode.parity),
+        audible=mode.frequency < HEARING,
+        straightness=mode.straightness,
+        choice=_choice(mode.label),
+        # Screened frequencies are too high if anything.
+        perhaps_audible=HEARING <= mode.frequency < HEARING * (1 + SCREENING_ERROR),
+    )
+
+
+def with_working_mode(
+    modes: Sequence[ListedMode], working: WorkingMode, plate: RectangularPlate
+) -> tuple[tuple[ListedMode, ...], ListedMode]:
+    """Screened modes with a display's own as it was solved in place of what screening has of it;
+    and that one.
+
+    The one replaced is of those with its label, or else of all, the nearest in frequency, as far as
+    screening lies off; where none is so near the solved mode is added.
+    """
+    solid, frequency = working.solid, working.resonance_frequency
+    assert solid is not None
+    row = ListedMode(
+        label=working.label,
+        frequency=frequency,
+        quality_factor=working.quality_factor,
+        alone_per_volt=solid.alone_per_volt,
+        symmetry=symmetry_in_words(solid.modes.parities[solid.index]),
+        audible=frequency < HEARING,
+        straightness=profiles(solid.modes.shapes[solid.index])[2],
+        choice=_choice(plate.working_label),
+    )
+    near = [mode for mode in modes if abs(mode.frequency / frequency - 1) < 1.2 * SCREENING_ERROR]
+    same = [mode for mode in near if mode.label == row.label] or near
+    screened = min(same, key=lambda mode: abs(mode.frequency - frequency), default=None)
+    others = [mode for mode in modes if mode is not screened]
+    listed = with_neighbours(sorted([*others, row], key=lambda mode: mode.frequency))
+    beside = working.neighbour
+    own = next(mode for mode in listed if mode.frequency == frequency)
+    if beside is None:
+        return listed, own
+    told = dataclasses.replace(
+        own,
+        neighbour=beside.name,
+        neighbour_distance=beside.distance,
+        neighbour_share=beside.share,
+    )
+    return tuple(told if mode is own else mode for mode in listed), told
+
+
+def _choice(label: tuple[int, int] | None) -> str | None:
+    """What to write to work in a mode: only lines across one side can be asked for."""
+    if label is None or min(label) > 0 or max(label) < 2:
+        return None
+    if label[1] == 0:
+        return f"nodal_lines = {label[0]}"
+    return f'nodal_lines = {label[1]}, lines_across = "width"'
+
+
+def with_neighbours(modes: Sequence[ListedMode]) -> tuple[ListedMode, ...]:
+    """Modes with what each has for its neighbour, and whether its label is its own."""
+    return tuple(_beside(mode, [other for other in modes if other is not mode]) for mode in modes)
+
+
+def _beside(mode: ListedMode, others: Sequence[ListedMode]) -> ListedMode:
+    found = strongest_neighbour(_moving(mode), map(_moving, others))
+    if found is None:
+        return mode
+    same = [other for other in others if other.label == mode.label != "in plane"]
+    return dataclasses.replace(
+        mode,
+        neighbour=found.name,
+        neighbour_distance=found.distance,
+        neighbour_share=found.share,
+        unique=all(other.alone_per_volt < SAME_LABEL * mode.alone_per_volt for other in same),
+    )
+
+
+def _moving(mode: ListedMode) -> Moving:
+    return Moving(mode.label, mode.frequency, mode.half_bandwidth, mode.alone_per_volt)
+
+
+def shown_frequency(mode: ListedMode) -> str:
+    """A screened frequency in as many digits as it has."""
+    return si.format_quantity(mode.frequency, _HZ, 3)
+
+
+def chosen(
+    modes: Sequence[ListedMode], label: str, near: si.Hertz | None = None
+) -> ListedMode | None:
+    """Of the modes with a label the one nearest to a frequency (Hz), without one the strongest."""
+    found = [mode for mode in modes if mode.label == label]
+    if near is not None:
+        return min(found, key=lambda mode: abs(mode.frequency - near), default=None)
+    return max(found, key=lambda mode: mode.alone_per_volt, default=None)
+
+
+def wanted_frequency(actuator: Actuator) -> si.Hertz | None:
+    """The frequency (Hz) at which a described plate asks for its mode, where it does."""
+    return actuator.working_frequency if isinstance(actuator, RectangularPlate) else None
+
+
+def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) -> Suggestion:
+    """The mode to work in: of those that are driven (`DRIVEN_SHARE`), can be asked for, are
+    inaudible and have straight nodal lines, the one that moves most when what its neighbours take
+    part with is held against it.
+
+    `described` is the mode that the display's file asks for: then there is nothing to write."""
+    strongest = max((mode.alone_per_volt for mode in modes), default=0.0)
+    able = [
+        mode
+        for mode in modes
+        if mode.alone_per_volt >= DRIVEN_SHARE * strongest > 0
+        and mode.choice is not None
+        and not (mode.audible or mode.perhaps_audible)
+        and (mode.straightness is None or mode.straightness >= _STRAIGHT)
+    ]
+    if not able:
+        return Suggestion(
+            None,
+            "No driven mode in this band is surely above the hearing range and has straight nodal "
+            "lines across one side only, so that none can be suggested: look in a wider band "
+            "(band), or change the ceramics' polarity, place or size.",
+        )
+    best = max(able, key=lambda mode: mode.alone_per_volt / (1 + 4 * mode.neighbour_share))
+    straight = "" if best.straightness is None else ", its nodal lines cross one side only"
+    others = (
+        f", and of {len(able)} such modes it moves most, counting against it what neighbours add"
+        if len(able) > 1
+        else ", the only such mode here"
+    )
+    if best is described:
+        write = f"Keep {best.choice}, as described"
+    else:
+        alone = "" if best.unique else f', working_frequency = "{shown_frequency(best)}"'
+        write = f"Write {best.choice}{alone}"
+    said = (
+        f"{write}: at {shown_frequency(best)} {best.label} is above the hearing range"
+        f"{straight}{others} ({si.format_quantity(best.alone_per_volt, _PER_VOLT, 3)} at an "
+        "antinode"
+    )
+    if best.neighbour is not None and best.neighbour_distance is not None:
+        said += (
+            f"; {best.neighbour} lies {best.neighbour_distance:.3g} half-bandwidths away and adds "
+            f"{100 * best.neighbour_share:.2g} % of that"
+        )
+    said += ")."
+    if best.crowded:
+        said += (
+            " It is crowded all the same: what moves at its resonance is partly the other mode. "
+            "Other ceramics or another size of the plate may part them."
+        )
+    return Suggestion(best, said)

@@ -1,0 +1,251 @@
+"""The driven modes of a display in the terminal, and as figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
+from squeezefilm.core.kit.folder import json_text, write_folder
+from squeezefilm.core.kit.numbers import HZ, shown
+from squeezefilm.core.kit.page_style import FigureOf, drawn_figures, picture_files
+from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
+from squeezefilm.design.plate.listed_modes import HEARING
+from squeezefilm.physics.chain.pad_place import place_words
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from matplotlib.figure import Figure
+    from rich.console import Console
+
+    from squeezefilm.design.plate.listed_modes import ListedMode
+    from squeezefilm.design.plate.modes import ModeList
+    from squeezefilm.design.plate.ring_pair import RingPair
+    from squeezefilm.physics.plate.working_mode import WorkingMode
+
+_PER_VOLT, _SPEED = si.Unit("m/V"), si.Unit("m/s")
+_HEAD = ("mode", "frequency", "per volt", "neighbour", "away", "adds", "")
+# So many shapes are drawn: those that move most.
+_SHAPES = 12
+# So many labels have room side by side; between two, the higher mode gets its own.
+_LABELS = 30
+
+
+def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
+    """One row a mode: label, frequency, amplitude per volt at an antinode, the neighbour that
+    counts most, its distance in half-bandwidths, what it adds, and remarks."""
+    working = result.working_mode
+    rows: list[tuple[str, ...]] = []
+    for mode in result.modes:
+        far = mode.neighbour_distance
+        rows.append(
+            (
+                ("→ " if mode is working else "  ") + mode.label,
+                shown(mode.frequency, HZ, 4),
+                shown(mode.alone_per_volt, _PER_VOLT, 3),
+                mode.neighbour or "",
+                "" if far is None else f"{far:.3g}",
+                "" if far is None else _percent(mode.neighbour_share),
+                ", ".join(_remarks(mode)),
+            )
+        )
+    return rows
+
+
+def _remarks(mode: ListedMode) -> Iterator[str]:
+    if mode.audible:
+        yield "audible"
+    if mode.perhaps_audible:
+        yield "perhaps audible"
+    if mode.hidden:
+        yield "hidden"
+    elif mode.crowded:
+        yield "crowded"
+    if not mode.unique:
+        yield "label not unique"
+    if mode.choice is not None:
+        yield mode.choice
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} %" if share < 0.995 else f"{100 * share:.0f} %"
+
+
+def mode_list_sentences(result: ModeList) -> list[tuple[str, str, str]]:
+    """What to know beside the table: a word for the kind, the sentence, a style."""
+    said = [("symmetry", rule, "cyan") for rule in result.rules]
+    own = result.working_mode
+    if result.forbidden is not None:
+        text = f"The display asks for {result.working}, and {result.forbidden}."
+        said.append(("doubt", text, "yellow"))
+    elif own is None:
+        text = (
+            f"The display's mode {result.working} is not in this list: it lies outside of the "
+            "band, is hardly driven, or its nodal lines are so bent that it has another label."
+        )
+        said.append(("doubt", text, "yellow"))
+    elif not own.unique:
+        text = (
+            f"More than one mode is labelled {own.label}. To say which is meant, write "
+            "working_frequency beside nodal_lines; without it the most strongly driven is taken."
+        )
+        said.append(("doubt", text, "yellow"))
+    said.append(("suggested", result.suggestion.text, "green"))
+    return said
+
+
+def show_mode_list(result: ModeList) -> None:
+    """Print the driven modes of a display, and what follows for the choice of one."""
+    console = plain_console()
+    display, (low, high) = result.display, result.band
+    heading(console, f"{display.title} [{display.name}]")
+    console.print(
+        f"Driven modes: {len(result.modes)}, from {shown(low, HZ)} to {shown(high, HZ)}; amplitude "
+        "of each alone, zero to peak, at its antinode, at resonance, without a finger"
+    )
+    rows = mode_list_rows(result)
+    table(console, _HEAD, rows, fixed=range(len(_HEAD) - 1))
+    console.print(
+        "→ is the display's mode. The neighbour is the mode that counts most at this one's "
+        "resonance: how many half-bandwidths (its f/2Q) it is away, and how much it adds to the "
+        "amplitude there. From 20 % on a mode is crowded, from 100 % on hidden."
+    )
+    if result.solved is not None:
+        console.print(_solved_said(result.solved))
+    bullets(console, mode_list_sentences(result))
+    if result.pair is not None:
+        show_pair(console, result.pair)
+    console.print(
+        f"{result.model}; frequencies "
+        + (
+            f"up to {100 * result.frequency_error:.2g} % high, so that the list reaches as far "
+            "above the band; the display's own mode is solved, mostly to 0.3 %"
+            if result.screened
+            else f"within {100 * result.frequency_error:.2g} % (estimated)"
+        )
+    )
+
+
+def _solved_said(mode: WorkingMode) -> str:
+    """The display's own mode with all others in, as every other verb has it."""
+    return (
+        f"{mode.label} with the contribution of all other modes: "
+        f"{shown(mode.amplitude_per_volt, _PER_VOLT)} at its antinode ({place_words(mode.lobe)}); "
+        "squeezefilm plate and analyze give the same."
+    )
+
+
+def pair_rows(pair: RingPair) -> list[tuple[str, str, str, str]]:
+    """How far a pair is apart, and the worst that follows: ratio, share, speed of the crests."""
+    return [
+        (
+            f"{shown(at.split, HZ, 3)} ({at.half_bandwidths:.3g} half-bandwidths)",
+            "stands" if at.standing_wave_ratio is None else f"{at.standing_wave_ratio:.3g}",
+            f"{100 * at.travelling:.2g} %",
+            shown(at.crest_speed, _SPEED, 2),
+        )
+        for at in (*pair.splits, *(() if pair.measured is None else (pair.measured,)))
+    ]
+
+
+def show_pair(console: Console, pair: RingPair) -> None:
+    """Print what one channel makes of a ring's pair of modes."""
+    heading(console, f"One channel on the pair {pair.label}")
+    bullets(console, [("–", sentence, "cyan") for sentence in pair.sentences])
+    table(
+        console,
+        ("pair apart by", "standing-wave ratio", "travels", "along the ring at crests"),
+        pair_rows(pair),
+    )
+
+
+@style.drawn
+def spectrum(result: ModeList) -> Figure:
+    """Amplitude per volt of every driven mode over frequency; the display's own and the suggested
+    one marked."""
+    own, best = result.working_mode, result.suggestion.mode
+    said = f"{len(result.modes)} driven modes"
+    if own is not None:
+        said += f"; {own.label} at {own.frequency / 1e3:.2f} kHz is the display's"
+    if best is not None and best is not own:
+        said += f", {best.label} at {best.frequency / 1e3:.2f} kHz is suggested"
+    figure = style.new_figure(said, f"{result.model}; each mode alone, at its antinode", 4.4)
+    axes = figure.subplots()
+    f = np.array([mode.frequency for mode in result.modes]) / 1e3
+    per_volt = np.array([mode.alone_per_volt for mode in result.modes]) * 1e9
+    floor = 0.5 * float(per_volt.min())
+    low, high = result.band[0] / 1e3, max(result.band[1] / 1e3, 1.02 * float(f.max()))
+    if low < HEARING / 1e3:
+        axes.axvspan(low, min(HEARING / 1e3, high), color=style.BAND, lw=0, label="audible")
+    axes.vlines(f, floor, per_volt, color=style.MUTED, lw=1.2)
+    axes.plot(f, per_volt, "o", color=style.MUTED, ms=4)
+    marked = (
+        [(own, style.BLUE, "the display's mode, which is the one suggested")]
+        if own is best
+        else [(own, style.BLUE, "the display's mode"), (best, style.ORANGE, "suggested")]
+    )
+    for mode, color, name in marked:
+        if mode is not None:
+            at = mode.frequency / 1e3, mode.alone_per_volt * 1e9
+            axes.vlines(at[0], floor, at[1], color=color, lw=2.2)
+            axes.plot(*at, "o", color=color, ms=8, label=name, mec=style.PAPER)
+    room = (high - low) / _LABELS
+    for mode in result.modes:
+        beside = np.abs(f - mode.frequency / 1e3) < room
+        highest = mode.alone_per_volt * 1e9 >= per_volt[beside].max()
+        if highest and mode.alone_per_volt * 1e9 > 0.05 * per_volt.max():
+            at = mode.frequency / 1e3, mode.alone_per_volt * 1e9
+            axes.annotate(mode.label, at, (0, 6), textcoords="offset points", **style.SLANTED)
+    axes.set(xlabel="frequency (kHz)", ylabel="amplitude (nm/V)", xlim=(low, high), yscale="log")
+    axes.set_ylim(floor, 4 * float(per_volt.max()))
+    style.plain_log(axes.yaxis)
+    style.legend_below(axes, columns=3, gap=0.2)
+    return figure
+
+
+@style.drawn
+def shapes(result: ModeList) -> Figure:
+    """The modes of a plate that move most, from above, in the order of frequency."""
+    strongest = sorted(result.screened, key=lambda mode: -mode.alone_per_volt)[:_SHAPES]
+    chosen = sorted(strongest, key=lambda mode: mode.frequency)
+    columns = 4
+    rows = -(-len(chosen) // columns)
+    figure = style.new_figure(
+        f"The {len(chosen)} modes that move most, from above",
+        f"{result.model}; up and down in two colours, each mode to its own scale",
+        1.0 + 1.7 * rows,
+    )
+    grid = figure.subplots(rows, columns, squeeze=False)
+    extent = [1e3 * side for side in result.display.actuator.extent]
+    for number, axes in enumerate(grid.ravel()):
+        axes.set_axis_off()
+        if number >= len(chosen):
+            continue
+        mode = chosen[number]
+        x = np.linspace(0, extent[0], mode.shape.shape[0])
+        y = np.linspace(0, extent[1], mode.shape.shape[1])
+        axes.contourf(x, y, mode.shape.T, [-1.01, 0, 1.01], colors=[style.MINUS, style.PLUS])
+        axes.contour(x, y, mode.shape.T, [-0.5, 0.5], colors=style.MUTED, linewidths=0.6)
+        axes.contour(x, y, mode.shape.T, [0], colors=style.INK, linewidths=0.9)
+        per_volt = shown(mode.alone_per_volt, _PER_VOLT, 3)
+        axes.set_title(f"{mode.name}  {mode.frequency / 1e3:.2f} kHz\n{per_volt}", fontsize=9)
+        axes.set(aspect="equal")
+    return figure
+
+
+FIGURES = (
+    FigureOf("spectrum", "Driven modes", spectrum, has=lambda one: one.modes),
+    FigureOf("shapes", "Shapes", shapes, has=lambda one: one.screened),
+)
+
+
+def write_modes(result: ModeList, folder: Path) -> Path:
+    """Write modes.json and one PNG a figure into a folder; the folder."""
+    files = picture_files(drawn_figures(FIGURES, result))
+    files["modes.json"] = json_text(result.summary())
+    write_folder(folder, files)
+    return folder

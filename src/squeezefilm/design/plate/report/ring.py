@@ -1,0 +1,183 @@
+"""The figures of a solved disc or stator: shape in plan, scan, frequency response, admittance."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
+from squeezefilm.core.kit.numbers import HZ, M, printable, shown
+from squeezefilm.core.kit.page_style import FigureOf
+from squeezefilm.design.analysis.report.layout_figures import FILL, draw_sector
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.design.plate.ring import RingAnalysis
+
+
+@style.drawn
+def shape(result: RingAnalysis) -> Figure:
+    """The mode from above with its nodal lines and circles, beside the poling of the sectors."""
+    mode, at = result.annular, result.resonance
+    size = 1e9 * result.largest_per_volt
+    where = f"nodal lines {shown(mode.half_wavelength or 0.0, M)} apart on the mean circumference"
+    if not mode.harmonic:
+        radii = ", ".join(shown(float(r), M, 3) for r in result.circles)
+        where = f"nodal circle at a radius of {radii}" if radii else "no nodal line"
+    figure = style.new_figure(
+        f"Mode {result.working.label} at {result.working.frequency / 1e3:.2f} kHz moves up to "
+        f"{size:.0f} nm per volt; {where}",
+        f"{result.model}, channel driven at resonance",
+        5.4,
+    )
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    r = result.response.radius
+    theta = np.linspace(0, 2 * np.pi, max(181, 24 * mode.harmonic) | 1)
+    radial = _standing(result.response.motion[at])
+    # Turned to where the channel moves it most: cos m(θ − θ0).
+    w = 1e9 * radial[:, None] * np.cos(mode.harmonic * theta - _turn(result))[None, :]
+    x, y = 1e3 * r[:, None] * np.cos(theta), 1e3 * r[:, None] * np.sin(theta)
+    style.motion_field(left, x, y, w, label="per volt (nm/V)", location="bottom", shrink=0.75)
+    left.set_title("touched face; nodal lines in black")
+    _sectors(right, result)
+    outer = 1e3 * max(layer.outer_radius for layer in result.body.section.layers)
+    for axes in (left, right):
+        axes.set(xlim=(-1.05 * outer, 1.05 * outer), ylim=(-1.05 * outer, 1.05 * outer))
+        axes.set(aspect="equal", xlabel="x (mm)")
+        axes.grid(visible=False)
+    left.set(ylabel="y (mm)")
+    return figure
+
+
+def _standing(motion: np.ndarray) -> np.ndarray:
+    """Complex motion turned to the phase of its largest point: what stands there moves along."""
+    peak = motion[int(np.argmax(np.abs(motion)))]
+    return np.asarray((motion * np.conj(peak) / np.abs(peak)).real)
+
+
+def _turn(result: RingAnalysis) -> float:
+    """mθ0 of the mode that the channel moves."""
+    coefficient = result.body.drive.coefficient(result.annular.harmonic)
+    return -math.atan2(coefficient.imag, coefficient.real)
+
+
+def _sectors(axes: Axes, result: RingAnalysis) -> None:
+    """The ceramic from above with its poled sectors, over the outline of the body."""
+    from matplotlib.patches import Circle, Patch, Wedge
+
+    layers = result.body.section.layers
+    outer = 1e3 * max(layer.outer_radius for layer in layers)
+    inner = 1e3 * min(layer.inner_radius for layer in layers)
+    ceramic = next(layer for layer in layers if layer.solid.piezoelectric)
+    edge, width = 1e3 * ceramic.outer_radius, 1e3 * (ceramic.outer_radius - ceramic.inner_radius)
+    whole = result.body.drive.angle > 2 * np.pi - 1e-9 and len(result.body.drive.sectors) == 1
+    unused: dict[str, Any] = {"facecolor": "none", "edgecolor": style.MUTED}
+    if not whole:
+        axes.add_patch(Wedge((0, 0), edge, 0, 360, width=width, lw=0.8, **unused))
+    for start, end, sign in result.body.drive.sectors:
+        draw_sector(axes, edge, width, (math.degrees(start), math.degrees(end)), sign)
+        middle, place = (start + end) / 2, 0.0 if whole and inner == 0 else edge - width / 2
+        x, y = place * math.cos(middle), place * math.sin(middle)
+        axes.text(x, y, "+" if sign > 0 else "−", ha="center", va="center", fontsize=11)
+    for radius in {outer, inner} - {0.0}:
+        axes.add_patch(Circle((0, 0), radius, fill=False, ec=style.INK, lw=1))
+    axes.set_title("ceramic below, seen through the body")
+    handles = [
+        Patch(facecolor=style.PLUS, edgecolor=style.INK, label="driven, poled up"),
+        Patch(facecolor=style.MINUS, edgecolor=style.INK, label="driven, poled down"),
+        Patch(**unused, label="not on this channel"),
+    ]
+    style.legend_below(axes, handles=handles[:1] if whole else handles)
+
+
+@style.drawn
+def scan(result: RingAnalysis) -> Figure:
+    """The driven shape around the mean circumference and along a radius; without nodal diameters
+    along a diameter."""
+    m, model = result.annular.harmonic, f"{result.model}, channel driven at resonance"
+    radial = 1e9 * _standing(result.response.motion[result.resonance])
+    mean = result.scan_radius
+    if m:
+        title = (
+            f"{m} waves stand around the mean circumference of {shown(2 * math.pi * mean, M)}: "
+            f"{abs(float(np.interp(mean, result.response.radius, radial))):.0f} nm per volt at "
+            "their antinodes"
+        )
+        figure = style.new_figure(title, model, 5.6)
+        above, below = figure.subplots(2, 1)
+        _around(above, result, float(np.interp(mean, result.response.radius, radial)))
+    else:
+        title = (
+            f"Along a diameter {result.working.label} moves {abs(radial[0]):.0f} nm per volt in "
+            f"the middle and {abs(radial[-1]):.0f} at the rim"
+        )
+        figure = style.new_figure(title, model, 4.2)
+        below = figure.subplots()
+    r = 1e3 * result.response.radius
+    below.plot(r, radial, color=style.BLUE, label="at the angle of an antinode" if m else None)
+    if not m:
+        below.plot(-r, radial, color=style.BLUE)
+    below.axhline(0, **style.ZERO)
+    for number, circle in enumerate(result.circles):
+        for side in (1,) if m else (1, -1):
+            name = "nodal circle" if number == 0 and side == 1 else None
+            dashed = {"color": style.ORANGE, "lw": 1.2, "ls": (0, (4, 2))}
+            below.axvline(side * 1e3 * float(circle), **dashed, label=name)
+    below.set(xlabel="radius (mm)" if m else "along a diameter (mm)", ylabel="per volt (nm/V)")
+    below.set_xlim(r[0] if m else -r[-1], r[-1])
+    if below.get_legend_handles_labels()[0]:
+        style.legend_below(below, gap=0.3 if m else 0.2)
+    return figure
+
+
+def _around(axes: Axes, result: RingAnalysis, here: float) -> None:
+    """The scan around the mean circumference, with the sectors of the channel at its foot."""
+    m, mean = result.annular.harmonic, result.scan_radius
+    angle = np.linspace(0, 2 * np.pi, max(361, 40 * m) | 1)
+    length = 1e3 * mean * angle
+    axes.plot(length, here * np.cos(m * angle - _turn(result)), color=style.BLUE)
+    axes.axhline(0, **style.ZERO)
+    axes.set(xlabel=f"along the circumference at a radius of {shown(mean, M)} (mm)")
+    axes.set(ylabel="per volt (nm/V)", xlim=(0, float(length[-1])))
+    for start, end, sign in result.body.drive.sectors:
+        axes.axvspan(1e3 * mean * start, 1e3 * mean * end, ymax=0.06, color=FILL[sign], lw=0.0)
+
+
+@style.drawn
+def response(result: RingAnalysis) -> Figure:
+    """Amplitude per volt and admittance around the working mode, with its equivalent circuit."""
+    swept = result.response
+    f = swept.frequencies / 1e3
+    figure = style.new_figure(
+        f"Resonance at {shown(float(swept.frequencies[swept.resonance]), HZ)}: "
+        f"{np.abs(swept.admittance[swept.resonance]) * 1e3:.3g} mS",
+        f"{result.model}; {swept.terms} modes of its harmonic, "
+        f"{len(swept.harmonics)} harmonics in the admittance",
+        6.0,
+    )
+    above, below = figure.subplots(2, 1, sharex=True)
+    above.plot(f, 1e9 * swept.maximum, color=style.BLUE)
+    above.set(ylabel="largest amplitude (nm/V)", ylim=(0, None))
+    below.semilogy(f, 1e3 * np.abs(swept.admittance), color=style.BLUE, label="|Y|")
+    below.semilogy(f, 1e3 * swept.admittance.real, color=style.ORANGE, ls="--", label="Re Y")
+    if result.circuit is not None:
+        circuit = 1e3 * np.abs(result.circuit.admittance(swept.frequencies))
+        resistance = printable(shown(result.circuit.motional_resistance, si.Unit("ohm"), 3))
+        name = f"equivalent circuit, R1 = {resistance}"
+        below.semilogy(f, circuit, color=style.INK, lw=1.0, ls=(0, (1, 2)), label=name)
+    style.plain_log(below.yaxis)
+    below.set(xlabel="frequency (kHz)", ylabel="admittance (mS)")
+    style.legend_below(below, columns=3, gap=0.28)
+    return figure
+
+
+FIGURES = (
+    FigureOf("shape", "Mode shape from above", shape, file="mode-plan"),
+    FigureOf("scan", "Line scan", scan, file="line-scan"),
+    FigureOf("response", "Frequency response", response, file="frequency-response"),
+)

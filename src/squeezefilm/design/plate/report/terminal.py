@@ -1,0 +1,206 @@
+"""What the terminal shows of a solved film, and of a solved plate, disc or stator; the page shows
+the same rows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit.numbers import HZ, PER_VOLT, A, M, Row, V, changed, printable, shown
+from squeezefilm.core.kit.terminal import heading, show_rows, table
+from squeezefilm.design.analysis.report.point_rows import heat_rows, sound_rows
+from squeezefilm.design.plate.command import PlateAnalysis
+from squeezefilm.design.plate.ring import RingAnalysis
+from squeezefilm.physics.chain.pad_place import place_words
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from squeezefilm.design.film.command import FilmAnswer
+    from squeezefilm.design.plate.solved import ModeRow, SolvedBody
+    from squeezefilm.physics.plate.ring.stator import StatorFit
+    from squeezefilm.physics.plate.sound import SoundField
+
+OHM = si.Unit("ohm")
+HENRY, FARAD = si.Unit("H"), si.Unit("F")
+
+# Of the working mode's amplitude per volt: below it a mode is called not driven.
+_DRIVEN = 1e-4
+
+
+def working_rows(result: SolvedBody) -> list[Row]:
+    """The working mode of a solved plate, disc or stator: quantity, value, remark."""
+    mode, said = result.working, result.remarks
+    rows = [
+        (
+            f"Mode {mode.label}",
+            shown(mode.frequency, HZ, 5),
+            f"± {shown(mode.frequency_error, HZ, 2)} {said.frequency}",
+        ),
+        (
+            "Amplitude per volt",
+            shown(result.amplitude_per_volt, PER_VOLT),
+            f"antinode at {place_words(result.mode.lobe)}, without a finger",
+        ),
+        ("", shown(result.largest_per_volt, PER_VOLT), said.largest),
+    ]
+    if isinstance(result, RingAnalysis):
+        rows += _ring_rows(result)
+    rows.append(("Quality factor", f"{mode.quality_factor:.4g}", said.quality))
+    error = mode.coupling_coefficient_error
+    said_error = "" if error is None else f"± {error:.1g} (estimated)"
+    rows.append(("Effective coupling", f"{mode.coupling_coefficient:.3g}", said_error))
+    if mode.parallel_resonance_frequency is not None:
+        away = mode.parallel_resonance_frequency_error
+        remark = "" if away is None else f"± {shown(away, HZ, 2)} (estimated), terminals open"
+        rows.append(("Parallel resonance", shown(mode.parallel_resonance_frequency, HZ, 5), remark))
+    return rows
+
+
+def _ring_rows(result: RingAnalysis) -> list[Row]:
+    """What was measured of a stator, and where a disc or stator stands still."""
+    rows, half = [], result.working.half_wavelength
+    if result.computed_per_volt is not None:
+        computed = shown(result.computed_per_volt, PER_VOLT)
+        rows.append(("", computed, "computed there (the value above is measured)"))
+    if half is not None:
+        rows.append(
+            ("Half wavelength", shown(half, M), f"along the {result.half_wavelength_along}")
+        )
+    if result.circles.size:
+        radii = ", ".join(shown(float(r), M, 3) for r in result.circles)
+        rows.append(("Nodal circles", radii, "radius"))
+    return rows
+
+
+def drive_rows(result: SolvedBody) -> list[Row]:
+    """Current and power at resonance at the display's voltage, the equivalent circuit, warmth."""
+    volts, load, c = result.display.drive.voltage, result.load, result.circuit
+    rows = [
+        (
+            f"At {shown(volts, V)}",
+            shown(load.current, A, 3),
+            f"{load.apparent_power:.3g} VA, {load.real_power:.3g} W",
+        )
+    ]
+    if c is None:
+        rows.append(("Equivalent circuit", "none", result.circuit_said.removeprefix("none: ")))
+    else:
+        motional = (
+            f"R1 {shown(c.motional_resistance, OHM, 3)}",
+            f"L1 {shown(c.motional_inductance, HENRY, 3)}",
+            f"C1 {shown(c.motional_capacitance, FARAD, 3)}",
+        )
+        static = f"C0 {shown(c.static_capacitance, FARAD, 3)}"
+        rows.append(("Equivalent circuit", static, ", ".join(motional)))
+        if result.circuit_said:
+            rows.append(("", "", result.circuit_said))
+    return rows + heat_rows(result.heat)
+
+
+def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
+    """What was fitted of a stator, what the teeth leave uncertain, and what is assumed."""
+    a = fit.assumptions
+    said = [
+        f"Fitted: {shown(fit.ring_thickness, M, 4)} of metal under the teeth, so that "
+        f"{fit.mode.label} falls on {shown(fit.mode.frequency, HZ)}, with the mean diameter of "
+        f"{shown(fit.section.mean_diameter, M, 4)} from the wavelength. One frequency fits one "
+        "dimension and validates nothing."
+    ]
+    if a.tooth_height > 0:
+        low, high = fit.frequency_bounds
+        said.append(
+            f"Teeth: an equivalent layer of {si.percent(a.tooth_fill)} metal ({a.tooth_model}). "
+            f"Between teeth without hoop stiffness and teeth as stiff as their share of metal, "
+            f"this body lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to "
+            "13 % of the way up."
+        )
+    said.append(
+        f"Assumed: {a.metal.name}, {a.ceramic.name} of {shown(a.ceramic_thickness, M)}, teeth of "
+        f"{shown(a.tooth_height, M)}, {a.driven_sectors} half-wave sectors on the channel."
+    )
+    return tuple(said)
+
+
+def show_guidance(console: Console, sound: SoundField) -> None:
+    """Print where the guidance on airborne ultrasound is from."""
+    if sound.guidance is not None:
+        console.print(f"Guidance ({sound.guidance.evidence}): {sound.guidance.source}")
+
+
+def mode_rows(
+    rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt
+) -> list[tuple[str, str, str, str, str, str]]:
+    """Label, frequency, its error, quality factor, amplitude per volt alone and coupling of every
+    mode.
+
+    `amplitude_per_volt` is the working mode's (m/V).
+    """
+    return [
+        (
+            row.label,
+            shown(row.frequency, HZ, 5),
+            shown(row.frequency_error, HZ, 2),
+            f"{row.quality_factor:.3g}",
+            "not driven"
+            if row.alone_per_volt < _DRIVEN * amplitude_per_volt
+            else shown(row.alone_per_volt, PER_VOLT, 3),
+            f"{row.coupling_coefficient:.2g}",
+        )
+        for row in rows
+    ]
+
+
+def show_modes(
+    console: Console, rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt
+) -> None:
+    """Print the table of modes; `amplitude_per_volt` is the working mode's (m/V)."""
+    heading(console, "Modes in the band, each alone at its antinode")
+    head = ("mode", "frequency", "±", "Q", "per volt", "coupling")
+    table(console, head, mode_rows(rows, amplitude_per_volt))
+
+
+def show_film(answer: FilmAnswer) -> None:
+    """Print one solved film."""
+    error = f"± {answer.over_pressure_error:.1g} (estimated)"
+    harmonic = f"± {answer.force_error:.1g}, of p0·A·ε, first harmonic"
+    rows = [
+        ("Mean load W", f"{answer.mean_load:.8g}", "over ambient pressure × area"),
+        ("Over-pressure W − 1", f"{answer.over_pressure:.6g}", error),
+        ("Stiffness", f"{answer.stiffness_relative:.6g}", harmonic),
+        ("Damping", f"{answer.damping_relative:.6g}", harmonic),
+    ]
+    numbers = f"σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.4g}"
+    show_rows(f"{answer.request.shape}, {numbers}", rows).print(answer.status)
+
+
+def show_plate(result: SolvedBody) -> None:
+    """Print a solved plate, disc or stator: the working mode, then every mode of the band."""
+    rows = working_rows(result)
+    if isinstance(result, PlateAnalysis):
+        rows += _theory_rows(result)
+    rows += drive_rows(result) + sound_rows(result.sound, result.remarks.loudest)
+    console = show_rows(f"{result.display.title} [{result.display.name}]", rows)
+    show_guidance(console, result.sound)
+    if isinstance(result, RingAnalysis) and result.body.fit is not None:
+        for sentence in fit_sentences(result.body.fit):
+            console.print(sentence)
+    show_modes(console, result.rows, result.amplitude_per_volt)
+    if isinstance(result, RingAnalysis):
+        console.print(
+            "B(circles, diameters) bends; R and T move in the plane, radially and around."
+        )
+    console.print(f"{result.model}; {result.status}")
+    for doubt in (*result.objections, *result.heat.doubts):
+        console.print(f"! {printable(doubt)}")
+
+
+def _theory_rows(result: PlateAnalysis) -> list[Row]:
+    """The working mode's frequency by simpler theories."""
+    theories = ("Timoshenko beam", result.beam_frequency), ("shear plate", result.shear_frequency)
+    return [
+        (f"As a {name}", shown(found, HZ, 5), changed(found / result.working.frequency - 1))
+        for name, found in theories
+        if found is not None
+    ]

@@ -1,0 +1,137 @@
+"""What a ring's one channel makes of the two orientations of its working mode, in sentences."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.layout import AnnularStator
+from squeezefilm.physics.plate.ring.body import RingBody
+from squeezefilm.physics.plate.ring.modes import AnnularMode
+from squeezefilm.physics.plate.ring.pair import (
+    crest_speed,
+    electrode_split,
+    least_standing_wave_ratio,
+    most_travelling,
+)
+
+_HZ, _SPEED = si.Unit("Hz"), si.Unit("m/s")
+# In half-bandwidths: what good rings have, what is common, and the worst there is.
+_SPLITS = (0.1, 0.5, 2.0)
+
+
+@dataclass(frozen=True)
+class PairAtSplit:
+    """The worst that a pair does which is `split` (Hz) apart, `half_bandwidths` of f/2Q: the
+    smallest standing-wave ratio (None: it stands), the share of the amplitude that travels, and how
+    fast the surface moves along the ring at its crests."""
+
+    split: si.Hertz
+    half_bandwidths: si.Dimensionless
+    standing_wave_ratio: si.Dimensionless | None
+    travelling: si.Dimensionless
+    crest_speed: si.MetrePerSecond
+
+
+@dataclass(frozen=True)
+class RingPair:
+    """A ring's mode B(n, m) as a pair, driven by one channel at the display's voltage.
+
+    `amplitude` (m) is that at resonance without a finger. `two_channels` is the speed of the
+    surface at the crests of the travelling wave that two channels in quadrature would make of the
+    same amplitude. `electrode_split` (Hz) parts the pair at most if the electrodes outside the
+    channel are left open. `splits` lists what imperfections would do; `measured` is the one given.
+    """
+
+    label: str
+    frequency: si.Hertz
+    quality_factor: si.Dimensionless
+    amplitude: si.Metre
+    two_channels: si.MetrePerSecond
+    electrode_split: si.Hertz
+    splits: tuple[PairAtSplit, ...]
+    measured: PairAtSplit | None
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What that means, with its numbers."""
+        half = self.frequency / (2 * self.quality_factor)
+        open_in_halves = self.electrode_split / half
+        amplitude = f"{self.amplitude * 1e6:.3g} µm"
+        two = si.format_quantity(self.two_channels, _SPEED, 2)
+        said = [
+            f"{self.label} is a pair: the same wave in two places around the ring, a quarter of a "
+            "wave apart, at one frequency on a perfect ring. The one channel drives the one whose "
+            "antinodes lie on its sectors and not the other, so that the wave stands: its crests "
+            "move straight up and down, 0 m/s along the ring, and carry no finger along. Two "
+            f"channels in quadrature would make a travelling wave of it, whose crests move along "
+            f"the ring at {two} at the same {amplitude}: that is the motor.",
+            f"If the electrodes outside the channel are left open, they part the pair by at most "
+            f"{si.format_quantity(self.electrode_split, _HZ, 2)} ({open_in_halves:.2g} "
+            "half-bandwidths; computed for sectors that go on as the channel's), along the "
+            "channel's own axes: the wave still stands. Shorted to ground they part nothing.",
+            "What is uneven around the ring (mass, glue, teeth, how it is held) parts the pair "
+            "too, along axes of its own. By how much, its description does not say; the table has "
+            "the worst over all axes and drive frequencies.",
+        ]
+        if self.measured is not None:
+            m = self.measured
+            said.append(
+                f"Measured: {si.format_quantity(m.split, _HZ, 3)} apart, "
+                f"{m.half_bandwidths:.2g} half-bandwidths. At worst the standing-wave ratio is "
+                f"{_ratio(m)} and crests move along the ring at "
+                f"{si.format_quantity(m.crest_speed, _SPEED, 2)}"
+                + (
+                    ": a finger is not noticeably carried along."
+                    if m.crest_speed < 0.1 * self.two_channels
+                    else ": a part of the wave travels, and may carry a finger along. Even the "
+                    "ring out (a small mass at an antinode), or drive nearer to one of the two."
+                )
+            )
+        return tuple(said)
+
+
+def _ratio(at: PairAtSplit) -> str:
+    return "infinite" if at.standing_wave_ratio is None else f"{at.standing_wave_ratio:.2g}"
+
+
+def ring_pair(
+    display: Display, body: RingBody, mode: AnnularMode, split: si.Hertz | None = None
+) -> RingPair:
+    """The pair of a mode with nodal diameters at the display's voltage; `split` (Hz) as measured.
+
+    Raises `InputError` for a split that is negative, or a mode without nodal diameters.
+    """
+    if split is not None:
+        si.require("split", split, _HZ, at_least=0)
+    actuator, volts = display.actuator, display.drive.voltage
+    if isinstance(actuator, AnnularStator):
+        amplitude = volts * actuator.reference_amplitude / actuator.reference_voltage
+    else:
+        amplitude = volts * mode.amplitude_per_volt(body.drive)
+    half = mode.frequency / (2 * mode.quality_factor)
+
+    def at(hertz: si.Hertz) -> PairAtSplit:
+        apart = hertz / half
+        ratio = least_standing_wave_ratio(apart) if apart > 0 else math.inf
+        share = most_travelling(apart) if apart > 0 else 0.0
+        return PairAtSplit(
+            hertz,
+            apart,
+            ratio if math.isfinite(ratio) else None,
+            share,
+            crest_speed(mode, share * amplitude),
+        )
+
+    return RingPair(
+        label=mode.label,
+        frequency=mode.frequency,
+        quality_factor=mode.quality_factor,
+        amplitude=amplitude,
+        two_channels=crest_speed(mode, amplitude),
+        electrode_split=mode.frequency * electrode_split(body.section, mode, body.drive),
+        splits=tuple(at(n * half) for n in _SPLITS),
+        measured=None if split is None else at(split),
+    )

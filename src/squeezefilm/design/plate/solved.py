@@ -1,0 +1,173 @@
+"""What is alike in a solved plate, disc and stator: its modes, the working one, a summary."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.circuit import DrivenResponse
+from squeezefilm.physics.plate.electronics import ElectricalLoad, electrical_load
+from squeezefilm.physics.plate.sound import SoundField
+
+if TYPE_CHECKING:
+    from squeezefilm.physics.plate.heat.warming import Warming
+
+
+@dataclass(frozen=True)
+class ModeRow:
+    """One mode of the table: label by nodal lines across length and width, extrapolated frequency
+    with its estimated error, Q, amplitude per volt of this mode alone at its antinode, effective
+    coupling √(1 − f²/f_p²) with the parallel resonance f_p (terminals open, no losses), modal force
+    (N/V for unit modal mass). Errors are None where nobody estimates them."""
+
+    label: str
+    frequency: si.Hertz
+    frequency_error: si.Hertz
+    quality_factor: si.Dimensionless
+    alone_per_volt: si.MetrePerVolt
+    coupling_coefficient: si.Dimensionless
+    modal_force: float
+    half_wavelength: si.Metre | None
+    parallel_resonance_frequency: si.Hertz | None = None
+    parallel_resonance_frequency_error: si.Hertz | None = None
+    coupling_coefficient_error: si.Dimensionless | None = None
+
+
+@dataclass(frozen=True)
+class Remarks:
+    """What is said beside the numbers of a working mode: of its frequency, where it moves most,
+    what its quality factor is of, where it is loudest."""
+
+    frequency: str
+    largest: str
+    quality: str
+    loudest: str
+
+
+class SolvedBody(Result):
+    """What a solved plate, disc or stator has: its modes, the working one, response and sound.
+
+    `mode` is the working mode as every verb has it, whose free amplitude per volt at the antinode
+    `amplitude_per_volt` is; `largest_per_volt` (m/V) is the largest of the touched face at the same
+    frequency, number `resonance` of the response. `circuit_said` is what is to be said of the
+    circuit, or why there is none. `objections` say what of its description is doubtful, and what a
+    budget left out.
+    """
+
+    display: Display
+    rows: tuple[ModeRow, ...]
+    working: ModeRow
+    sound: SoundField
+    response: DrivenResponse
+    # A field of one and computed by another, which no narrower type allows.
+    mode: Any
+    resonance: Any
+    largest_per_volt: Any
+    circuit: Any
+    circuit_said: Any
+    model: Any
+    status: Any
+    remarks: Any
+    objections: Any = ()
+    _shown: ClassVar[str] = (
+        "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
+        "model"
+    )
+
+    @property
+    def amplitude_per_volt(self) -> si.MetrePerVolt:
+        """Free amplitude per volt at the antinode, at resonance (m/V): the working mode's."""
+        return float(self.mode.amplitude_per_volt)
+
+    @functools.cached_property
+    def load(self) -> ElectricalLoad:
+        """What the body asks of its amplifier at its resonance, at the display's voltage."""
+        volts, circuit = self.display.drive.voltage, self.circuit
+        static = None if circuit is None else circuit.static_capacitance
+        at = self.mode.resonance_frequency
+        return electrical_load(self.response, volts, at, capacitance=static)
+
+    @functools.cached_property
+    def heat(self) -> Warming:
+        """What the power that the working mode loses does to it, at the display's voltage.
+
+        Of a stator, whose modal mass nobody measured, the power that its fitted body takes.
+        """
+        # Compiled code comes with it, which a list of modes has no use for.
+        from squeezefilm.physics.plate.heat.warming import heat_source, warming, warming_of_mode
+
+        volts, mode, thermal = self.display.drive.voltage, self.mode, self.display.thermal
+        known = warming_of_mode(self.display.actuator, thermal, mode, volts)
+        if known is not None:
+            return known
+        source = heat_source(
+            self.display.actuator,
+            volts,
+            mode.resonance_frequency,
+            mode.quality_factor,
+            volts * self.amplitude_per_volt,
+            self.load.real_power,
+        )
+        return warming(source, self.display.actuator, thermal)
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints; keys carry units."""
+        volts, load = self.display.drive.voltage, self.load
+        levels = zip(self.sound.distances, self.sound.sound_pressure_level_dB, strict=True)
+        return {
+            "display": self.display.name,
+            "mode": self.working.label,
+            "frequency_Hz": self.working.frequency,
+            "frequency_error_Hz": self.working.frequency_error,
+            "amplitude_per_volt_m_per_V": self.amplitude_per_volt,
+            "largest_per_volt_m_per_V": self.largest_per_volt,
+            "alone_per_volt_m_per_V": self.working.alone_per_volt,
+            "neighbour": to_json(self.mode.neighbour),
+            "half_wavelength_m": self.working.half_wavelength,
+            "quality_factor": self.working.quality_factor,
+            "coupling_coefficient": self.working.coupling_coefficient,
+            "coupling_coefficient_error": self.working.coupling_coefficient_error,
+            "parallel_resonance_frequency_Hz": self.working.parallel_resonance_frequency,
+            "parallel_resonance_frequency_error_Hz": (
+                self.working.parallel_resonance_frequency_error
+            ),
+            "modes": to_json(self.rows),
+            "voltage_V": volts,
+            "current_A": load.current,
+            "apparent_power_VA": load.apparent_power,
+            "input_power_W": load.real_power,
+            "heat": to_json(self.heat),
+            "equivalent_circuit": to_json(self.circuit),
+            "equivalent_circuit_said": self.circuit_said,
+            **self._particulars(),
+            "sound_pressure_level_dB": {f"{far:g} m": level for far, level in levels},
+            "sound_guidance": to_json(self.sound.guidance),
+            "model": self.model,
+            "status": self.status,
+            "objections": list(self.objections),
+            "provenance": stamp(self.display),
+        }
+
+    def _particulars(self) -> dict[str, Any]:
+        raise NotImplementedError
+
+    def _table(self) -> Any:
+        return to_json(self.rows)
+
+
+def sweep_around(
+    frequency: si.Hertz, quality_factor: si.Dimensionless, points: int
+) -> si.HertzArray:
+    """Frequencies (Hz) over ±4/Q about a resonance, 1 % at the least, shape (points,).
+
+    They are dense near the peak, where the curve turns within f/Q.
+    """
+    span = max(4 / quality_factor, 0.01)
+    near = np.sinh(np.linspace(-3, 3, points)) / np.sinh(3)
+    return np.asarray(frequency * (1 + span * near))

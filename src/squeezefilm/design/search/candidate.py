@@ -1,0 +1,215 @@
+"""One design of a search: what was chosen, the display that follows, and what it does."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import time
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.kept.store import in_passing
+from squeezefilm.design.search.criteria import (
+    Breach,
+    breaches,
+    criterion_of,
+    numbers_of_prediction,
+    numbers_of_solved,
+)
+from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.sources import plate_sources
+from squeezefilm.design.search.space import VOLTAGE, Setting
+from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.beam.modes import timoshenko_frequency
+from squeezefilm.physics.plate.laminate import plate_laminate, section_with
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.working_mode import PlateTheory
+
+Level = Literal["screened", "solved"]
+
+_SCREENING: Mapping[str, PlateTheory | None] = {
+    "strips": "timoshenko",
+    "edge_strips": "shear",
+    "disc": None,
+    "ring": None,
+}
+"""By which theory a shape is screened; None: as it is solved, since a ring's solver is quick."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """What is chosen: the number of the shape in the requirements, and a value for each of its
+    variables."""
+
+    shape: int
+    values: tuple[tuple[str, Setting], ...]
+
+    @property
+    def settings(self) -> dict[str, Setting]:
+        """The values by name (SI)."""
+        return dict(self.values)
+
+    @property
+    def address(self) -> str:
+        """A short name that no other design has."""
+        text = json.dumps([self.shape, sorted(self.values)])
+        return hashlib.sha256(text.encode()).hexdigest()[:10]
+
+    @property
+    def plate(self) -> Design:
+        """What is built and solved, whatever voltage drives it: the design without its voltage."""
+        return Design(self.shape, tuple(one for one in self.values if one[0] != VOLTAGE))
+
+    def at_voltage(self, voltage: si.Volt) -> Design:
+        """The same plate driven with another voltage (V)."""
+        return design_of(self.shape, {**self.settings, VOLTAGE: voltage})
+
+
+def plates_of(designs: Iterable[Design]) -> dict[Design, tuple[Design, ...]]:
+    """The plates of designs, each with its designs in their order: whoever solves a plate has it
+    for all its voltages."""
+    found: dict[Design, tuple[Design, ...]] = {}
+    for one in designs:
+        plate = one.plate
+        found[plate] = (*found.get(plate, ()), one)
+    return found
+
+
+def design_of(shape: int, values: Mapping[str, Setting]) -> Design:
+    """A design of values by name; numbers to eleven digits, so that equal ones have one address."""
+    plain = {
+        name: float(f"{value:.11g}") if isinstance(value, int | float) else value
+        for name, value in values.items()
+    }
+    return Design(shape, tuple(plain.items()))
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """What a design does: its criteria by key (SI), whether by the screening theory or solved in
+    three dimensions, the limits that it breaks, why it cannot be built ("" where it can), and what
+    it took (s). `lasting` is what would be the same another time."""
+
+    design: Design
+    level: Level
+    numbers: Mapping[str, float]
+    broken: tuple[Breach, ...] = ()
+    reason: str = ""
+    seconds: float = field(default=0.0, compare=False)
+    warnings: tuple[str, ...] = ()
+    lasting: bool = field(default=True, compare=False)
+
+    @property
+    def is_feasible(self) -> bool:
+        """Whether it can be built and keeps all limits that are known of it."""
+        return not self.reason and not self.broken
+
+    def objectives(self, names: tuple[str, ...]) -> tuple[float, ...]:
+        """What is made small, in the order of names; infinite where it is not known."""
+        found = (self.numbers.get(criterion_of(name).key, float("inf")) for name in names)
+        return tuple(float("inf") if value != value else value for value in found)
+
+
+def display_of(requirements: Requirements, design: Design) -> Display:
+    """The display of a design. Raises `GeometryError` for one that cannot be built."""
+    shape, settings = requirements.shapes[design.shape], design.settings
+    base = requirements.base
+    body = shape.body(
+        settings, requirements.own, requirements.assembly_quality, requirements.workspace.room
+    )
+    return replace(
+        base,
+        name=f"{requirements.name}-{design.address}",
+        title=f"{requirements.title}: {shape.type} {design.address}",
+        actuator=body,
+        drive=replace(base.drive, voltage=float(settings[VOLTAGE])),
+        provenance={},
+    )
+
+
+def sourced_display_of(requirements: Requirements, design: Design) -> Display:
+    """As `display_of`, of every number where it is from and, where that is known, within which
+    range it lies: what an interval of its friction rests on."""
+    display = display_of(requirements, design)
+    sources = plate_sources(requirements, display, design.shape, design.settings)
+    return replace(display, provenance=sources)
+
+
+def evaluate(requirements: Requirements, design: Design, level: Level) -> Evaluated:
+    """What a design does, by the screening theory or solved. What is refused is an answer, too."""
+    began = time.perf_counter()
+    try:
+        with in_passing(), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if level == "screened":
+                display = display_of(requirements, design)
+                found, numbers = None, screened(requirements, display, design)
+            else:
+                display = sourced_display_of(requirements, design)
+                found = predict(display)
+                numbers = _judged(requirements, display, found, design)
+                numbers |= numbers_of_solved(requirements, display, found)
+    except SqueezefilmError as error:
+        return Evaluated(design, level, {}, reason=str(error), seconds=_since(began))
+    except Exception as error:
+        # One design of thousands: a fault of ours is told, and the others are not lost.
+        reason = f"not foreseen: {type(error).__name__}: {error}"
+        return Evaluated(design, level, {}, reason=reason, seconds=_since(began), lasting=False)
+    if found is not None and not found.mode.has_shape:
+        return Evaluated(design, level, {}, reason=found.objections[-1], seconds=_since(began))
+    return Evaluated(
+        design,
+        level,
+        numbers,
+        breaches(numbers, requirements.limits),
+        seconds=_since(began),
+        warnings=() if found is None else found.warnings,
+    )
+
+
+def evaluate_all(
+    requirements: Requirements, designs: tuple[Design, ...], level: Level
+) -> list[Evaluated]:
+    """What several designs do, in their order: one task of a search."""
+    return [evaluate(requirements, design, level) for design in designs]
+
+
+def screened(requirements: Requirements, display: Display, design: Design) -> dict[str, float]:
+    """The criteria of a display by the theory by which its design is screened."""
+    theory = _SCREENING[requirements.shapes[design.shape].type]
+    return _judged(requirements, display, predict(display, theory=theory), design)
+
+
+def rough_frequency(requirements: Requirements, design: Design) -> si.Hertz:
+    """About the resonance (Hz) of a plate of strips: between the waves in the bare plate and in one
+    that ceramics cover, a fiftieth of the time of screening it. NaN for another shape, and for what
+    cannot be built."""
+    if requirements.shapes[design.shape].type != "strips":
+        return math.nan
+    try:
+        body = display_of(requirements, design).actuator
+    except SqueezefilmError:
+        return math.nan
+    assert isinstance(body, RectangularPlate), "strips are on a plate"
+    half, covered = body.length / (body.nodal_lines - 0.5), body.coverage
+    bare = timoshenko_frequency(half, section_with(body, "plane_strain", 0.0, 0.0))
+    return float(
+        bare ** (1 - covered) * timoshenko_frequency(half, plate_laminate(body)) ** covered
+    )
+
+
+def _judged(
+    requirements: Requirements, display: Display, found: Prediction, design: Design
+) -> dict[str, float]:
+    cost = requirements.shapes[design.shape].cost_class(design.settings)
+    return numbers_of_prediction(requirements, display, found, cost)
+
+
+def _since(began: float) -> si.Second:
+    return time.perf_counter() - began

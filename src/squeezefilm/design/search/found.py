@@ -1,0 +1,236 @@
+"""What a design search found: the front, the plate that it would build, and why others fail."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from scipy.stats import spearmanr
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import Result, to_json
+from squeezefilm.design.search.candidate import Evaluated, plates_of, sourced_display_of
+from squeezefilm.design.search.correction import Correction
+from squeezefilm.design.search.criteria import CRITERIA
+from squeezefilm.design.search.front import dominates, hypervolume, knee_of
+from squeezefilm.design.search.reasons import EmptyCorner, LimitReason
+from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.tolerance import Made
+from squeezefilm.design.search.worth_solving import objectives_of, worst_corner
+from squeezefilm.physics.display import Display
+
+
+@dataclass(frozen=True)
+class FrontMember:
+    """A plate of the front at a voltage, solved in three dimensions, and what is made of its
+    drawing (None where it was not asked)."""
+
+    evaluated: Evaluated
+    made: Made | None = None
+
+    @property
+    def name(self) -> str:
+        """The design's short name."""
+        return self.evaluated.design.address
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DesignSearch(Result):
+    """A search: every design that was looked at, and what follows.
+
+    `front` are the feasible solved designs that none other beats, the best in the first objective
+    first; one plate may stand there at several voltages. `reference` is the display of
+    `compare_with`, judged by the same questions. `corrections` are by shape what solved plates
+    taught the screening. `stopped` says that not all was done.
+    """
+
+    requirements: Requirements
+    seed: int
+    screened: tuple[Evaluated, ...]
+    solved: tuple[Evaluated, ...]
+    front: tuple[FrontMember, ...]
+    reference: Evaluated | None
+    limits: tuple[LimitReason, ...]
+    corners: tuple[EmptyCorner, ...]
+    corrections: tuple[Correction | None, ...]
+    computed: int
+    kept: int
+    seconds: si.Second
+    stopped: bool
+    provenance: Mapping[str, Any]
+    _shown: ClassVar[str] = "requirements.name chosen_name hypervolume seconds"
+
+    @functools.cached_property
+    def objectives(self) -> si.FloatArray:
+        """The objectives of the front (SI), shape (members of the front, objectives)."""
+        return objectives_of(self.requirements, [one.evaluated for one in self.front])
+
+    @property
+    def chosen(self) -> FrontMember | None:
+        """The plate nearest to the best of every objective; None where the front is empty."""
+        return self.front[knee_of(self.objectives)] if self.front else None
+
+    @property
+    def chosen_name(self) -> str:
+        """Its short name."""
+        return "none" if self.chosen is None else self.chosen.name
+
+    @functools.cached_property
+    def plates_solved(self) -> int:
+        """How many plates were solved in three dimensions; `solved` has each at several voltages
+        where there are any to choose."""
+        return _plates(self.solved)
+
+    @functools.cached_property
+    def plates_feasible(self) -> int:
+        """How many of the solved plates keep all limits at one voltage or more."""
+        return _plates(one for one in self.solved if one.is_feasible)
+
+    @functools.cached_property
+    def plates_on_front(self) -> int:
+        """How many plates the front has, each at one voltage or more."""
+        return _plates(one.evaluated for one in self.front)
+
+    @property
+    def plates_better(self) -> int:
+        """How many plates of the front beat the reference at one voltage or more."""
+        return _plates(one.evaluated for one in self.beats_reference)
+
+    @functools.cached_property
+    def worst(self) -> si.FloatArray:
+        """The corner from which the hypervolume is measured (SI), see `worst_corner`."""
+        return worst_corner(self.requirements, self.objectives)
+
+    @property
+    def hypervolume(self) -> si.Dimensionless:
+        """The share of the box between nothing and `worst` that the front dominates."""
+        return hypervolume(self.objectives, self.worst) if self.front else 0.0
+
+    @functools.cached_property
+    def beats_reference(self) -> tuple[FrontMember, ...]:
+        """The plates that are better than the reference in every objective or in one with none
+        worse; none where it could not be judged."""
+        if self.reference is None or self.reference.reason:
+            return ()
+        own = np.array(self.reference.objectives(self.requirements.objectives))
+        return tuple(
+            one for one, row in zip(self.front, self.objectives, strict=True) if dominates(row, own)
+        )
+
+    @functools.cached_property
+    def screened_and_solved(self) -> tuple[tuple[Evaluated, Evaluated], ...]:
+        """The designs that were solved, each as it was screened and as solved."""
+        before = {one.design: one for one in self.screened if not one.reason}
+        return tuple(
+            (before[one.design], one)
+            for one in self.solved
+            if not one.reason and one.design in before
+        )
+
+    @functools.cached_property
+    def ranks(self) -> dict[str, si.Dimensionless]:
+        """Spearman's rank correlation of screened and solved numbers over the solved designs, by
+        objective, where there are ten or more."""
+        pairs = self.screened_and_solved
+        if len(pairs) < 10:
+            return {}
+        names = self.requirements.objectives
+        first, second = (objectives_of(self.requirements, one) for one in zip(*pairs, strict=True))
+        return {
+            name: float(spearmanr(first[:, k], second[:, k]).statistic)
+            for k, name in enumerate(names)
+        }
+
+    def member(self, name: str) -> FrontMember:
+        """The plate of the front with a short name, or with the beginning of one. Raises
+        `InputError` for a name that none has, or several."""
+        found = [one for one in self.front if one.name.startswith(name)] if name else []
+        if len(found) == 1:
+            return found[0]
+        known = ", ".join(one.name for one in self.front) or "none"
+        raise InputError(
+            f"the front has {'several plates' if found else 'no plate'} '{name}'. It has: {known}"
+        )
+
+    def display(self, name: str | None = None) -> Display:
+        """The display of a plate of the front, the chosen one without a name. Raises `InputError`
+        as `member`, or where the front is empty."""
+        if name is None and self.chosen is None:
+            raise InputError("the front is empty: no plate meets the requirements")
+        one = self.member(name or self.chosen_name)
+        return sourced_display_of(self.requirements, one.evaluated.design)
+
+    def summary(self) -> dict[str, Any]:
+        """What ``--json`` prints; keys carry units."""
+        chosen = self.chosen
+        return {
+            "requirements": self.requirements.name,
+            "title": self.requirements.title,
+            "objectives": list(self.requirements.objectives),
+            "screened": len(self.screened),
+            "screened_feasible": sum(one.is_feasible for one in self.screened),
+            "plates_solved": self.plates_solved,
+            "plates_feasible": self.plates_feasible,
+            "plates_on_front": self.plates_on_front,
+            "front": [_row(self.requirements, one) for one in self.front],
+            "chosen": None if chosen is None else chosen.name,
+            "reference": None
+            if self.reference is None
+            else {
+                "name": self.requirements.compare_with,
+                **_numbers(self.reference),
+                "breaks": [one.sentence for one in self.reference.broken],
+                "reason": self.reference.reason,
+                "beaten_by": [one.name for one in self.beats_reference],
+            },
+            "hypervolume": self.hypervolume,
+            "hypervolume_corner": self.worst.tolist(),
+            "limits": to_json(self.limits),
+            "empty_corners": to_json(self.corners),
+            "screening_ranks": self.ranks,
+            "screening_errors": {
+                space.shape: None
+                if one is None
+                else {"plates": one.plates, "raw": dict(one.raw), "corrected": dict(one.errors)}
+                for space, one in zip(self.requirements.spaces, self.corrections, strict=True)
+            },
+            "assumed": list(self.requirements.assumed),
+            "answers_computed": self.computed,
+            "answers_kept": self.kept,
+            "seconds": self.seconds,
+            "stopped": self.stopped,
+            "provenance": dict(self.provenance),
+        }
+
+    def _table(self) -> Any:
+        return [_row(self.requirements, one) for one in self.front]
+
+
+def _plates(designs: Iterable[Evaluated]) -> int:
+    return len(plates_of(one.design for one in designs))
+
+
+def _numbers(one: Evaluated) -> dict[str, Any]:
+    return {key + CRITERIA[key].unit.suffix: to_json(value) for key, value in one.numbers.items()}
+
+
+def _row(requirements: Requirements, one: FrontMember) -> dict[str, Any]:
+    design, space = one.evaluated.design, requirements.spaces[one.evaluated.design.shape]
+    chosen = {
+        variable.name + (getattr(variable, "unit", None) or si.Unit("1")).suffix: design.settings[
+            variable.name
+        ]
+        for variable in space
+    }
+    made = None if one.made is None else {"yield": one.made.kept, "draws": one.made.draws}
+    return {
+        "name": one.name,
+        "shape": space.shape,
+        **chosen,
+        **_numbers(one.evaluated),
+        "made": made,
+    }

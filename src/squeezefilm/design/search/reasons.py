@@ -1,0 +1,156 @@
+"""Why designs fail: which limits bind, what each of them costs, and which corners are empty."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.design.search.candidate import Evaluated
+from squeezefilm.design.search.criteria import CRITERIA, bounded, criterion_of, excess_of
+from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.space import Choice, Number, Space, Step
+
+# Parts of a range of lengths that are told apart, and the designs a part must have to be told of.
+_PARTS, _LEAST_DESIGNS = 5, 20
+
+
+@dataclass(frozen=True)
+class LimitReason:
+    """What a limit does: how many screened designs break it (`broken`), how many nothing but it
+    (`alone`), and by objective the best that would be without it (SI)."""
+
+    key: str
+    limit: float
+    broken: int
+    alone: int
+    best_without: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class EmptyCorner:
+    """A part of the space without a feasible design: what was chosen there, in words, how many
+    were screened, the limit most often broken ("" where they cannot be built), and by what share of
+    them, and a sentence of one of them."""
+
+    shape: str
+    where: str
+    designs: int
+    key: str
+    share: si.Dimensionless
+    example: str
+
+
+def limit_reasons(
+    requirements: Requirements, screened: Sequence[Evaluated]
+) -> tuple[LimitReason, ...]:
+    """What every limit does to the screened designs, the one that is broken most first."""
+    found = []
+    best = _best(requirements, [one for one in screened if one.is_feasible])
+    for criterion, bound in bounded(requirements.limits):
+        broken = [one for one in screened if any(b.key == criterion.key for b in one.broken)]
+        alone = [one for one in broken if len(one.broken) == 1]
+        without = _best(requirements, alone)
+        gained = {
+            key: value
+            for key, value in without.items()
+            if np.isfinite(value) and value < best.get(key, np.inf)
+        }
+        found.append(LimitReason(criterion.key, bound, len(broken), len(alone), gained))
+    return tuple(sorted(found, key=lambda one: -one.broken))
+
+
+def _best(requirements: Requirements, designs: Sequence[Evaluated]) -> dict[str, float]:
+    rows = [one.objectives(requirements.objectives) for one in designs]
+    if not rows:
+        return {}
+    return dict(zip(requirements.objectives, np.min(rows, axis=0).tolist(), strict=True))
+
+
+def empty_corners(
+    requirements: Requirements, screened: Sequence[Evaluated]
+) -> tuple[EmptyCorner, ...]:
+    """The parts of each variable's range in which no screened design is feasible, with why."""
+    found: list[EmptyCorner] = []
+    for number, space in enumerate(requirements.spaces):
+        here = [one for one in screened if one.design.shape == number]
+        for variable in space.free:
+            parts: dict[str, list[Evaluated]] = {}
+            for one in here:
+                parts.setdefault(_part(variable, one.design.settings), []).append(one)
+            for where, inside in parts.items():
+                if len(inside) < _LEAST_DESIGNS or any(one.is_feasible for one in inside):
+                    continue
+                found.append(_corner(space, where, inside))
+    return tuple(sorted(found, key=lambda one: -one.designs))
+
+
+def _corner(space: Space, where: str, inside: Sequence[Evaluated]) -> EmptyCorner:
+    counts = Counter(key for one in inside for key in {b.key for b in one.broken})
+    built = sum(bool(one.reason) for one in inside)
+    if not counts or built > max(counts.values()):
+        example = next(one.reason for one in inside if one.reason)
+        return EmptyCorner(space.shape, where, len(inside), "", built / len(inside), example)
+    key, count = counts.most_common(1)[0]
+    # The one that comes nearest to the limit.
+    nearest = min(
+        (b for one in inside for b in one.broken if b.key == key), key=lambda one: one.excess
+    )
+    return EmptyCorner(
+        space.shape, where, len(inside), key, count / len(inside), f"at best {nearest.sentence}"
+    )
+
+
+def _part(variable: Number | Step | Choice, settings: Mapping[str, float | int | str]) -> str:
+    """The part of a variable's range in which a design lies, in words."""
+    name, value = variable.name.replace("_", " "), settings[variable.name]
+    if isinstance(variable, Choice):
+        return f"{name} {value}"
+    if isinstance(variable, Step):
+        return f"{name} {si.format_quantity(float(value), variable.unit, 3)}"
+    width = (variable.high - variable.low) / _PARTS
+    at = min(int((float(value) - variable.low) / width), _PARTS - 1)
+    ends = (si.format_quantity(variable.low + k * width, variable.unit, 3) for k in (at, at + 1))
+    return f"{name} {' to '.join(ends)}"
+
+
+def margins(requirements: Requirements, one: Evaluated) -> dict[str, si.Dimensionless]:
+    """How far a design stays from each limit that it could be judged by, as a share of it, the
+    nearest first."""
+    found = {
+        criterion.key: -excess_of(criterion, value, bound)
+        for criterion, bound in bounded(requirements.limits)
+        if not math.isnan(value := criterion.value(one.numbers))
+    }
+    return dict(sorted(found.items(), key=lambda item: item[1]))
+
+
+def limit_in_words(reason: LimitReason, screened: int) -> str:
+    """What a limit does, in a sentence."""
+    one = CRITERIA[reason.key]
+    said = (
+        f"{one.limit_said(reason.limit)}: broken by {reason.broken} of {screened} "
+        f"screened designs, by {reason.alone} as the only limit"
+    )
+    if reason.best_without:
+        said += f"; without it {gains_in_words(reason)} would be there"
+    return said + "."
+
+
+def gains_in_words(reason: LimitReason) -> str:
+    """The objectives that would be there without a limit."""
+    gained = ((criterion_of(name), value) for name, value in reason.best_without.items())
+    return " and ".join(f"{one.said} of {one.shown(value)}" for one, value in gained)
+
+
+def corner_in_words(one: EmptyCorner) -> str:
+    """A part of the space without a feasible design, in a sentence."""
+    of = f"{one.shape}, {one.where}: none of {one.designs} screened designs is feasible"
+    if not one.key:
+        return f"{of}; {100 * one.share:.0f} % cannot be built, for example: {one.example}"
+    said = CRITERIA[one.key].said
+    return f"{of}; {100 * one.share:.0f} % of them break the limit of {said} ({one.example})"

@@ -1,0 +1,379 @@
+"""The figures of a design search: the front, what limits cost, the screening, what was chosen."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
+from squeezefilm.core.kit.page_style import FigureOf
+from squeezefilm.design.search.criteria import CRITERIA, criterion_of
+from squeezefilm.design.search.report.words import (
+    front_words,
+    setting_words,
+)
+from squeezefilm.design.search.space import Choice, Variable
+from squeezefilm.design.search.worth_solving import objectives_of
+from squeezefilm.design.sweep.report.words import labelled, scaled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.design.search.candidate import Evaluated
+    from squeezefilm.design.search.found import DesignSearch
+
+MARKED = "plate-"
+"""Begins the id of the mark of a plate of the front, which its name ends."""
+ROW = "#row-"
+"""Begins the link from that mark to the plate's row in the table."""
+# More points than these are a grey area and a large file.
+_MOST_POINTS = 1500
+_SOLVED = "three-dimensional solves of plates as drawn, quality factor assumed"
+# An axis on which the largest is more than so many times the smallest is logarithmic.
+_WIDE = 12.0
+_SHAPES = "osD^"
+_BROKEN: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": "x", "ms": 4, "mew": 0.8}
+_SOLVED_LOOK: dict[str, Any] = {
+    "ls": "", "marker": "o", "ms": 5, "mec": style.BLUE, "mfc": style.PAPER
+}  # fmt: skip
+_COMPARED: dict[str, Any] = {
+    "color": style.ORANGE, "ls": "", "marker": "s", "ms": 8, "mec": style.PAPER
+}  # fmt: skip
+_RING: dict[str, Any] = {
+    "ls": "", "marker": "o", "ms": 13, "mfc": "none", "mec": style.INK, "mew": 1.5
+}  # fmt: skip
+_CLOUD: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": ".", "ms": 5, "alpha": 0.45}
+
+
+@style.drawn
+def front(found: DesignSearch) -> Figure:
+    """The objectives of all feasible designs against each other, pair by pair, with the front, the
+    plate to build and the display to compare with."""
+    names = found.requirements.objectives
+    pairs = list(itertools.combinations(range(len(names)), 2))
+    rows = _rows(found, _thinned([one for one in found.screened if one.is_feasible]))
+    if not rows.size and not found.front:
+        return style.message_figure(
+            "No design meets the requirements", "What each limit costs is in the next figure."
+        )
+    figure = style.new_figure(_front_title(found), _SOLVED, 5.2)
+    # Two objectives have room for the whole cloud, and beside it for what matters of it.
+    close = [(0, 1, False), (0, 1, True)] if found.front else [(0, 1, False)]
+    panels = close if len(pairs) == 1 else [(*pair, False) for pair in pairs]
+    grid = figure.add_gridspec(2, len(panels), height_ratios=[1, 0.14])
+    places = [figure.add_subplot(grid[0, k]) for k in range(len(panels))]
+    for axes, (first, second, zoomed) in zip(places, panels, strict=True):
+        _front_axes(axes, found, rows, first, second, zoomed=zoomed)
+    strip = figure.add_subplot(grid[1, :])
+    strip.set_axis_off()
+    style.legend_in(strip, places[0], columns=3)
+    return figure
+
+
+def _front_title(found: DesignSearch) -> str:
+    goals = [criterion_of(name) for name in found.requirements.objectives]
+    if not found.front:
+        return "No solved plate keeps all limits; what is shown was screened only"
+    spans = []
+    for k, one in enumerate(goals):
+        low, high = (
+            one.shown(end)
+            for end in (float(found.objectives[:, k].min()), float(found.objectives[:, k].max()))
+        )
+        spans.append(f"{one.said} {low}" if low == high else f"{one.said} from {low} to {high}")
+    verb = "is" if found.plates_on_front == 1 else "are"
+    return f"{front_words(found)} {verb} the front: {', '.join(spans)}"
+
+
+def _front_axes(
+    axes: Axes,
+    found: DesignSearch,
+    screened: si.FloatArray,
+    first: int,
+    second: int,
+    *,
+    zoomed: bool,
+) -> None:
+    """Two objectives against each other; `zoomed` on the front and what it is compared with."""
+    names = found.requirements.objectives
+    goals = [criterion_of(names[k]) for k in (first, second)]
+    solved = _rows(found, [one for one in found.solved if one.is_feasible])
+    broken = _rows(found, [one for one in found.solved if one.broken])
+    reference = _rows(found, [] if found.reference is None else [found.reference])
+    most = [found.objectives, reference] + ([] if zoomed else [screened, solved])
+    within = np.concatenate(most)[:, [first, second]]
+    scales = []
+    for k, one in enumerate(goals):
+        factor, symbol = scaled(within[:, k], one.unit)
+        scales.append(factor)
+        _axis(axes, "xy"[k], within[:, k] * factor, labelled(one.said, symbol))
+
+    def at(rows: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
+        return rows[:, first] * scales[0], rows[:, second] * scales[1]
+
+    axes.plot(*at(screened), **_CLOUD, label="screened, keeps all limits")
+    if broken.size:
+        axes.plot(*at(broken), **_BROKEN, label="solved, breaks a limit")
+    if solved.size:
+        axes.plot(*at(solved), **_SOLVED_LOOK, label="solved, keeps all limits")
+    if found.front and len(names) == 2:
+        axes.plot(*at(found.objectives), color=style.BLUE, lw=1.2, zorder=3)
+    for number, (member, x, y) in enumerate(
+        zip(found.front, *(one.tolist() for one in at(found.objectives)), strict=True)
+    ):
+        mark = axes.scatter([x], [y], s=62, color=style.BLUE, edgecolor=style.PAPER, zorder=4)
+        mark.set_urls([f"{ROW}{member.name}"])
+        mark.set_gid(f"{MARKED}{member.name}-{first}{second}{int(zoomed)}")
+        if number == 0:
+            mark.set_label("the front")
+    if found.chosen is not None:
+        here = found.objectives[[member is found.chosen for member in found.front]]
+        axes.plot(*at(here), **_RING, zorder=5, label="the plate to build")
+    if reference.size:
+        name = style.plain(found.requirements.compare_with)
+        axes.plot(*at(reference), **_COMPARED, zorder=5, label=f"{name}, to compare")
+    if zoomed:
+        axes.set_title("the front, from near")
+    axes.set_xlim(_ends(within[:, 0] * scales[0], axes.get_xscale() == "log"))
+    axes.set_ylim(_ends(within[:, 1] * scales[1], axes.get_yscale() == "log"))
+
+
+def _ends(values: si.FloatArray, logarithmic: bool) -> tuple[float, float]:
+    """The ends of an axis with room for marks around the values."""
+    low, high = float(values.min()), float(values.max())
+    if logarithmic:
+        room = (high / low) ** 0.08
+        return low / room, high * room
+    room = 0.08 * (high - low) or 0.1 * abs(high) or 1.0
+    return low - room, high + room
+
+
+def _axis(axes: Axes, which: str, values: si.FloatArray, label: str) -> None:
+    known = values[np.isfinite(values) & (values > 0)]
+    wide = known.size and known.max() > _WIDE * known.min()
+    if which == "x":
+        axes.set_xlabel(label)
+        if wide:
+            axes.set_xscale("log")
+    else:
+        axes.set_ylabel(label)
+        if wide:
+            axes.set_yscale("log")
+    if wide:
+        style.plain_log(axes.xaxis if which == "x" else axes.yaxis)
+
+
+def _rows(found: DesignSearch, designs: Sequence[Evaluated]) -> si.FloatArray:
+    """The finite objectives of designs (SI), shape (designs, objectives)."""
+    rows = objectives_of(found.requirements, designs)
+    finite: si.FloatArray = rows[np.isfinite(rows).all(axis=1)]
+    return finite
+
+
+def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
+    """Every so many designs where there are more than can be told apart."""
+    return designs[:: -(-len(designs) // _MOST_POINTS) or 1]
+
+
+@style.drawn
+def limits(found: DesignSearch) -> Figure:
+    """How many screened designs break each limit, and how many of them no other."""
+    every, reasons = len(found.screened), found.limits[::-1]
+    if not every:
+        return style.message_figure(
+            "No design was screened", "The search was stopped before the first."
+        )
+    if not reasons:
+        return style.message_figure(
+            "No limit was asked for", "Every design that can be built keeps the requirements."
+        )
+    most, alone = found.limits[0], max(found.limits, key=lambda one: one.alone)
+    said = f"The limit broken most often is that on {CRITERIA[most.key].said}"
+    if alone.alone:
+        which = "it" if alone is most else f"the one on {CRITERIA[alone.key].said}"
+        said += f"; {which} alone stands in the way of {alone.alone}"
+    figure = style.new_figure(
+        said, "the screening theory: beams, strips with shear, rings as solved",
+        max(1.5 + 0.42 * len(reasons), 2.8),
+    )  # fmt: skip
+    axes = figure.subplots()
+    at = np.arange(len(reasons))
+    axes.barh(at, [one.broken for one in reasons], **style.BARS, label="break it")
+    axes.barh(
+        at, [one.alone for one in reasons], height=0.45, color=style.ORANGE, label="break it alone"
+    )
+    for row, one in enumerate(reasons):
+        alone_too = f", {one.alone} alone" if one.alone else ""
+        axes.text(one.broken, row, f" {one.broken}{alone_too}", va="center", fontsize=9)
+    axes.set_yticks(at, [CRITERIA[one.key].limit_said(one.limit) for one in reasons])
+    axes.set(xlabel=f"designs, of {every} screened", xlim=(0, 1.22 * max(most.broken, 1)))
+    axes.grid(visible=False, axis="y")
+    style.legend_below(axes, gap=0.9 / max(len(reasons), 3) + 0.1)
+    return figure
+
+
+@style.drawn
+def screening(found: DesignSearch) -> Figure:
+    """What the screening said of the solved plates, against what solving them said."""
+    pairs = found.screened_and_solved
+    names = dict.fromkeys((*found.requirements.objectives, "resonance_frequency"))
+    if not pairs:
+        return style.message_figure("How good the screening was", "No screened plate was solved.")
+    ranks = ", ".join(f"{criterion_of(name).said} {rho:.2f}" for name, rho in found.ranks.items())
+    figure = style.new_figure(
+        f"The screening's ranks against solved ones, Spearman's ρ: {ranks}"
+        if ranks
+        else "Fewer than ten plates were solved: their ranks say little",
+        "the screening theory across, three-dimensional solves up",
+        4.3,
+    )
+    places = figure.subplots(1, len(names))
+    for axes, name in zip(places, names, strict=True):
+        _screening_axes(axes, found, name, pairs)
+    if len(found.requirements.spaces) > 1:
+        style.legend_below(places[len(names) // 2], columns=4, gap=0.22)
+    return figure
+
+
+def _screening_axes(
+    axes: Axes, found: DesignSearch, name: str, pairs: Sequence[tuple[Evaluated, Evaluated]]
+) -> None:
+    one = criterion_of(name)
+    values = np.array([[e.numbers.get(one.key, math.nan) for e in pair] for pair in pairs])
+    shape = np.array([pair[0].design.shape for pair in pairs])
+    good = np.isfinite(values).all(axis=1)
+    values, shape = values[good], shape[good]
+    factor, symbol = scaled(values.ravel(), one.unit)
+    for number, space in enumerate(found.requirements.spaces):
+        here = factor * values[shape == number]
+        look: dict[str, Any] = {
+            "ls": "",
+            "marker": _SHAPES[number % 4],
+            "ms": 5,
+            "mec": style.PAPER,
+        }
+        color = style.LINES[number % len(style.LINES)][0]
+        axes.plot(here[:, 0], here[:, 1], color=color, **look, label=space.shape)
+    if values.size:
+        ends = factor * np.array([values.min(), values.max()])
+        axes.plot(ends, ends, **style.REFERENCE)
+    axes.set(xlabel=labelled("screened", symbol), ylabel=labelled("solved", symbol))
+    axes.locator_params(axis="x", nbins=4)
+    known = [c for c in found.corrections if c is not None and one.key in c.raw]
+    off = f"\noff by {si.percent(max(c.raw[one.key] for c in known), 1)}" if known else ""
+    axes.set_title(f"{one.said}{off}")
+
+
+@style.drawn
+def settings(found: DesignSearch) -> Figure:
+    """What was chosen along the front: each variable over the first objective."""
+    spaces = found.requirements.spaces
+    of_front = sorted({one.evaluated.design.shape for one in found.front})
+    free = {variable.name: variable for shape in of_front for variable in spaces[shape].free}
+    if not found.front or not free:
+        return style.message_figure(
+            "What was chosen", "The front is empty." if not found.front else "Nothing was free."
+        )
+    goal = criterion_of(found.requirements.objectives[0])
+    columns = min(3, len(free))
+    lines = -(-len(free) // columns)
+    figure = style.new_figure(
+        f"What the front has in common, and what it trades: each choice over {goal.said}",
+        _SOLVED,
+        1.0 + 2.4 * lines,
+    )
+    places = figure.subplots(lines, columns, squeeze=False).ravel()
+    for axes, variable in zip(places, free.values(), strict=False):
+        _settings_axes(axes, found, variable)
+    for spare in places[len(free) :]:
+        spare.set_axis_off()
+    factor, symbol = scaled(found.objectives[:, 0], goal.unit)
+    for axes in places[: len(free)]:
+        axes.set_xlim(_ends(factor * found.objectives[:, 0], logarithmic=False))
+        axes.locator_params(axis="x", nbins=4)
+    for axes in places[max(len(free) - columns, 0) : len(free)]:
+        axes.set_xlabel(labelled(goal.said, symbol))
+    return figure
+
+
+def _settings_axes(axes: Axes, found: DesignSearch, variable: Variable) -> None:
+    requirements = found.requirements
+    goal = criterion_of(requirements.objectives[0])
+    factor, _ = scaled(found.objectives[:, 0], goal.unit)
+    members = [
+        (factor * float(x), one)
+        for x, one in zip(found.objectives[:, 0], found.front, strict=True)
+        if variable.name in one.evaluated.design.settings
+    ]
+    if isinstance(variable, Choice):
+        names = {
+            str(one.evaluated.design.settings[variable.name]): setting_words(
+                variable, one.evaluated.design, requirements
+            )
+            for _, one in members
+        }
+        rows = list(names)
+        y = [rows.index(str(o.evaluated.design.settings[variable.name])) for _, o in members]
+        axes.set_yticks(range(len(rows)), [style.plain(names[row], 22) for row in rows])
+        axes.set_ylim(-0.6, len(rows) - 0.4)
+        symbol = ""
+    else:
+        values = np.array([float(o.evaluated.design.settings[variable.name]) for _, o in members])
+        scale, symbol = scaled(values, variable.unit)
+        y = (scale * values).tolist()
+        axes.set_ylim(_ends(scale * values, logarithmic=False))
+        if variable.name.startswith("nodal_"):
+            axes.locator_params(axis="y", integer=True)
+    chosen = found.chosen
+    for number, (value, (x, one)) in enumerate(zip(y, members, strict=True)):
+        shape = one.evaluated.design.shape
+        look: dict[str, Any] = {
+            "color": style.BLUE,
+            "marker": _SHAPES[shape % 4],
+            "ms": 6,
+            "mec": style.PAPER,
+        }
+        axes.plot([x], [value], ls="", **look, zorder=3 + number / 100)
+        if one is chosen:
+            axes.plot([x], [value], **_RING, zorder=5)
+    axes.set_title(labelled(variable.name.replace("_", " "), symbol))
+
+
+FIGURES = (
+    FigureOf(
+        "front",
+        "The front",
+        front,
+        "Better is to the left and below. Grey points were screened only; rings were solved in "
+        "three dimensions; the blue points are beaten by no other. Point at one for its numbers, "
+        "follow it to its row in the table.",
+        has=lambda one: one.front or any(each.is_feasible for each in one.screened),
+    ),
+    FigureOf(
+        "limits",
+        "What each limit does",
+        limits,
+        "Grey: designs that break the limit, whatever else they break. Orange: those that would be "
+        "there without it.",
+    ),
+    FigureOf(
+        "screening",
+        "How good the screening was",
+        screening,
+        "On the dashed line the quick theory and the solved plate say the same. The search needs "
+        "the ranks to be right; the numbers on this page are the solved ones.",
+    ),
+    FigureOf(
+        "settings",
+        "What was chosen along the front",
+        settings,
+        "A panel for each thing that could be chosen; the ring is the plate to build.",
+        has=lambda one: one.front,
+    ),
+)

@@ -1,0 +1,335 @@
+"""`write_design`: a search as a page, its numbers, and a file for every plate of the front."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from html import escape
+from pathlib import Path
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
+from squeezefilm.core.kit.folder import csv_text, json_text, require_folder, write_folder
+from squeezefilm.core.kit.page_style import (
+    FigureOf,
+    as_html,
+    bullets,
+    figure_section,
+    html_table,
+    links,
+    page,
+    section,
+    stamped,
+    text_table,
+    verdict_list,
+)
+from squeezefilm.design.search.criteria import CRITERIA, bounded, criterion_of
+from squeezefilm.design.search.found import DesignSearch, FrontMember
+from squeezefilm.design.search.reasons import margins
+from squeezefilm.design.search.report.figures import FIGURES, MARKED
+from squeezefilm.design.search.report.plates import plate_file
+from squeezefilm.design.search.report.words import (
+    asked_sentences,
+    chosen_sentences,
+    chosen_words,
+    counts_sentence,
+    effect_head,
+    effect_rows,
+    front_head,
+    front_row,
+    limit_gain,
+    limit_sentences,
+    made_sentences,
+    margin_words,
+    rank_sentences,
+    reference_sentences,
+    row_of,
+)
+
+_SURE: si.Dimensionless = 0.95
+"""The share of the plates made that must keep all limits for a plate to be called good."""
+
+PAGE, DATA, TABLE, PLATES = "index.html", "result.json", "front.csv", "plates"
+
+
+def write_design(found: DesignSearch, folder: Path, *, fabrication: str = "") -> Path:
+    """Write index.html, result.json, front.csv and plates/NAME.toml into `folder`; the page's path.
+
+    `fabrication` is the address of what the plate to build is made from, relative to the page: its
+    drawings. Raises `InputError` for a folder that cannot be written to.
+    """
+    folder = require_folder(folder)
+    files: dict[str, str | bytes] = {
+        f"{PLATES}/{one.name}.toml": plate_file(found.requirements, one.evaluated.design)
+        for one in found.front
+    }
+    files |= {DATA: json_text(found.summary()), TABLE: front_csv(found)}
+    files[PAGE] = design_page(found, fabrication=fabrication)
+    write_folder(folder, files)
+    return folder / PAGE
+
+
+def front_csv(found: DesignSearch) -> str:
+    """The front as CSV: a row for each plate at a voltage, SI numbers, units in columns' names."""
+    rows = []
+    for row in found.summary()["front"]:
+        made = row.pop("made") or {}
+        rows.append({**row, **made})
+    head = list(dict.fromkeys(key for row in rows for key in row)) or ["name"]
+    return csv_text(head, ([row.get(key) for key in head] for row in rows))
+
+
+def design_page(found: DesignSearch, *, fabrication: str = "") -> str:
+    """The page of a search as text; it is complete but for the files that it links to."""
+    requirements = found.requirements
+    drawn = {
+        item.key: figure_section(item, item.heading, _svg(found, item)) if item.has(found) else ""
+        for item in FIGURES
+    }
+    parts = [
+        section("To read first", verdict_list(first_sentences(found))),
+        section("What was asked for", bullets(asked_sentences(requirements) + _note(found))),
+        drawn["front"],
+        section("The plates of the front", _front_table(found)),
+        *_chosen_sections(found, fabrication),
+        *_reference_section(found),
+        drawn["limits"],
+        section("What each limit costs", bullets(limit_sentences(found))),
+        section("Where nothing keeps the limits", _corners(found)),
+        drawn["settings"],
+        drawn["screening"],
+        section("How far the screening is off", _errors(found)),
+        section("What all of this assumes", bullets(requirements.assumed)),
+        section("Files", _files(found)),
+    ]
+    name = as_html(requirements.name)
+    stamp = found.provenance
+    foot = (
+        f"{stamped(stamp, 'SHA-256 of the display that the search started from')} ·\n"
+        f"requirements <code>{escape(str(stamp.get('requirements_sha256', '')))}</code> ·\n"
+        f"seed {found.seed}. {found.computed} answers computed, {found.kept} taken from before."
+    )
+    return page(
+        f"{name}: a design search",
+        as_html(requirements.title),
+        f"<code>{name}</code>, searched by squeezefilm design",
+        "".join(parts),
+        foot,
+    )
+
+
+def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
+    """What one must know of a search, each with its kind: good, limit or doubt."""
+    requirements, chosen = found.requirements, found.chosen
+    if found.stopped:
+        yield "doubt", "The search was stopped: these are the plates found until then."
+    if chosen is None:
+        yield "limit", f"No plate meets the requirements. {counts_sentence(found)}"
+    else:
+        yield "good", counts_sentence(found)
+        # What a tolerance may push across a limit is not called good.
+        kept = 0.0 if chosen.made is None else chosen.made.kept
+        sure = "good" if kept >= _SURE else "limit"
+        made = made_sentences(requirements, chosen)[0]
+        for sentence in chosen_sentences(found)[:1]:
+            yield sure, f"The plate to build: {sentence} {made}"
+    if found.reference is not None and not found.reference.reason and found.front:
+        better = bool(found.beats_reference)
+        kind = "good" if better else "limit"
+        own = found.reference.objectives(requirements.objectives)
+        said = " and ".join(
+            f"{criterion_of(name).said} {criterion_of(name).shown(value)}"
+            for name, value in zip(requirements.objectives, own, strict=True)
+        )
+        yield (
+            kind,
+            f"{requirements.compare_with} has {said}; "
+            f"{found.plates_better or 'none'} of the front's plates "
+            f"{'are' if found.plates_better > 1 else 'is'} better in an objective and worse in "
+            "none.",
+        )
+    if gain := limit_gain(found):
+        yield "limit", gain
+    if chosen is not None and chosen.made is not None and chosen.made.kept < 0.9:
+        worst = max(chosen.made.broken.items(), key=lambda one: one[1], default=None)
+        why = "" if worst is None else f", mostly for its {CRITERIA[worst[0]].said}"
+        yield (
+            "limit",
+            f"Of the plates made from its drawing {100 * (1 - chosen.made.kept):.0f} % break a "
+            f"limit{why}: a limit met exactly is met by half of what is made. least_yield among "
+            "the limits asks for more.",
+        )
+    yield (
+        "doubt",
+        "No plate here was built. The quality factor is assumed, and with it every amplitude; the "
+        "friction is by a model fitted to people on glass alone.",
+    )
+
+
+def _note(found: DesignSearch) -> list[str]:
+    return [found.requirements.note] if found.requirements.note else []
+
+
+def _svg(found: DesignSearch, item: FigureOf) -> str:
+    """A figure as SVG; marks of plates have titles that a browser shows under the pointer."""
+    figure = item.draw(found)
+    svg = style.svg(figure, item.key, " ".join(figure.get_suptitle().split()))
+    titles = {
+        one.name: escape(
+            f"{one.name}: {chosen_words(found.requirements, one.evaluated.design)}; "
+            + ", ".join(
+                f"{head} {text}"
+                for head, text in zip(
+                    front_head(found.requirements),
+                    front_row(found.requirements, one),
+                    strict=True,
+                )
+            )
+        )
+        for one in found.front
+    }
+    return re.sub(
+        rf'<g id="{item.key}-{MARKED}([0-9a-f]+)-\d+">',
+        lambda mark: f"{mark[0]}<title>{titles[mark[1]]}</title>",
+        svg,
+    )
+
+
+def _front_table(found: DesignSearch) -> str:
+    if not found.front:
+        return "<p>No plate meets the requirements.</p>"
+    requirements = found.requirements
+    head = ["name", "what was chosen", *front_head(requirements)]
+    rows, kinds = [], []
+    for one in found.front:
+        chosen = one is found.chosen
+        # Where the marks of the figure lead to.
+        anchor = f'<a id="front-row-{one.name}" href="{PLATES}/{one.name}.toml">{one.name}</a>'
+        rows.append(
+            [
+                anchor + (" ◀ to build" if chosen else ""),
+                as_html(chosen_words(requirements, one.evaluated.design)),
+                *map(as_html, front_row(requirements, one)),
+            ]
+        )
+        kinds.append("assumed" if chosen else "")
+    if found.reference is not None and not found.reference.reason:
+        own = map(as_html, row_of(requirements, found.reference))
+        rows.append([as_html(requirements.compare_with), "to compare with", *own, ""])
+    caption = "A name leads to the plate's file; the yield is of plates made with the tolerances"
+    return html_table(caption, map(as_html, head), rows, kinds=kinds)
+
+
+def _chosen_sections(found: DesignSearch, fabrication: str) -> Iterator[str]:
+    chosen = found.chosen
+    if chosen is None:
+        return
+    more = f'<p><a href="{escape(fabrication)}">What it is made from: drawings and parts</a></p>'
+    yield section(
+        f"The plate to build: {chosen.name}",
+        bullets(chosen_sentences(found))
+        + (more if fabrication else "")
+        + text_table(
+            "Its numbers, by the solved plate",
+            ("criterion", "value", "limit", "margin", "90 % of those made"),
+            _criteria_rows(found, chosen),
+        ),
+    )
+    if effects := effect_rows(found.requirements, chosen):
+        yield section(
+            "What each tolerance does to it",
+            text_table(
+                "One standard deviation more of each, the others as drawn",
+                ("tolerance", *effect_head(found.requirements)),
+                effects,
+            ),
+        )
+    if told := chosen.evaluated.warnings:
+        yield section("What was warned of when it was solved", bullets(told))
+
+
+def _criteria_rows(found: DesignSearch, member: FrontMember) -> Iterator[tuple[str, ...]]:
+    """Every criterion of a plate that is known or was asked for: value, limit, margin, interval of
+    those made."""
+    bounds = {one.key: bound for one, bound in bounded(found.requirements.limits)}
+    left = margins(found.requirements, member.evaluated)
+    made = {} if member.made is None else member.made.intervals
+    for key, one in CRITERIA.items():
+        value = one.value(member.evaluated.numbers)
+        if key not in bounds and (math.isnan(value) or one.of):
+            continue
+        limit = one.bound_said(bounds[key]) if key in bounds else ""
+        yield (
+            one.said,
+            one.shown(value),
+            limit,
+            margin_words(left[key]) if key in left else "not judged" if limit else "",
+            " to ".join(one.shown(end) for end in made[key]) if key in made else "",
+        )
+
+
+def _reference_section(found: DesignSearch) -> Iterator[str]:
+    if not (said := reference_sentences(found)):
+        return
+    reference, chosen = found.reference, found.chosen
+    table = ""
+    if reference is not None and not reference.reason and chosen is not None:
+        rows = [
+            (
+                one.said,
+                one.shown(reference.numbers[key]),
+                one.shown(chosen.evaluated.numbers.get(key)),
+            )
+            for key, one in CRITERIA.items()
+            if key in reference.numbers
+        ]
+        head = ("criterion", found.requirements.compare_with, f"{chosen.name}, to build")
+        table = text_table("Both, judged in the same way", head, rows)
+    yield section(f"Beside {as_html(found.requirements.compare_with)}", bullets(said) + table)
+
+
+def _corners(found: DesignSearch) -> str:
+    if not found.corners:
+        return (
+            "<p>In every part of every range that was looked at often enough, something keeps the "
+            "limits.</p>"
+        )
+    rows = [
+        (
+            f"{one.shape}, {one.where}",
+            f"{one.designs}",
+            f"{CRITERIA[one.key].said}, {100 * one.share:.0f} % of them"
+            if one.key
+            else f"{100 * one.share:.0f} % cannot be built",
+            one.example,
+        )
+        for one in found.corners
+    ]
+    head = ("part of the space", "designs", "most often broken", "for example")
+    return text_table("Parts without a design that keeps all limits", head, rows)
+
+
+def _errors(found: DesignSearch) -> str:
+    rows = []
+    for space, one in zip(found.requirements.spaces, found.corrections, strict=True):
+        for key, raw in {} if one is None else one.raw.items():
+            after = one.errors[key] if one is not None else raw
+            what = f"{space.shape}: {CRITERIA[key].said}"
+            rows.append((what, si.percent(raw, 1), si.percent(after, 1)))
+    table = text_table(
+        "Screened against solved, one standard deviation",
+        ("number", "as screened", "corrected, on plates left out"),
+        rows,
+    )
+    return bullets(rank_sentences(found)) + (table if rows else "")
+
+
+def _files(found: DesignSearch) -> str:
+    plates = [f"{PLATES}/{one.name}.toml" for one in found.front]
+    return (
+        f"<p>{links((DATA, TABLE, *plates))}</p>"
+        "<p>A plate's file is a display like any other: <code>squeezefilm analyze "
+        "plates/NAME.toml</code> works it out, <code>squeezefilm render</code> plays a texture on "
+        "it.</p>"
+    )

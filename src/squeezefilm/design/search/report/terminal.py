@@ -1,0 +1,111 @@
+"""What the terminal shows of a design search, and of the requirements that there are."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from squeezefilm.core import presets
+from squeezefilm.core.kit.numbers import printable
+from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
+from squeezefilm.design.search.found import DesignSearch
+from squeezefilm.design.search.reasons import corner_in_words
+from squeezefilm.design.search.report.words import (
+    asked_sentences,
+    chosen_sentences,
+    chosen_words,
+    counts_sentence,
+    effect_head,
+    effect_rows,
+    front_head,
+    front_row,
+    limit_sentences,
+    many,
+    rank_sentences,
+    reference_sentences,
+    row_of,
+)
+from squeezefilm.design.search.requirements import load_requirements
+from squeezefilm.design.sweep.report.terminal import in_lines
+from squeezefilm.design.sweep.swept import counted
+
+_CORNERS, _FRONT = 8, 30
+
+
+def show_design(found: DesignSearch) -> None:
+    """Print a search: what was asked, the front, the plate to build, and why not others."""
+    console = plain_console()
+    requirements = found.requirements
+    heading(console, requirements.title)
+    _say(console, asked_sentences(requirements))
+    heading(console, "What was found")
+    console.print(counts_sentence(found))
+    if found.stopped:
+        console.print("! The search was stopped: these are the plates found until then.")
+    if found.front:
+        _show_front(console, found)
+    else:
+        console.print(
+            "No plate meets the requirements. What each limit costs is below: ease the one that "
+            "most designs break, or give the shapes more room."
+        )
+        for reason, count in counted(o.reason for o in found.screened if o.reason)[:3]:
+            console.print(f"! {many(count, 'design')} cannot be built: {printable(reason)}")
+    if compared := reference_sentences(found):
+        heading(console, f"Beside {requirements.compare_with}")
+        _say(console, compared)
+    heading(console, "What each limit does")
+    _say(console, limit_sentences(found))
+    if found.corners:
+        heading(console, "Where nothing keeps the limits")
+        _say(
+            console,
+            [f"{corner_in_words(one)}." for one in found.corners[:_CORNERS]],
+        )
+        if len(found.corners) > _CORNERS:
+            console.print(f"{len(found.corners) - _CORNERS} more stand in the files of --out")
+    heading(console, "How good the screening was")
+    _say(console, rank_sentences(found))
+    heading(console, "What all of this assumes")
+    _say(console, [f"{one[0].upper()}{one[1:]}." for one in requirements.assumed])
+    console.print(f"{found.computed} answers computed, {found.kept} taken from before")
+
+
+def _say(console: Console, sentences: list[str]) -> None:
+    bullets(console, [("–", one, "") for one in sentences])
+
+
+def _show_front(console: Console, found: DesignSearch) -> None:
+    requirements = found.requirements
+    members = found.front[:_FRONT]
+    if len(members) > 1:
+        heading(console, "The front: what each plate does")
+        head = [in_lines(one) for one in ("name", *front_head(requirements))]
+        rows = [[one.name, *front_row(requirements, one)] for one in members]
+        if found.reference is not None and not found.reference.reason:
+            rows.append(["to compare", *row_of(requirements, found.reference), ""])
+        looks = {found.chosen_name: "bold"}
+        table(console, head, rows, fixed=(0,), styles=lambda row: looks.get(row[0], ""))
+        heading(console, "The front: what was chosen")
+        made_of = [[one.name, chosen_words(requirements, one.evaluated.design)] for one in members]
+        table(console, ("", ""), made_of, fixed=(0,))
+        if len(found.front) > len(members):
+            console.print(f"{len(found.front) - len(members)} more rows stand in front.csv")
+    heading(console, "The plate to build")
+    _say(console, chosen_sentences(found))
+    assert found.chosen is not None, "there is a front"
+    if effects := effect_rows(requirements, found.chosen):
+        heading(console, "What one standard deviation more of each tolerance does to it")
+        head = [in_lines(one) for one in ("", *effect_head(requirements))]
+        table(console, head, effects)
+
+
+def show_requirements() -> None:
+    """Print the requirements that come with the package, and what to do with them."""
+    console = plain_console()
+    rows = [(name, load_requirements(name).title) for name in presets.requirement_names()]
+    table(console, ("requirements", "what they are"), rows, fixed=(0,))
+    console.print(
+        "squeezefilm design NAME searches for plates that meet them. For your own, write a TOML "
+        "file: docs/reference/requirements.md lists every key, and docs/how-to/design-a-plate.md "
+        "begins with one."
+    )

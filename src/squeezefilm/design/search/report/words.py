@@ -1,0 +1,354 @@
+"""A design search in words and rows, for terminal and page alike."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit.numbers import changed, shown, signed
+from squeezefilm.design.search.candidate import Design, Evaluated
+from squeezefilm.design.search.criteria import CRITERIA, OF_SOLVED, bounded, criterion_of
+from squeezefilm.design.search.found import DesignSearch, FrontMember
+from squeezefilm.design.search.reasons import gains_in_words, limit_in_words, margins
+from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.space import Choice, Variable
+from squeezefilm.design.search.stock import OWN
+
+ALWAYS = ("resonance_frequency", "vibration_amplitude", "temperature_rise")
+"""What is told of every plate beside its objectives."""
+_LEAST = 0.001  # smaller changes of a friction are said to be so
+_TOLERANCES = {
+    "thickness": "thickness of the sheet",
+    "ceramic_thickness": "thickness of the ceramics",
+    "sides": "length or diameter",
+    "young_modulus": "Young's modulus of the sheet",
+    "ceramic_stiffness": "stiffness of the ceramic",
+    "charge_coefficient": "charge coefficient of the ceramic",
+    "quality_factor": "quality factor of the assembly",
+}
+_LENGTHS = ("thickness", "ceramic_thickness", "sides")
+
+
+def setting_words(variable: Variable, design: Design, requirements: Requirements) -> str:
+    """What a design has for a variable, in words."""
+    value = design.settings[variable.name]
+    if isinstance(variable, Choice):
+        return material_words(variable.name, str(value), requirements)
+    if variable.unit.symbol == "1":
+        number = float(value)
+        return f"{number:g}" if number > 1 or number == int(number) else si.percent(number)
+    return shown(float(value), variable.unit, 4)
+
+
+def material_words(kind: str, name: str, requirements: Requirements) -> str:
+    """A material's name; of one "as described" that of the display the search starts from."""
+    if name != OWN:
+        return name
+    own = requirements.own
+    known = own.substrate.name if kind == "substrate" else own.ceramic.name
+    return f"{known} ({OWN})"
+
+
+def chosen_words(requirements: Requirements, design: Design) -> str:
+    """What was chosen of a plate, in a line; the shape before it where there are several."""
+    said = ", ".join(_chosen(requirements, design))
+    if len(requirements.spaces) == 1:
+        return said
+    return f"{requirements.spaces[design.shape].shape}: {said}"
+
+
+def _chosen(requirements: Requirements, design: Design) -> Iterator[str]:
+    space = requirements.spaces[design.shape]
+    said = {one.name: setting_words(one, design, requirements) for one in space}
+    fixed = {one.name for one in space if one.is_fixed}
+    yield f"{said.pop('thickness')} of {said.pop('substrate')}"
+    yield f"{said.pop('ceramic_thickness')} of {said.pop('ceramic')}"
+    for name, text in said.items():
+        if name.startswith("nodal_"):
+            yield f"{text} {name.replace('_', ' ')}"
+        elif name == "cover":
+            if name not in fixed:
+                yield f"ceramics cover {text}"
+        else:
+            yield f"{name.replace('_', ' ')} {text}"
+
+
+def asked_sentences(requirements: Requirements) -> list[str]:
+    """What was asked for: finger, workspace, drive, objectives, limits, shapes."""
+    touch, room, drive = requirements.touch, requirements.workspace.room, requirements.drive
+    finger = requirements.base.finger
+    surface = requirements.base.surfaces[0].name
+    least, most = (" × ".join(shown(side, si.Unit("m")) for side in one) for one in
+                   (room.least, room.most))  # fmt: skip
+    size = least if least == most else f"at least {least} and at most {most}"
+    volts = shown(drive.voltage, si.Unit("V"))
+    if drive.least_voltage not in (None, drive.voltage):
+        volts = f"{shown(float(drive.least_voltage or 0), si.Unit('V'))} to {volts}"
+    goals = " and ".join(criterion_of(one).said for one in requirements.objectives)
+    bounds = [one.limit_said(bound) for one, bound in bounded(requirements.limits)]
+    if requirements.limits.least_yield is not None:
+        bounds.append(f"yield at least {si.percent(requirements.limits.least_yield)}")
+    shapes = ", ".join(one.shape for one in requirements.spaces)
+    return [
+        f"A finger at {shown(touch.speed, si.Unit('m/s'))} with "
+        f"{shown(finger.normal_force, si.Unit('N'))} on '{surface}'; a plate of {size}, driven "
+        f"with {volts}.",
+        f"As small as possible: {goals}.",
+        f"Limits: {'; '.join(bounds) if bounds else 'none'}.",
+        f"Shapes: {shapes}. Where a material is '{OWN}', it is that of {requirements.start_from}.",
+    ]
+
+
+def counts_sentence(found: DesignSearch) -> str:
+    """How many designs were looked at, and what is left of them."""
+    screened, several = len(found.screened), len(found.solved) > found.plates_solved
+    feasible = sum(one.is_feasible for one in found.screened)
+    failed = sum(bool(one.reason) for one in found.screened)
+    return (
+        f"{many(screened, 'design')} screened, of which {feasible} keep all limits"
+        + (f" and {failed} cannot be built or computed" if failed else "")
+        + f"; {many(found.plates_solved, 'plate')} solved in three dimensions"
+        + (", each judged at several voltages" if several else "")
+        + f", of which {found.plates_feasible} keep them; "
+        + (
+            f"{front_words(found)} that none other beats: the front."
+            if found.front
+            else "the front is empty."
+        )
+    )
+
+
+def front_words(found: DesignSearch) -> str:
+    """How many plates the front has, and at how many voltages in all where these are more."""
+    plates = many(found.plates_on_front, "plate")
+    count = len(found.front)
+    return plates if count == found.plates_on_front else f"{plates}, at {count} voltages in all,"
+
+
+def many(count: int, word: str) -> str:
+    """A count of things, in the plural unless there is one."""
+    return f"{count} {word}{'' if count == 1 else 's'}"
+
+
+def front_head(requirements: Requirements) -> list[str]:
+    """The headings of `front_row`, without the name."""
+    return [*(criterion_of(one).said for one in requirements.objectives), *_others(requirements),
+            "yield"]  # fmt: skip
+
+
+def _others(requirements: Requirements) -> list[str]:
+    return [CRITERIA[key].said for key in _told(requirements)[len(requirements.objectives) :]]
+
+
+def _told(requirements: Requirements) -> list[str]:
+    """The keys of the criteria of a front's table."""
+    keys = [criterion_of(one).key for one in requirements.objectives]
+    return [*keys, *(key for key in ALWAYS if key not in keys)]
+
+
+def front_row(requirements: Requirements, member: FrontMember) -> list[str]:
+    """Objectives, frequency, amplitude, temperature and yield of a plate of the front."""
+    values = row_of(requirements, member.evaluated)
+    return [*values, "not known" if member.made is None else si.percent(member.made.kept)]
+
+
+def row_of(requirements: Requirements, one: Evaluated) -> list[str]:
+    """The criteria of a front's table, of any evaluated design."""
+    return [CRITERIA[key].shown(one.numbers.get(key)) for key in _told(requirements)]
+
+
+def chosen_sentences(found: DesignSearch) -> list[str]:
+    """Which plate is chosen, why, what it is made of, which limits are nearest, how many of those
+    made keep them."""
+    chosen = found.chosen
+    if chosen is None:
+        return []
+    goals = [criterion_of(one) for one in found.requirements.objectives]
+    has = " and ".join(
+        f"{one.said} {one.shown(chosen.evaluated.numbers.get(one.key))}" for one in goals
+    )
+    best = " and ".join(
+        one.shown(float(found.objectives[:, k].min())) for k, one in enumerate(goals)
+    )
+    said = [
+        f"{chosen.name} has {has}. Of the front it is nearest to the best of every objective "
+        f"({best}), each measured from the front's best to its worst."
+        if len(found.front) > 1
+        else f"{chosen.name} has {has}. It is the only plate of the front.",
+        f"It is made of {chosen_words(found.requirements, chosen.evaluated.design)}.",
+    ]
+    near = list(margins(found.requirements, chosen.evaluated).items())[:2]
+    if near:
+        told = " and ".join(f"{CRITERIA[key].said} ({margin_words(by)})" for key, by in near)
+        said.append(f"Its nearest limits: {told}.")
+    return [*said, *made_sentences(found.requirements, chosen)]
+
+
+def margin_words(margin: float) -> str:
+    """How far a number stays from its limit, as a share of the limit."""
+    if math.isinf(margin) or math.isnan(margin):
+        return "far from it"
+    return f"{si.percent(margin, 1)} of it left" if margin >= 0 else f"{changed(-margin)} beyond it"
+
+
+def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]:
+    """How many of the plates that are made of a drawing keep the limits, and what they break."""
+    made = member.made
+    if made is None:
+        return ["How many plates made of its drawing keep the limits was not computed."]
+    breaks = sorted(made.broken.items(), key=lambda one: -one[1])
+    told = ", ".join(f"{CRITERIA[key].said} by {count}" for key, count in breaks)
+    failed = f"; {made.failed} could not be computed" if made.failed else ""
+    alone = requirements.limits.unasked_of_made
+    unasked = " and ".join(one.said for one, _ in bounded(requirements.limits)
+                           if one.limit in alone or one.key == "surest_friction")  # fmt: skip
+    return [
+        f"Of {made.draws} plates made with the tolerances {si.percent(made.kept)} keep all limits"
+        + (f" but those on {unasked}, which only a solved plate can be asked" if unasked else "")
+        + (f"; broken are {told}" if told else "")
+        + f"{failed}."
+    ]
+
+
+def effect_rows(requirements: Requirements, member: FrontMember) -> list[tuple[str, ...]]:
+    """What one standard deviation more of each tolerance does: its name and size, then the changes
+    of frequency and objectives."""
+    if member.made is None:
+        return []
+    keys = _effect_keys(requirements)
+    rows = []
+    for name, effects in member.made.effects.items():
+        by = getattr(requirements.tolerances, name)
+        size = shown(by, si.Unit("m")) if name in _LENGTHS else si.percent(by, 1)
+        rows.append(
+            (
+                f"{_TOLERANCES[name]} +{size}",
+                *(_effect(key, effects.get(key)) for key in keys),
+            )
+        )
+    return rows
+
+
+def effect_head(requirements: Requirements) -> list[str]:
+    """The headings of `effect_rows`, without the name."""
+    return [criterion_of(key).said for key in _effect_keys(requirements)]
+
+
+def _effect_keys(requirements: Requirements) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(("resonance_frequency", *requirements.objectives)))
+
+
+def _effect(objective: str, value: float | None) -> str:
+    if value is None or not math.isfinite(value):
+        return "not known"
+    if value == 0:
+        return "none"
+    one = criterion_of(objective)
+    if one.unit.symbol == "1" and abs(value) < _LEAST:
+        return f"less than {_LEAST:g}"
+    return signed(value, one.unit, 2)
+
+
+def reference_sentences(found: DesignSearch) -> list[str]:
+    """What the display to compare with left on the table, or why nothing can be said of it."""
+    reference, requirements = found.reference, found.requirements
+    if not requirements.compare_with:
+        return []
+    name = requirements.compare_with
+    if reference is None:
+        return [f"{name} was not judged: the search was stopped before."]
+    if reference.reason:
+        return [f"{name} could not be judged: {reference.reason}"]
+    own = reference.objectives(requirements.objectives)
+    goals = [criterion_of(one) for one in requirements.objectives]
+    has = " and ".join(
+        f"{one.said} {one.shown(value)}" for one, value in zip(goals, own, strict=True)
+    )
+    said = [f"Judged in the same way, {name} has {has}."]
+    said += [f"It breaks a limit: {one.sentence}." for one in reference.broken]
+    if not reference.broken:
+        said.append("It keeps every limit that could be asked of it.")
+    if not found.front:
+        return [*said, "No plate was found to set beside it."]
+    said += [_left(found, k, own) for k in range(len(goals))]
+    better = found.plates_better
+    said.append(
+        f"Of {many(found.plates_on_front, 'plate')} of the front {better} beat it: better in an "
+        "objective and worse in none."
+        if better
+        else "No plate of the front is better than it in an objective and worse in none."
+    )
+    return said
+
+
+def _left(found: DesignSearch, k: int, own: tuple[float, ...]) -> str:
+    """How much better one objective can be where no other is worse."""
+    goals = [criterion_of(one) for one in found.requirements.objectives]
+    others = [j for j in range(len(goals)) if j != k]
+    rows = found.objectives
+    as_good = np.flatnonzero(np.all(rows[:, others] <= np.array(own)[others], axis=1))
+    beside = " and ".join(goals[j].said for j in others)
+    now = goals[k].shown(own[k])
+    if as_good.size:
+        best = as_good[np.argmin(rows[as_good, k])]
+        if rows[best, k] < own[k]:
+            text = goals[k].shown(float(rows[best, k]))
+            return (
+                f"With {beside} no worse, {goals[k].said} can be {text} in place of {now} "
+                f"({found.front[best].name})."
+            )
+    return f"With {beside} no worse, no plate was found whose {goals[k].said} is below {now}."
+
+
+def rank_sentences(found: DesignSearch) -> list[str]:
+    """How well the screening ranked what was then solved."""
+    said = [
+        f"Screening and solving rank the solved plates by {criterion_of(name).said} with "
+        f"Spearman's ρ = {value:.2f}."
+        for name, value in found.ranks.items()
+    ]
+    for space, one in zip(found.requirements.spaces, found.corrections, strict=True):
+        if one is None:
+            continue
+        told = ", ".join(
+            f"{criterion_of(name).said} {si.percent(one.raw[key], 1)} before and "
+            f"{si.percent(one.errors[key], 1)} after the correction"
+            for name in found.requirements.objectives
+            if (key := criterion_of(name).key) in one.errors
+        )
+        if told:
+            said.append(
+                f"Of {space.shape}, the screened number is off by (one standard deviation, "
+                f"{one.plates} plates, each left out of what its correction was learned from): "
+                f"{told}."
+            )
+    return said or ["Too few plates were solved to say how good the screening was."]
+
+
+def limit_sentences(found: DesignSearch) -> list[str]:
+    """What each limit does to the screened designs; those that none breaks in one sentence, those
+    that none was asked in another."""
+    count = len(found.screened)
+    said = [limit_in_words(one, count) for one in found.limits if one.broken]
+    idle = [one for one in found.limits if not one.broken]
+    for head, those in (
+        ("No screened design breaks", [one for one in idle if one.key not in OF_SOLVED]),
+        ("Asked of solved plates only", [one for one in idle if one.key in OF_SOLVED]),
+    ):
+        if those:
+            said.append(f"{head}: {'; '.join(CRITERIA[o.key].limit_said(o.limit) for o in those)}.")
+    return said or ["No limit was asked for."]
+
+
+def limit_gain(found: DesignSearch) -> str:
+    """The limit without which the objectives could be better, in a sentence; "" for none."""
+    for one in found.limits:
+        if one.best_without:
+            return (
+                f"The limit on {CRITERIA[one.key].said} costs: without it there would be "
+                f"{gains_in_words(one)} (screened, not solved)."
+            )
+    return ""

@@ -1,0 +1,433 @@
+"""A design search: screened by the thousand, corrected, solved, proposed anew, and judged."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import called_with
+from squeezefilm.core.errors import InputError, WorkersError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
+from squeezefilm.core.progress import SayProgress, about
+from squeezefilm.core.results import stamp
+from squeezefilm.design.search.candidate import (
+    Design,
+    Evaluated,
+    Level,
+    design_of,
+    evaluate_all,
+    plates_of,
+)
+from squeezefilm.design.search.correction import Correction, learned
+from squeezefilm.design.search.evolution import POPULATION, Proposals
+from squeezefilm.design.search.found import DesignSearch, FrontMember
+from squeezefilm.design.search.front import front_of
+from squeezefilm.design.search.reasons import empty_corners, limit_reasons
+from squeezefilm.design.search.reference import reference_of
+from squeezefilm.design.search.requirements import NamedRequirements
+from squeezefilm.design.search.space import VOLTAGE, Space
+from squeezefilm.design.search.store import DesignStore, requirements_hash
+from squeezefilm.design.search.tolerance import Made, made_of
+from squeezefilm.design.search.worth_solving import Seen, objectives_of, worth_solving
+from squeezefilm.design.sweep.tasks import Lost, Workers
+from squeezefilm.design.sweep.workers import workers
+
+# Screened designs to a task: one takes some ten milliseconds.
+_TOGETHER = 8
+# Voltages, from the least to the most, at which a plate that was solved is judged beside its own: a
+# tenth of the time of solving another, but where an interval is asked of each.
+_VOLTAGES: Mapping[str, int] = {"nominal": 5, "95 %": 3}
+_BATCH = 16
+# The share of the plates to solve that the Bayesian sampler proposes, where there are enough for it
+# to learn from: of nine it learns nothing, and proposes plates anywhere.
+_BY_SAMPLER, _ENOUGH_FOR_SAMPLER = 0.25, 40
+# Designs near each of so many of the front, and as many expected there, that are screened in each
+# of some generations before the next are solved.
+_NEAR, _FROM, _GENERATIONS = 8, 12, 3
+
+
+@dataclass(frozen=True)
+class Glimpse:
+    """What a search has so far, for whoever watches: the stage in words, how many designs are
+    screened and how many plates solved, the objectives (SI) of the feasible screened designs that
+    none other beats, the front of the solved ones, and the display to compare with."""
+
+    stage: str
+    screened: int
+    solved: int
+    screened_front: tuple[tuple[float, ...], ...]
+    front: tuple[Evaluated, ...]
+    reference: Evaluated | None
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class SearchRequest:
+    """What `search_designs` is asked for."""
+
+    requirements: NamedRequirements
+    _: KW_ONLY
+    screened: int = 2000
+    solved: int = 120
+    seed: int = 1
+    jobs: int = 1
+    scheduler: str | None = None
+    out: str | Path | None = None
+    member: int = 0
+    progress: SayProgress | None = None
+    watch: Callable[[Glimpse], None] | None = None
+
+
+@reads_text
+@called_with(SearchRequest)
+def search_designs(asked: SearchRequest) -> DesignSearch:
+    """The plates that meet requirements and that none other beats, solved in three dimensions.
+
+    Args:
+        requirements: what is asked of a display; a preset's name, or a TOML file.
+        screened: designs that are looked at by the screening theory before any is solved; beside
+            the front some hundreds more are, between one batch of solved plates and the next.
+        solved: plates that are solved in three dimensions, at most; each is judged at voltages
+            from the least to the most.
+        seed: of everything that is drawn.
+        jobs: processes; more than one in a script needs ``if __name__ == "__main__":``.
+        scheduler: of a Dask cluster that computes in place of processes, "tcp://host:8786".
+        out: a folder that keeps every design as it comes, and has those of before.
+        member: of several hosts that search in one folder at once, each has a number of its own:
+            0, 1, … They learn from each other, and each ends with what all have solved.
+        progress: is told what is being done, and how long it takes.
+        watch: is shown what there is after every batch.
+
+    Raises `InputError` before anything is computed for requirements that contradict themselves,
+    and where none of the screened designs can be built.
+    """
+    run = SearchRun(asked)
+    run.finish()
+    return run.result()
+
+
+def search_until_stopped(asked: SearchRequest) -> tuple[DesignSearch, str]:
+    """A search that Ctrl-C or the end of a cluster stops, with what was found until then, and what
+    stopped it (empty where nothing did). Raises as `search_designs`, and `WorkersError` where a
+    cluster cannot be used from the beginning."""
+    run = SearchRun(asked)
+    stopped = ""
+    try:
+        run.finish()
+    except KeyboardInterrupt:
+        stopped = "stopped"
+    except WorkersError as error:
+        found = run.result()
+        if not found.screened:
+            raise
+        return found, str(error)
+    return run.result(), stopped
+
+
+class SearchRun:
+    """A search under way: what it knows, and what it does next."""
+
+    def __init__(self, asked: SearchRequest) -> None:
+        require_within(DESIGNS_SCREENED, asked.screened, "screened")
+        require_within(DESIGNS_SOLVED, asked.solved, "solved")
+        si.require("jobs", asked.jobs, at_least=1)
+        si.require("member", asked.member, at_least=0)
+        si.require("seed", asked.seed, at_least=0)
+        self._asked, self.requirements = asked, asked.requirements
+        self._folder = None if asked.out is None else Path(asked.out)
+        self._store = DesignStore(self.requirements, self._folder, asked.member)
+        self._tell = asked.progress or (lambda _: None)
+        self._made: dict[Design, Made] = {}
+        self._reference: Evaluated | None = None
+        self._corrections: list[Correction | None] = [None] * len(self.requirements.spaces)
+        self._seen: dict[Level, dict[Design, Evaluated]] = {"screened": {}, "solved": {}}
+        self._began, self._done = time.monotonic(), False
+        self._stage, self._shown_next = "", 0.0
+
+    def finish(self) -> None:
+        """All that is left to do. What came is kept where this is interrupted."""
+        asked = self._asked
+        with workers(
+            jobs=asked.jobs, scheduler=asked.scheduler, tell=self._tell, first=evaluate_all
+        ) as pool:
+            self._compare()
+            self._screen(pool)
+            every = asked.solved
+            if every >= _ENOUGH_FOR_SAMPLER:
+                self._solve_the_best(pool, every - round(_BY_SAMPLER * every))
+                self._propose(pool)
+            self._solve_the_best(pool, every)
+            self._learn()
+            # Only now: what is proposed and solved here depends on the seed alone.
+            self._seen["solved"].update(self._store.solved_by_others())
+            self._make(pool)
+        self._done = True
+
+    def _compare(self) -> None:
+        """The display of `compare_with`, by the same questions."""
+        if self.requirements.compare_with:
+            self._tell(f"{self.requirements.compare_with}, to compare with")
+            self._reference = reference_of(self.requirements)
+
+    def _screen(self, pool: Workers) -> None:
+        spaces = self.requirements.spaces
+        share = -(-self._asked.screened // len(spaces))
+        begun = time.monotonic()
+        for shape, space in enumerate(spaces):
+            proposals = self._proposals(shape, "screened")
+            size = min(POPULATION, share)
+            for batch in range(-(-share // size)):
+                self._say_screening(space.shape, shape * share + batch * size, begun)
+                asked = proposals.ask(min(size, share - batch * size), batch)
+                found = self._evaluated(pool, [design for _, design in asked], "screened")
+                proposals.tell([(trial, found[design]) for trial, design in asked])
+                self._show()
+        if all(one.reason for one in self._seen["screened"].values()):
+            first = next(iter(self._seen["screened"].values()))
+            raise InputError(
+                f"none of the screened designs can be built, for example: {first.reason}"
+            )
+
+    def _say_screening(self, shape: str, done: int, begun: float) -> None:
+        self._stage, every = f"screening {shape}", self._asked.screened
+        left = ""
+        if done:
+            seconds = (time.monotonic() - begun) / done * (every - done)
+            left = f", {about(max(seconds, 0.0))} left"
+        feasible = sum(one.is_feasible for one in self._seen["screened"].values())
+        self._tell(f"screening {shape}: {done} of {every} designs, {feasible} feasible{left}")
+
+    def _proposals(self, shape: int, level: Level) -> Proposals:
+        asked = self._asked
+        proposals = Proposals(
+            self.requirements, shape, level, self._folder, asked.seed, member=asked.member
+        )
+        if proposals.is_rebuilt:
+            proposals.publish_again(self._store.of_others(shape, level))
+        return proposals
+
+    def _solve_the_best(self, pool: Workers, most: int) -> None:
+        """Solve the designs that the screening, corrected by what was solved, takes for the best,
+        until none is left that might enter the front, or `most` plates are solved."""
+        while (left := most - len(self._plates_solved())) > 0:
+            self._learn()
+            self._screen_beside_the_front(pool)
+            chosen = worth_solving(
+                self.requirements, self._seen, self._corrections, min(_BATCH, left)
+            )
+            if not chosen:
+                return
+            self._say_solving("the best that were screened")
+            self._solve(pool, chosen)
+            self._show()
+
+    def _plates_solved(self) -> Mapping[Design, tuple[Design, ...]]:
+        return plates_of(self._seen["solved"])
+
+    def _solve(self, pool: Workers, designs: Iterable[Design]) -> Mapping[Design, Evaluated]:
+        """Solve designs, and judge their plates at other voltages, too."""
+        asked = [each for one in designs for each in (one, *self._at_other_voltages(one))]
+        return self._evaluated(pool, asked, "solved")
+
+    def _at_other_voltages(self, design: Design) -> list[Design]:
+        volts = self.requirements.spaces[design.shape].variable(VOLTAGE)
+        if volts.is_fixed:
+            return []
+        shares = np.linspace(0, 1, _VOLTAGES[self.requirements.limits.confidence]).tolist()
+        return [design.at_voltage(float(volts.at(one, {}))) for one in shares]
+
+    def _screen_beside_the_front(self, pool: Workers) -> None:
+        """Look by the screening theory at what differs a little from the solved front, and from
+        what is expected on it, some generations on: there the correction is best, and limits can be
+        met to the point."""
+        front, solved = self._front(), self._seen["solved"]
+        if not front:
+            return  # what is expected before any plate kept the limits lies beyond them
+        rows = objectives_of(self.requirements, front)
+        # Always from the ends of the front, which decide what it dominates.
+        ends = [front[k].design for k in np.argmin(rows, axis=0)]
+        self._screen_near(pool, ends, Space.beside)
+        draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
+        for _ in range(_GENERATIONS):
+            plates = plates_of(front[k].design for k in draw.permutation(len(front)))
+            known = [one[-1] for one in plates.values()][:_FROM]
+            expected = worth_solving(self.requirements, self._seen, self._corrections, _FROM)
+            self._screen_near(
+                pool,
+                (*ends, *known, *expected),
+                lambda space, here: [space.moved(here, draw) for _ in range(_NEAR)],
+            )
+
+    def _screen_near(
+        self,
+        pool: Workers,
+        designs: Iterable[Design],
+        near: Callable[[Space, Mapping[str, float]], Iterable[Mapping[str, float]]],
+    ) -> None:
+        """Screen what lies near designs, by places that their space gives."""
+        found, solved = list[Design](), self._plates_solved()
+        for one in designs:
+            space = self.requirements.spaces[one.shape]
+            places = near(space, space.places(one.settings))
+            found += [design_of(one.shape, space.at(there)) for there in places]
+        self._evaluated(pool, [one for one in found if one.plate not in solved], "screened")
+
+    def _learn(self) -> None:
+        solved = list(self._seen["solved"].values())
+        for shape, space in enumerate(self.requirements.spaces):
+            here = [one for one in solved if one.design.shape == shape]
+            self._corrections[shape] = learned(space, self._seen["screened"], here)
+
+    def _propose(self, pool: Workers) -> None:
+        """Let a Bayesian sampler propose plates beside the front, and solve them."""
+        solved = self._seen["solved"]
+        shapes = sorted({one.design.shape for one in self._front()})
+        batch = 0
+        studies = {}
+        for shape in shapes:
+            studies[shape] = self._proposals(shape, "solved")
+            studies[shape].known([one for one in solved.values() if one.design.shape == shape])
+        while shapes and (before := len(self._plates_solved())) < self._asked.solved:
+            for shape in shapes:
+                left = self._asked.solved - len(self._plates_solved())
+                count = min(_BATCH // len(shapes) or 1, left)
+                if count <= 0:
+                    break
+                self._say_solving("what lies beside the front")
+                asked = studies[shape].ask(count, batch)
+                fresh = list(dict.fromkeys(design for _, design in asked))
+                # Where it lies beside its screened number is asked, too.
+                self._evaluated(pool, fresh, "screened")
+                found = self._solve(pool, fresh)
+                studies[shape].tell([(trial, found[design]) for trial, design in asked])
+                self._show()
+            batch += 1
+            if len(self._plates_solved()) == before:
+                break  # it proposes nothing new
+
+    def _say_solving(self, what: str) -> None:
+        self._stage, solved = f"solving {what}", len(self._plates_solved())
+        left = ""
+        # Nobody knows how many workers a cluster has.
+        if solved and self._asked.scheduler is None:
+            took = sum(one.seconds for one in self._seen["solved"].values()) / solved
+            rest = (self._asked.solved - solved) * took / self._asked.jobs
+            left = f", {about(rest)} left at most"
+        on_front = len(plates_of(one.design for one in self._front()))
+        self._tell(
+            f"solving {what}: {solved} of at most {self._asked.solved} plates, "
+            f"{on_front} on the front{left}"
+        )
+
+    def _make(self, pool: Workers) -> None:
+        """Draw what is made of the front's drawings; where a yield is asked for, leave out what
+        misses it, and draw what comes to the front in its place."""
+        asked: set[Design] = set()
+        while front := [one for one in self._front() if one.design not in asked]:
+            asked.update(one.design for one in front)
+            kept = ((one.design, self._store.made(one.design)) for one in front)
+            self._made.update((design, made) for design, made in kept if made is not None)
+            tasks = {o.design: (self.requirements, o) for o in front if o.design not in self._made}
+            for done, (design, made) in enumerate(pool.answers(made_of, tasks)):
+                if not isinstance(made, Lost):
+                    self._made[design] = made
+                    self._store.add_made(design, made)
+                self._tell(f"plates made with the tolerances: {done + 1} of {len(tasks)} drawings")
+
+    def _evaluated(
+        self, pool: Workers, designs: Sequence[Design], level: Level
+    ) -> Mapping[Design, Evaluated]:
+        """Designs at a level, kept ones as they are."""
+        found: dict[Design, Evaluated] = {}
+        missing: dict[Design, None] = {}
+        for design in designs:
+            known = self._store.get(design, level)
+            if known is None:
+                missing[design] = None
+            else:
+                found[design] = known
+        together = plates_of(missing).values() if level == "solved" else _parts(missing, _TOGETHER)
+        parts = list(together)
+        tasks = {number: (self.requirements, part, level) for number, part in enumerate(parts)}
+        try:
+            for number, answers in pool.answers(evaluate_all, tasks):
+                if isinstance(answers, Lost):
+                    why = answers.reason
+                    answers = [
+                        Evaluated(one, level, {}, reason=why, lasting=False)
+                        for one in parts[number]
+                    ]
+                self._store.add(answers)
+                found.update((one.design, one) for one in answers)
+                self._show_meanwhile(level, found)
+        finally:
+            # What came before Ctrl-C is shown, too.
+            came = [design for design in designs if design in found]
+            self._seen[level].update((design, found[design]) for design in came)
+        return found
+
+    def _front(self, seen: Seen | None = None) -> list[Evaluated]:
+        """The feasible solved designs that none other beats, the first objective rising."""
+        wanted, made = self.requirements.limits.least_yield or 0.0, self._made
+        feasible = [
+            one
+            for one in (seen or self._seen)["solved"].values()
+            if one.is_feasible and (one.design not in made or made[one.design].kept >= wanted)
+        ]
+        rows = objectives_of(self.requirements, feasible)
+        return [feasible[k] for k in sorted(front_of(rows), key=lambda k: tuple(rows[k]))]
+
+    def _show_meanwhile(self, level: Level, found: Mapping[Design, Evaluated]) -> None:
+        """Show what came in the middle of a batch, of which the order does not depend on it; so
+        seldom that it takes little of the time."""
+        now = time.monotonic()
+        if self._asked.watch is None or now < self._shown_next:
+            return
+        self._show({**self._seen, level: {**self._seen[level], **found}})
+        self._shown_next = time.monotonic() + max(1.0, 20 * (time.monotonic() - now))
+
+    def _show(self, seen: Seen | None = None) -> None:
+        """Show what was seen, if anybody watches."""
+        if self._asked.watch is None:
+            return
+        seen = seen or self._seen
+        feasible = [one for one in seen["screened"].values() if one.is_feasible]
+        rows = objectives_of(self.requirements, feasible)
+        screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows))
+        counts = len(seen["screened"]), len(plates_of(seen["solved"]))
+        front = tuple(self._front(seen))
+        self._asked.watch(Glimpse(self._stage, *counts, screened, front, self._reference))
+
+    def result(self) -> DesignSearch:
+        """What was found until now."""
+        requirements, screened = self.requirements, tuple(self._seen["screened"].values())
+        return DesignSearch(
+            requirements=requirements,
+            seed=self._asked.seed,
+            screened=screened,
+            solved=tuple(self._seen["solved"].values()),
+            front=tuple(FrontMember(one, self._made.get(one.design)) for one in self._front()),
+            reference=self._reference,
+            limits=limit_reasons(requirements, screened),
+            corners=empty_corners(requirements, screened),
+            corrections=tuple(self._corrections),
+            computed=self._store.computed,
+            kept=len(screened) + len(self._seen["solved"]) - self._store.computed,
+            seconds=time.monotonic() - self._began,
+            stopped=not self._done,
+            provenance=stamp(requirements.base, self._asked.seed)
+            | {"requirements_sha256": requirements_hash(requirements)},
+        )
+
+
+def _parts(designs: Iterable[Design], size: int) -> Iterator[tuple[Design, ...]]:
+    each = iter(designs)
+    while part := tuple(itertools.islice(each, size)):
+        yield part

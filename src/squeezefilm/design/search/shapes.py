@@ -1,0 +1,227 @@
+"""The shapes that a search may build: what is chosen of each, and the plate that follows from it.
+
+- "strips": a rectangle with full-width ceramics of alternating sign along its length, one fewer
+  than the nodal lines (the paper's monomorph); with `both_faces` a bimorph.
+- "edge_strips": a rectangle, usually of glass, with a strip along each long edge, driving lines
+  that run along its length.
+- "disc": a disc on a ceramic disc, in a mode of nodal circles.
+- "ring": a ring on a ceramic ring of sectors poled in turn, in a mode of nodal diameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from squeezefilm.core import hard_limits as hard
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import GeometryError
+from squeezefilm.design.search.round_shapes import Disc, Ring
+from squeezefilm.design.search.shape import CUT, Body, Room, Shape, counts
+from squeezefilm.design.search.space import Setting, Variable, number, step
+from squeezefilm.design.search.stock import (
+    CeramicStock,  # noqa: F401 - of the inherited fields, whose annotations are read here
+    Sheet,  # noqa: F401
+    ceramic_named,
+    substrate_named,
+)
+from squeezefilm.physics.plate.layout import CeramicPatch, FoamSupport, GlueLayer, RectangularPlate
+
+Lines = Annotated[int, si.AtLeast(2), si.AtMost(60)]
+
+# Nothing thinner than this is sawn: below it ceramics would touch.
+_LEAST_PIECE: si.Metre = 1e-3
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class Gasket:
+    """Foam of a width (m) all round the rim, between the touched face and a bezel."""
+
+    width: Annotated[si.Metre, hard.SIDE]
+    thickness: Annotated[si.Metre, hard.LAYER]
+    young_modulus: Annotated[si.Pascal, hard.MODULUS]
+    quality_factor: Annotated[si.Dimensionless, hard.QUALITY] = 3.0
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class Strips(Shape):
+    """A rectangle with full-width ceramics along its length, `gap` (m) apart, of alternating sign,
+    one fewer than its nodal lines; `both_faces` makes it a bimorph, whose upper ceramics, driven
+    against the lower ones, lie under the finger. `least_cover` is the least share of the
+    room between two gaps that a ceramic takes (1: all of it)."""
+
+    least_lines: Lines
+    most_lines: Lines
+    gap: Annotated[si.Metre, hard.PLACE] = 1e-3
+    both_faces: bool = False
+    least_cover: Annotated[si.Dimensionless, si.AtLeast(0.2), si.AtMost(1.0)] = 1.0
+    glue: GlueLayer | None = None
+    type: Literal["strips"] = "strips"
+
+    def variables(self, room: Room) -> tuple[Variable, ...]:
+        """What is chosen. A catalogue's ceramics make the length, which is chosen otherwise."""
+        (length, width), (longest, widest) = room.least, room.most
+        own = self.catalogue
+        return (
+            *self.stock(),
+            counts("nodal_lines", self.least_lines, self.most_lines),
+            number("width", width, widest, "m"),
+            *(
+                (
+                    number("length", length, longest, "m"),
+                    number("cover", self.least_cover, 1.0, "1"),
+                )
+                if own is None
+                else (step("ceramic_length", own, "m", "ceramic"),)
+            ),
+        )
+
+    def body(self, values: Mapping[str, Setting], own: Body, quality: float, room: Room) -> Body:
+        """The plate of a choice. Raises `GeometryError` for ceramics that do not fit."""
+        lines, width = int(values["nodal_lines"]), float(values["width"])
+        count = lines - 1
+        if "ceramic_length" in values:
+            piece = float(values["ceramic_length"])
+            length = max(room.least[0], count * piece + (count - 1) * self.gap)
+            if length > room.most[0] + 1e-9:
+                raise GeometryError(
+                    f"{count} ceramics of {1e3 * piece:.4g} mm, {1e3 * self.gap:.4g} mm apart, are "
+                    f"{1e3 * length:.4g} mm long, more than the {1e3 * room.most[0]:.4g} mm allowed"
+                )
+        else:
+            length = float(values["length"])
+            full = (length + self.gap) / count - self.gap
+            cover = float(values["cover"])
+            # Cut to a tenth of a millimetre, but for pieces that fill their pitch.
+            piece = full if cover == 1 else round(full * cover / CUT) * CUT
+        pitch = (length + self.gap) / count
+        if not _LEAST_PIECE - 1e-9 <= piece <= pitch - self.gap + 1e-9:
+            raise GeometryError(
+                f"{count} ceramics on {1e3 * length:.4g} mm are {1e3 * piece:.3g} mm long, and at "
+                f"least {1e3 * _LEAST_PIECE:g} mm and a gap of {1e3 * self.gap:.3g} mm are needed"
+            )
+        # Pieces that fill their pitch may be longer than it by a rounding error.
+        inset = max(0.0, (pitch - self.gap - piece) / 2)
+        thickness = float(values["ceramic_thickness"])
+        below = [
+            CeramicPatch(
+                x=number_of * pitch + inset,
+                y=0.0,
+                length=piece,
+                width=width,
+                thickness=thickness,
+                polarity=1 if number_of % 2 == 0 else -1,
+            )
+            for number_of in range(count)
+        ]
+        above = [
+            CeramicPatch(
+                one.x,
+                one.y,
+                one.length,
+                one.width,
+                one.thickness,
+                polarity=-1 if one.polarity == 1 else 1,
+                face="top",
+            )
+            for one in below
+            if self.both_faces
+        ]
+        return RectangularPlate(
+            length=length,
+            width=width,
+            thickness=float(values["thickness"]),
+            nodal_lines=lines,
+            quality_factor=quality,
+            substrate=substrate_named(str(values["substrate"]), own),
+            ceramic=ceramic_named(str(values["ceramic"]), own),
+            patches=(*below, *above),
+            glue=self.glue,
+        )
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class EdgeStrips(Shape):
+    """A rectangle with a strip of ceramic along each long edge, for nodal lines along its length.
+
+    The strips are `least_strip` to `most_strip` wide (m), of like sign for an even number of lines
+    and of opposite sign for an odd one.
+    """
+
+    least_lines: Lines
+    most_lines: Lines
+    least_strip: Annotated[si.Metre, hard.SIDE] = 3e-3
+    most_strip: Annotated[si.Metre, hard.SIDE] = 10e-3
+    glue: GlueLayer | None = None
+    gasket: Gasket | None = None
+    type: Literal["edge_strips"] = "edge_strips"
+
+    def variables(self, room: Room) -> tuple[Variable, ...]:
+        """What is chosen; the strips' width from a catalogue where ceramics have lengths."""
+        (length, width), (longest, widest) = room.least, room.most
+        own = self.catalogue
+        return (
+            *self.stock(),
+            counts("nodal_lines", self.least_lines, self.most_lines),
+            number("length", length, longest, "m"),
+            number("width", width, widest, "m"),
+            number("strip", self.least_strip, self.most_strip, "m")
+            if own is None
+            else step("strip", own, "m", "ceramic"),
+        )
+
+    def body(self, values: Mapping[str, Setting], own: Body, quality: float, room: Room) -> Body:
+        """The plate of a choice. Raises `GeometryError` for strips that do not fit."""
+        lines, strip = int(values["nodal_lines"]), float(values["strip"])
+        length, width = float(values["length"]), float(values["width"])
+        thickness = float(values["ceramic_thickness"])
+        if 2 * strip >= width:
+            raise GeometryError(
+                f"two strips of {1e3 * strip:.3g} mm leave nothing of a width of "
+                f"{1e3 * width:.4g} mm"
+            )
+        even = lines % 2 == 0
+        patches = (
+            CeramicPatch(0.0, 0.0, length, strip, thickness),
+            CeramicPatch(0.0, width - strip, length, strip, thickness, polarity=1 if even else -1),
+        )
+        return RectangularPlate(
+            length=length,
+            width=width,
+            thickness=float(values["thickness"]),
+            nodal_lines=lines,
+            lines_across="width",
+            quality_factor=quality,
+            substrate=substrate_named(str(values["substrate"]), own),
+            ceramic=ceramic_named(str(values["ceramic"]), own),
+            patches=patches,
+            glue=self.glue,
+            supports=() if self.gasket is None else _rim(self.gasket, length, width),
+        )
+
+
+def _rim(gasket: Gasket, length: si.Metre, width: si.Metre) -> tuple[FoamSupport, ...]:
+    """The gasket as four strips on the touched face."""
+    w = gasket.width
+    places = (
+        (0.0, 0.0, length, w),
+        (0.0, width - w, length, w),
+        (0.0, w, w, width - 2 * w),
+        (length - w, w, w, width - 2 * w),
+    )
+    foam = gasket.thickness, gasket.young_modulus, gasket.quality_factor
+    return tuple(FoamSupport(*place, *foam, face="top") for place in places)
+
+
+AnyShape = Strips | EdgeStrips | Disc | Ring
+
+
+def shape_called(shape: AnyShape) -> str:
+    """What people call a shape."""
+    if isinstance(shape, Strips):
+        return f"strips on {'both faces' if shape.both_faces else 'one face'}"
+    return shape.type.replace("_", " ")

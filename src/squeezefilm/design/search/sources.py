@@ -1,0 +1,115 @@
+"""Where the numbers of a plate that a search made are from, with the ranges that these give."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping
+
+from squeezefilm.core import presets
+from squeezefilm.core.config.provenance import Provenance, distribution_of, split_provenance
+from squeezefilm.core.config.schema import Leaf, leaves
+from squeezefilm.core.presets.materials import Kind
+from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.space import VOLTAGE, Setting
+from squeezefilm.design.search.stock import OWN
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.uncertainty.parameters import value_at
+
+_PARTS: Mapping[str, Kind] = {"substrate": "substrate", "ceramic": "ceramic"}
+# Of the body, what the requirements say once for all plates.
+_GIVEN = ("glue", "supports")
+
+
+def plate_sources(
+    requirements: Requirements, display: Display, shape: int, settings: Mapping[str, Setting]
+) -> dict[str, Provenance]:
+    """Where each number of a plate's display is from, by its dotted path: chosen by the search
+    among what the shape of a number allows (the `settings` by name), asked for or given by the
+    requirements, of the library of materials, or of the display that the search started from."""
+    found = shared_sources(requirements)
+    own = f"the requirements '{requirements.name}'"
+    chosen = Provenance(f"chosen by squeezefilm design for {own}", "derived")
+    given = Provenance(f"given by {own}", "assumed")
+    of_fixed = {one.name for one in requirements.spaces[shape] if one.is_fixed}
+    found["drive.voltage"] = given if VOLTAGE in of_fixed else chosen
+    for leaf in _stated(display):
+        name = leaf.path[1]
+        path = ".".join(map(str, leaf.path))
+        if name in _GIVEN or name in of_fixed:
+            found[path] = given
+        elif name == "quality_factor":
+            found[path] = _quality(requirements, given)
+        elif name not in _PARTS:
+            found[path] = chosen
+    base = requirements.started_from
+    for part, kind in _PARTS.items():
+        found |= _of_material(base, part, str(settings[part]), kind, display)
+    return found
+
+
+def shared_sources(requirements: Requirements) -> dict[str, Provenance]:
+    """Where all numbers but those of body and drive are from, which every plate of a search shares:
+    finger, gas, surfaces and cooling."""
+    base = requirements.started_from
+    found = dict(_kept(requirements, base))
+    asked = Provenance(f"asked for by the requirements '{requirements.name}'", "assumed")
+    found["finger.speed"] = asked
+    # Where the display does not say it, the contact's size is that at the display's own force.
+    own = base.provenance.get("finger.normal_force")
+    if requirements.base.finger.contact_area_force is not None and own is not None:
+        found.setdefault("finger.contact_area_force", own)
+    if requirements.touch.normal_force is not None:
+        found["finger.normal_force"] = asked
+    return found
+
+
+def _stated(display: Display) -> Iterator[Leaf]:
+    """The numbers of the body that are not as everywhere."""
+    for leaf in leaves(display):
+        if leaf.path[0] != "actuator" or isinstance(leaf.value, str | bool):
+            continue
+        if leaf.value != leaf.field.default:
+            yield leaf
+
+
+def _kept(requirements: Requirements, base: Display) -> Iterator[tuple[str, Provenance]]:
+    """The sources of all but the body, of the display that the search started from; the surface
+    that was asked for stands first."""
+    first = base.surfaces.index(base.surface(requirements.touch.surface))
+    order = [first, *(k for k in range(len(base.surfaces)) if k != first)]
+    places = {str(old): str(new) for new, old in enumerate(order)}
+    for path, one in base.provenance.items():
+        head, *rest = path.split(".")
+        if head in ("actuator", "measured", "joint", "calibration", "active_area"):
+            continue
+        if head == "surfaces":
+            rest[0] = places[rest[0]]
+        yield ".".join([head, *rest]), one
+
+
+def _quality(requirements: Requirements, given: Provenance) -> Provenance:
+    if requirements.quality_factor is not None:
+        return given
+    return Provenance(
+        f"that of {requirements.start_from}, taken for every assembly: only a measurement says it",
+        "assumed",
+    )
+
+
+def _of_material(
+    base: Display, part: str, name: str, kind: Kind, display: Display
+) -> dict[str, Provenance]:
+    """The sources of a material's values: those of the display, or of the library with the ranges
+    that it gives."""
+    at = f"actuator.{part}."
+    if name == OWN:
+        return {path: one for path, one in base.provenance.items() if path.startswith(at)}
+    split = split_provenance(presets.materials.table(name, kind))
+    found = {}
+    for path, source in split.sources.items():
+        spread = split.spreads.get(path)
+        if spread is not None:
+            value, unit = value_at(display, f"{at}{path}")
+            source = dataclasses.replace(source, distribution=distribution_of(value, unit, spread))
+        found[at + path] = source
+    return found

@@ -1,0 +1,186 @@
+"""What a search knows, in a folder: every evaluated design, kept as it comes, by all that it
+depends on. A search that was stopped asks none of them again, and several hosts may write into one
+file."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, get_args
+
+from squeezefilm.core.kept.computed_by import computed_by
+from squeezefilm.core.results import config_hash, to_json
+from squeezefilm.design.search.candidate import Design, Evaluated, Level
+from squeezefilm.design.search.criteria import breaches
+from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.tolerance import DRAWS, Made
+from squeezefilm.design.sweep.lines import Lines
+
+FILE = "designs.jsonl"
+"""Its name in the folder of a search: a line for every evaluated design."""
+
+
+def asked_hash(requirements: Requirements, level: Level) -> str:
+    """A hash of all that a design's numbers depend on beside the design: code, display,
+    materials and shapes, and what is computed of solved plates only where a limit asks for it. That
+    the limits are kept is judged anew."""
+    limits = requirements.limits
+    asked = [
+        computed_by(),
+        config_hash(requirements.base),
+        to_json(requirements.shapes),
+        to_json(requirements.workspace),
+        requirements.assembly_quality,
+        limits.press,
+    ]
+    if level == "solved":
+        asked += [
+            limits.most_relative_friction,
+            limits.confidence,
+            limits.least_area is None,
+            limits.most_sound_level is None,
+        ]
+    text = json.dumps(asked, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def requirements_hash(requirements: Requirements) -> str:
+    """A hash of all that requirements say, limits and objectives, too."""
+    return config_hash({one.name: getattr(requirements, one.name) for one in fields(requirements)})
+
+
+def _made_hash(requirements: Requirements) -> str:
+    """A hash of all that plates as made depend on beside the design and its solved numbers."""
+    also = [
+        to_json(requirements.limits),
+        to_json(requirements.tolerances),
+        requirements.objectives,
+        DRAWS,
+    ]
+    text = json.dumps([asked_hash(requirements, "solved"), also], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+class DesignStore:
+    """Evaluated designs by design and level; without a folder in memory only. `member` tells hosts
+    apart that search in one folder.
+
+    Raises `InputError` where the folder's file cannot be read or written.
+    """
+
+    def __init__(self, requirements: Requirements, folder: Path | None, member: int = 0) -> None:
+        self._requirements, self._member = requirements, member
+        self._hashes = {one: asked_hash(requirements, one) for one in get_args(Level)}
+        self._lines = None if folder is None else Lines(folder / FILE)
+        self._known: dict[tuple[Design, Level], Evaluated] = {}
+        self._made: dict[Design, Made] = {}
+        self._made_hash = _made_hash(requirements)
+        self.computed = 0
+        self._members: dict[tuple[Design, Level], int] = {}
+        if self._lines is not None:
+            self._lines.read(self._take)
+
+    def _take(self, read: Any) -> None:
+        if "kept" in read:
+            self._take_made(read)
+        elif (known := self._evaluated(read)) is not None:
+            self._known[known.design, known.level] = known
+            self._members[known.design, known.level] = int(read["member"])
+
+    def solved_by_others(self) -> dict[Design, Evaluated]:
+        """What other hosts that search in the same folder have solved until now."""
+        if self._lines is not None:
+            self._lines.read(self._take)
+        shapes = range(len(self._requirements.spaces))
+        others = [one for shape in shapes for one, _ in self.of_others(shape, "solved")]
+        return {one.design: one for one in others}
+
+    def of_others(self, shape: int, level: Level) -> list[tuple[Evaluated, int]]:
+        """What other hosts evaluated of a shape at a level, with the number of each."""
+        return [
+            (self._known[design, at], member)
+            for (design, at), member in self._members.items()
+            if design.shape == shape and at == level and member != self._member
+        ]
+
+    def __len__(self) -> int:
+        return len(self._known)
+
+    def get(self, design: Design, level: Level) -> Evaluated | None:
+        """What is known of a design at a level; None where nothing is."""
+        return self._known.get((design, level))
+
+    def add(self, found: Iterable[Evaluated]) -> None:
+        """Keep evaluated designs, together on the disk. What might be another one another time is
+        kept in memory only."""
+        lines = []
+        for one in found:
+            self._known[one.design, one.level] = one
+            self.computed += 1
+            if one.lasting:
+                lines.append(self._line(one))
+        self._append(lines)
+
+    def made(self, design: Design) -> Made | None:
+        """What is made of a design's drawing; None where it was not drawn."""
+        return self._made.get(design)
+
+    def add_made(self, design: Design, made: Made) -> None:
+        """Keep what is made of a design's drawing."""
+        self._made[design] = made
+        head = {"asked": self._made_hash, "shape": design.shape, "values": design.settings}
+        self._append([head | to_json(made)])
+
+    def _take_made(self, read: Mapping[str, Any]) -> None:
+        if read["asked"] != self._made_hash:
+            return
+        design = Design(int(read["shape"]), tuple(read["values"].items()))
+        intervals = {
+            key: (float(low), float(high)) for key, (low, high) in read["intervals"].items()
+        }
+        self._made[design] = Made(
+            read["draws"], read["kept"], read["broken"], intervals, read["effects"], read["failed"]
+        )
+
+    def _append(self, lines: list[dict[str, Any]]) -> None:
+        if self._lines is not None:
+            self._lines.append(lines)
+
+    def _line(self, one: Evaluated) -> dict[str, Any]:
+        return {
+            "asked": self._hashes[one.level],
+            "shape": one.design.shape,
+            "values": one.design.settings,
+            "level": one.level,
+            "member": self._member,
+            "numbers": {key: _plain(value) for key, value in one.numbers.items()},
+            "reason": one.reason,
+            "seconds": round(one.seconds, 4),
+            "warnings": list(one.warnings),
+        }
+
+    def _evaluated(self, read: Mapping[str, Any]) -> Evaluated | None:
+        if read["asked"] != self._hashes[read["level"]]:
+            return None
+        names = {one.name for one in self._requirements.spaces[int(read["shape"])].variables}
+        if set(read["values"]) != names:
+            return None
+        numbers = {str(key): float(value) for key, value in read["numbers"].items()}
+        return Evaluated(
+            Design(int(read["shape"]), tuple(read["values"].items())),
+            read["level"],
+            numbers,
+            () if read["reason"] else breaches(numbers, self._requirements.limits),
+            read["reason"],
+            float(read["seconds"]),
+            tuple(read["warnings"]),
+        )
+
+
+def _plain(value: float) -> float | str:
+    """JSON has no infinity; `float` reads it from text."""
+    return value if math.isfinite(value) else str(value)

@@ -1,0 +1,199 @@
+"""How many of the plates that are made keep the limits, and what each tolerance does to them."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Annotated
+
+import numpy as np
+from scipy.stats import norm, qmc
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.kept.store import in_passing
+from squeezefilm.design.search.candidate import (
+    Design,
+    Evaluated,
+    display_of,
+    screened,
+)
+from squeezefilm.design.search.correction import CORRECTED
+from squeezefilm.design.search.criteria import breaches, criterion_of
+from squeezefilm.design.search.requirements import Requirements, Tolerances
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate, turned
+from squeezefilm.physics.plausibility.checks import checked_before
+
+log = logging.getLogger(__name__)
+
+DRAWS = 64
+_NAMES = tuple(one.name for one in fields(Tolerances))
+
+
+@dataclass(frozen=True)
+class Made:
+    """Plates made of one drawing: `draws` in number, the share that keeps the limits (`kept`), how
+    often each limit was broken by key, the number that could not be computed (`failed`, which keep
+    none), and the interval of each criterion from the 5 % to the 95 % quantile (SI).
+
+    By the screening theory, in proportion to the solved plate as drawn. `effects` are, by tolerance
+    and then by objective, by how much one standard deviation more changes the number.
+    """
+
+    draws: int
+    kept: si.Dimensionless
+    broken: Mapping[str, int]
+    intervals: Mapping[str, tuple[float, float]]
+    effects: Mapping[str, Mapping[str, float]]
+    failed: int = 0
+
+
+def made_of(
+    requirements: Requirements, solved: Evaluated, draws: int = DRAWS, seed: int = 1
+) -> Made:
+    """Plates made of a solved design with the tolerances, drawn by a scrambled Sobol sequence."""
+    nominal = _numbers(requirements, solved.design, np.zeros(len(_NAMES)))
+    drawn = qmc.Sobol(len(_NAMES), seed=seed).random(draws)
+    normal = np.asarray(norm.ppf(np.clip(drawn, 1e-9, 1 - 1e-9)))
+    found = [_scaled(_numbers(requirements, solved.design, row), nominal, solved) for row in normal]
+    limits, broken, kept = requirements.limits, dict[str, int](), 0
+    for numbers in found:
+        wrong = breaches(numbers, limits) if numbers else ()
+        kept += bool(numbers) and not wrong
+        for one in wrong:
+            broken[one.key] = broken.get(one.key, 0) + 1
+    keys = [key for key in solved.numbers if key in CORRECTED]
+    intervals = {}
+    for key in keys:
+        values = np.array([one.get(key, np.nan) for one in found])
+        values = values[np.isfinite(values)]
+        if values.size:
+            low, high = np.quantile(values, (0.05, 0.95))
+            intervals[key] = float(low), float(high)
+    effects = _effects(requirements, solved, nominal)
+    return Made(draws, kept / draws, broken, intervals, effects, found.count({}))
+
+
+def _effects(
+    requirements: Requirements, solved: Evaluated, nominal: Mapping[str, float]
+) -> dict[str, dict[str, float]]:
+    """By central differences, of what the tolerances of the file are not zero of."""
+    found: dict[str, dict[str, float]] = {}
+    for number, name in enumerate(_NAMES):
+        if getattr(requirements.tolerances, name) == 0:
+            continue
+        ends = []
+        for sign in (-1.0, 1.0):
+            row = np.zeros(len(_NAMES))
+            row[number] = sign
+            ends.append(_scaled(_numbers(requirements, solved.design, row), nominal, solved))
+        if all(ends):
+            told = ("resonance_frequency", *requirements.objectives)
+            keys = {one: criterion_of(one).key for one in told}
+            found[name] = {
+                one: (ends[1][key] - ends[0][key]) / 2
+                for one, key in keys.items()
+                if key in ends[0]
+            }
+    return found
+
+
+def _scaled(
+    numbers: Mapping[str, float], nominal: Mapping[str, float], solved: Evaluated
+) -> dict[str, float]:
+    """Screened numbers of a plate as made, in proportion to the solved plate as drawn."""
+    found = {}
+    for key, value in numbers.items():
+        here, there = nominal.get(key), solved.numbers.get(key)
+        in_proportion = here and there is not None and np.isfinite([here, there]).all()
+        found[key] = value * there / here if here and there is not None and in_proportion else value
+    return found
+
+
+def _numbers(
+    requirements: Requirements, design: Design, deviations: si.FloatArray
+) -> dict[str, float]:
+    """The screened criteria of a design as made, so many standard deviations off; empty where it
+    cannot be."""
+    try:
+        with checked_before(), in_passing(), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            display = as_made(requirements, design, deviations)
+            return screened(requirements, display, design)
+    except SqueezefilmError:
+        return {}
+    except Exception:  # a fault of ours in one of thousands does not end a search
+        log.exception("plate %s as made", design.address)
+        return {}
+
+
+@si.checked_numbers
+def as_made(
+    requirements: Requirements, design: Design, deviations: Annotated[si.FloatArray, si.AtMost(40)]
+) -> Display:
+    """The display of a design as it may be made, `deviations` standard deviations off in each of
+    the fields of `Tolerances`, in their order.
+
+    All of a plate's ceramics are alike. Raises what the plate raises.
+    """
+    display, made = display_of(requirements, design), requirements.tolerances
+    pairs = zip(_NAMES, deviations, strict=True)
+    off = {name: float(by) * getattr(made, name) for name, by in pairs}
+    body = display.actuator
+    assert isinstance(body, RectangularPlate | DiscPlate), "shapes make no others"
+    sheet = replace(
+        body.substrate, young_modulus=body.substrate.young_modulus * (1 + off["young_modulus"])
+    )
+    ceramic = body.ceramic.scaled(
+        stiffness=1 + off["ceramic_stiffness"], charge=1 + off["charge_coefficient"]
+    )
+    body = replace(
+        body,
+        substrate=sheet,
+        ceramic=ceramic,
+        thickness=body.thickness + off["thickness"],
+        quality_factor=body.quality_factor * (1 + off["quality_factor"]),
+    )
+    made_body = (
+        _disc_resized(body, off) if isinstance(body, DiscPlate) else _plate_resized(body, off)
+    )
+    return replace(display, actuator=made_body)
+
+
+def _disc_resized(body: DiscPlate, off: Mapping[str, float]) -> DiscPlate:
+    larger = 1 + off["sides"] / body.diameter
+    return replace(
+        body,
+        diameter=body.diameter * larger,
+        inner_diameter=body.inner_diameter * larger,
+        ceramic_outer_diameter=body.ceramic_outer_diameter * larger,
+        ceramic_inner_diameter=body.ceramic_inner_diameter * larger,
+        ceramic_thickness=body.ceramic_thickness + off["ceramic_thickness"],
+    )
+
+
+def _plate_resized(body: RectangularPlate, off: Mapping[str, float]) -> RectangularPlate:
+    """Sides and ceramics of a plate that came out longer: all along its wave in proportion."""
+    turn = body.lines_across == "width"
+    plate = turned(body) if turn else body
+    longer = 1 + off["sides"] / plate.length
+    made = replace(
+        plate,
+        length=plate.length * longer,
+        patches=tuple(
+            replace(
+                one,
+                x=one.x * longer,
+                length=one.length * longer,
+                thickness=one.thickness + off["ceramic_thickness"],
+            )
+            for one in plate.patches
+        ),
+        supports=tuple(
+            replace(one, x=one.x * longer, length=one.length * longer) for one in plate.supports
+        ),
+    )
+    return turned(made) if turn else made

@@ -1,0 +1,177 @@
+"""Which of the screened designs are worth solving in three dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import qmc
+
+from squeezefilm.core import quantities as si
+from squeezefilm.design.search.candidate import Design, Evaluated, Level, plates_of
+from squeezefilm.design.search.correction import Correction
+from squeezefilm.design.search.criteria import breaches, criterion_of
+from squeezefilm.design.search.front import layers_of
+from squeezefilm.design.search.requirements import Requirements
+
+# A design is solved though the screening says that it breaks a limit by up to this share; it tells
+# frequencies better than what depends on losses.
+_DOUBT, _CORRECTED_DOUBT, _OF_FREQUENCY = 0.25, 0.08, 0.08
+_FREQUENCIES = ("resonance_frequency", "highest_frequency")
+# By what share a corrected objective is taken to be off, where nothing or too much is known of it.
+_ERROR, _MOST_ERROR = 0.1, 0.2
+
+_NATURAL_WORST: Mapping[str, float] = {"relative_friction": 1.0, "finest_period": 5e-3}
+_POINTS = 4096
+
+Seen = Mapping[Level, Mapping[Design, Evaluated]]
+
+
+def objectives_of(requirements: Requirements, designs: Sequence[Evaluated]) -> si.FloatArray:
+    """The objectives of designs (SI), shape (designs, objectives)."""
+    names = requirements.objectives
+    return np.array([one.objectives(names) for one in designs]).reshape(-1, len(names))
+
+
+def worth_solving(
+    requirements: Requirements,
+    seen: Seen,
+    corrections: Sequence[Correction | None],
+    count: int,
+) -> list[Design]:
+    """At most `count` designs of plates not solved yet, of all shapes together, that might enter
+    the front: those expected to add most to what it dominates, at all voltages that were screened
+    of a plate, each beside those chosen before it; then, since what is expected errs, layer by
+    layer, of a layer too large those far apart. No two are of one plate."""
+    pool = list(_expected(requirements, seen, corrections))
+    rows = objectives_of(requirements, pool)
+    solved = [one for one in seen["solved"].values() if one.is_feasible]
+    known = objectives_of(requirements, solved)
+    # What the front beats by more than the correction errs has no chance.
+    nearest = rows * (1 - _error(requirements, corrections))
+    might = np.array([not np.any(np.all(known <= row, axis=1)) for row in nearest], dtype=bool)
+    at = np.flatnonzero(might)
+    worst = worst_corner(requirements, rows[at])
+    plates = _numbered([pool[k].design.plate for k in at])
+    first = at[:0]
+    # Of a screening that no solved plate has corrected, the most is expected of what cannot be.
+    if all(corrections[pool[k].design.shape] is not None for k in at):
+        first = at[_adding_most(rows[at], known, worst, count, plates)]
+    others = ~np.isin(plates, plates[np.isin(at, first)])
+    left, room = at[others], count - first.size
+    left = left[_one_each(plates[others], rows[left] / worst)]
+    taken = left[layers_of(rows[left], room)]
+    if taken.size > room:
+        taken = _far_apart(rows, taken, room)
+    return [pool[k].design for k in (*first, *taken)]
+
+
+def worst_corner(requirements: Requirements, rows: si.FloatArray) -> si.FloatArray:
+    """The corner from which a hypervolume is measured (SI): limits where there are any, µ′/µ of 1,
+    gratings of 5 mm, else a tenth beyond the worst of rows of objectives."""
+    found = []
+    for number, name in enumerate(requirements.objectives):
+        own = criterion_of(name).limit
+        bound = getattr(requirements.limits, own) if own else None
+        if bound is None:
+            bound = _NATURAL_WORST.get(name)
+        if bound is None:
+            bound = 1.1 * float(np.max(rows[:, number], initial=0.0)) or 1.0
+        found.append(float(bound))
+    return np.array(found)
+
+
+def _numbered(plates: Sequence[Design]) -> si.IntArray:
+    """A number for each plate, equal for equal ones."""
+    numbers: dict[Design, int] = {}
+    return np.array([numbers.setdefault(one, len(numbers)) for one in plates], dtype=np.intp)
+
+
+def _one_each(plates: si.IntArray, shares: si.FloatArray) -> si.IntArray:
+    """Of the rows of each plate the one whose objectives, as shares of the worst, add up to the
+    least."""
+    order = np.argsort(shares.sum(axis=1), kind="stable")
+    _, first = np.unique(plates[order], return_index=True)
+    return np.sort(order[first])
+
+
+def _adding_most(
+    rows: si.FloatArray,
+    known: si.FloatArray,
+    worst: si.FloatArray,
+    count: int,
+    plates: si.IntArray,
+) -> si.IntArray:
+    """At most so many rows, each of another plate, that dominate most of what known rows do not,
+    one after the other, by points spread evenly over the box from the best of all to the worst
+    corner. Of a plate all rows count: it is solved once for all of them."""
+    if not rows.size:
+        return np.array([], dtype=np.intp)
+    best = np.min(np.concatenate((rows, known)), axis=0)
+    shares = qmc.Sobol(worst.size, seed=1).random(_POINTS)
+    points = best + shares * np.maximum(worst - best, 0.0)
+    free = np.ones(_POINTS, dtype=bool)
+    for one in known:
+        free &= ~np.all(one <= points, axis=1)
+    reached = np.array([np.all(one <= points, axis=1) for one in rows])
+    together = np.zeros((plates.max() + 1, _POINTS), dtype=bool)
+    np.logical_or.at(together, plates, reached)
+    chosen: list[int] = []
+    while len(chosen) < count:
+        gain = together[:, free].sum(axis=1)
+        most = int(np.argmax(gain))
+        if gain[most] == 0:
+            break
+        own = np.flatnonzero(plates == most)
+        chosen.append(int(own[np.argmax(reached[own][:, free].sum(axis=1))]))
+        free &= ~together[most]
+    return np.array(chosen, dtype=np.intp)
+
+
+def _expected(
+    requirements: Requirements, seen: Seen, corrections: Sequence[Correction | None]
+) -> Iterator[Evaluated]:
+    """The screened designs of plates not solved yet that may keep the limits, with corrected
+    numbers."""
+    known = plates_of(seen["solved"])
+    for shape, correction in enumerate(corrections):
+        here = [
+            one
+            for one in seen["screened"].values()
+            if one.design.shape == shape and not one.reason and one.design.plate not in known
+        ]
+        numbers: list[Mapping[str, float]] = [one.numbers for one in here]
+        doubt = _DOUBT
+        if correction is not None:
+            numbers, doubt = list(correction.of_all(here)), _CORRECTED_DOUBT
+        for one, expected in zip(here, numbers, strict=True):
+            broken = breaches(expected, requirements.limits)
+            if all(b.excess <= (_OF_FREQUENCY if b.key in _FREQUENCIES else doubt) for b in broken):
+                yield replace(one, numbers=expected)
+
+
+def _error(requirements: Requirements, corrections: Sequence[Correction | None]) -> float:
+    """By what share a corrected objective may be off."""
+    errors = [
+        one.errors.get(name, 0.0)
+        for one in corrections
+        if one is not None
+        for name in requirements.objectives
+    ]
+    return min(max(errors, default=_ERROR), _MOST_ERROR)
+
+
+def _far_apart(rows: si.FloatArray, taken: si.IntArray, count: int) -> si.IntArray:
+    """So many of the rows taken: the one best in the first objective, then always the farthest from
+    all chosen, each objective over its spread."""
+    here = rows[taken]
+    span = np.ptp(here, axis=0)
+    here = (here - here.min(axis=0)) / np.where(span > 0, span, 1.0)
+    chosen = [int(np.argmin(here[:, 0]))]
+    distance = np.linalg.norm(here - here[chosen[0]], axis=1)
+    while len(chosen) < count:
+        far = int(np.argmax(distance))
+        chosen.append(far)
+        distance = np.minimum(distance, np.linalg.norm(here - here[far], axis=1))
+    return taken[chosen]

@@ -1,0 +1,194 @@
+"""What a sweep can ask for: every number in the JSON of the verbs, by its dotted name.
+
+`answers.toml` holds the names by verb; `tools/sweep_answers.py` writes it, and a test compares it
+with what the verbs say.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+import tomllib
+import typing
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from typing import Any
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.design.sweep.verbs import VERBS
+
+FOLLOWED = "followed"
+"""The verb whose modes are followed over the points; its answers are a column for each mode."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One number that is asked for: the verb that answers, and its key in the verb's JSON."""
+
+    verb: str
+    key: str
+
+    @property
+    def column(self) -> str:
+        """The name of its column: the key, with the verb before it where another is asked first."""
+        return self.key if self._plain else f"{self.verb}.{self.key}"
+
+    @property
+    def _plain(self) -> bool:
+        """Whether the key alone asks this verb."""
+        verbs = (verb for verb in VERBS if verb != FOLLOWED and _known(verb, self.key))
+        return next(verbs, None) == self.verb
+
+    @property
+    def unit(self) -> si.Unit:
+        """The unit that the key says, "1" where it says none."""
+        found = _SUFFIX.findall(self.key)
+        return _UNITS[found[-1]] if found else si.Unit("1")
+
+    @property
+    def draws(self) -> bool:
+        """Whether it is part of an interval, for which the verb draws samples."""
+        return _DRAWN.search(self.key) is not None
+
+
+_DRAWN = re.compile(
+    r"interval|^uncertainty|^power_W|_median|^active_area\.odds|share_(never|beyond_drive)"
+)
+
+
+def _units() -> dict[str, si.Unit]:
+    """The units of the house by the suffix that a key has for them, and two beside SI."""
+    marks = (si.unit_of(value) for value in vars(si).values() if typing.get_args(value))
+    units = [one for one in marks if one is not None and one.suffix]
+    others = {"_per_m": si.Unit("1/m")}
+    return others | {one.suffix: one for one in (*units, si.Unit("dB"), si.Unit("VA"))}
+
+
+_UNITS = _units()
+_SUFFIX = re.compile(
+    f"({'|'.join(sorted(map(re.escape, _UNITS), key=len, reverse=True))})(?=\\.|$)"
+)
+
+
+@functools.cache
+def catalogue() -> Mapping[str, tuple[str, ...]]:
+    """The keys that each verb answers; ``*`` stands for a number from 0 on in a list."""
+    text = resources.files("squeezefilm.design.sweep").joinpath("answers.toml").read_text("utf-8")
+    found: dict[str, tuple[str, ...]] = {}
+    for verb, lines in tomllib.loads(text).items():
+        keys: list[str] = []
+        for line in lines:
+            group, alike, other = line.partition(": ")
+            theirs = found[other] if alike else (line,)
+            keys += [
+                key for key in theirs if not alike or f"{key}.".startswith(group and f"{group}.")
+            ]
+        found[verb] = tuple(keys)
+    return found
+
+
+def numbers_of(summary: Any, path: str = "") -> Iterator[tuple[str, float]]:
+    """Every number of a JSON summary with its dotted key; yes and no are 1 and 0, none is NaN."""
+    if isinstance(summary, Mapping):
+        for key, item in summary.items():
+            if key != "provenance":
+                yield from numbers_of(item, f"{path}.{key}" if path else key)
+    elif isinstance(summary, list):
+        for number, item in enumerate(summary):
+            yield from numbers_of(item, f"{path}.{number}")
+    elif isinstance(summary, int | float):
+        yield path, float(summary)
+    elif summary is None:
+        yield path, math.nan
+
+
+def without_units(key: str) -> str:
+    """A key as it may be asked for: without the units in it."""
+    return _SUFFIX.sub("", key)
+
+
+@functools.cache
+def _pattern(known: str) -> re.Pattern[str]:
+    return re.compile(re.escape(known).replace(r"\*", r"\d{1,4}"))
+
+
+def _known(verb: str, key: str) -> bool:
+    return any(_pattern(one).fullmatch(key) for one in catalogue()[verb])
+
+
+def asked_for(texts: Sequence[str]) -> tuple[Asked, ...]:
+    """What texts ask for, in their order, each once: names with commas between them.
+
+    A name is a dotted key, with its unit or without, with the verb before it or without; the name
+    of a group asks for all numbers in it. Raises `InputError` for a name that no verb knows, or
+    that stands for two quantities.
+    """
+    found: dict[Asked, None] = {}
+    for text in texts:
+        # A few names have a comma in them.
+        whole = any(_spelled_out(text.strip(), keys) for keys in catalogue().values())
+        for name in [text] if whole else text.split(","):
+            if name.strip():
+                found.update(dict.fromkeys(_asked_by(name.strip())))
+    if not found:
+        raise InputError(
+            "nothing is asked for; give ask = relative_friction,resonance_frequency",
+            quantity="ask",
+        )
+    return tuple(found)
+
+
+def _asked_by(name: str) -> list[Asked]:
+    head, _, rest = name.partition(".")
+    if name == FOLLOWED:
+        return [Asked(FOLLOWED, "frequency_Hz")]
+    verbs = [head] if head in VERBS and rest else [one for one in VERBS if one != FOLLOWED]
+    wanted = rest if verbs == [head] else name
+    for verb in verbs:
+        keys = catalogue()[verb]
+        exact = [wanted] if any(_pattern(one).fullmatch(wanted) for one in keys) else []
+        plain = exact or _spelled_out(wanted, keys)
+        if len(plain) > 1:
+            raise InputError(f"ask {name} may be {' or '.join(plain)}; say which", quantity="ask")
+        group = [one for one in keys if without_units(one).startswith(f"{without_units(wanted)}.")]
+        if found := plain or [one for one in group if "*" not in one]:
+            return [Asked(verb, key) for key in found]
+        if group:
+            raise InputError(
+                f"ask {name} is a list of {verb}; say which of it, like "
+                f"{without_units(group[0]).replace('*', '0')}",
+                quantity="ask",
+            )
+    raise _unknown(name, verbs, wanted)
+
+
+def _spelled_out(wanted: str, keys: Sequence[str]) -> list[str]:
+    """The keys that a name without units stands for, the numbers of lists as they are in it."""
+    found = []
+    for key in keys:
+        if _pattern(without_units(key)).fullmatch(wanted):
+            numbers = iter(re.findall(r"(?<=\.)\d{1,4}(?=\.|$)", wanted))
+            found.append(re.sub(r"\*", lambda _, rest=numbers: next(rest), key))  # type: ignore[misc]
+    return found
+
+
+def _unknown(name: str, verbs: Sequence[str], wanted: str) -> InputError:
+    plain = {verb: [without_units(one) for one in catalogue()[verb]] for verb in verbs}
+    every = [one for verb in verbs for one in plain[verb]]
+    inside = [one for one in every if wanted.lower() in one.lower()]
+    near = f" Did you mean {', '.join(dict.fromkeys(inside[:5]))}?" if inside else ""
+    told: dict[str, str] = {}
+    for verb in verbs:
+        for one in plain[verb]:
+            told.setdefault(one.partition(".")[0], verb)
+    heads = "; ".join(
+        f"{verb}: {', '.join(head for head, of in told.items() if of == verb)}" for verb in verbs
+    )
+    return InputError(
+        f"ask {name}: no verb answers that.{near or si.did_you_mean(wanted, every)} There are, "
+        f"by the verb that is asked first: {heads}. squeezefilm sweep --answers lists all",
+        quantity="ask",
+    )

@@ -1,0 +1,180 @@
+"""A sweep drawn: lines over one axis, maps over two."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
+from squeezefilm.design.sweep.report.words import (
+    labelled,
+    mode_of,
+    name_of,
+    quantity_of,
+    scaled,
+    step_words,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.design.sweep.axes import Axis
+    from squeezefilm.design.sweep.swept import Column, Sweep
+
+MOST_PANELS = 6
+_SAID = {"followed": "the solved plate, modes followed by their shapes"}
+MOST_LINES = 8
+"""More steps than this on the second axis are drawn as a map."""
+
+
+@style.drawn
+def sweep_figure(found: Sweep) -> Figure:
+    """A panel for each number that was asked for, six at the most: lines over the first axis that
+    has several steps, or, where a second has more than eight, a map of the two."""
+    axes = [axis for axis in found.axes if len(axis) > 1]
+    drawn = [c for c in found.columns if np.isfinite(c.values).any()]
+    if not axes or not drawn or len(axes) > 2:
+        return style.message_figure(
+            f"Sweep of {style.plain(found.title)}", _nothing_to_draw(found, len(axes), len(drawn))
+        )
+    along, beside = _order(axes)
+    panels = _panels(drawn) if beside is None else [[column] for column in drawn]
+    panels = panels[:MOST_PANELS]
+    over = " and ".join(name_of(axis) for axis in axes)
+    figure = style.new_figure(
+        f"{', '.join(map(_panel_name, panels))} over {over}",
+        f"that of {' and '.join(_SAID.get(one, one) for one in found.verbs)}; display "
+        f"{style.plain(found.title)}{_left_out(found)}",
+        1.2 + 3.2 * -(-len(panels) // 2) if len(panels) > 1 else 4.6,
+    )
+    columns = 1 if len(panels) == 1 else 2
+    grid = figure.subplots(-(-len(panels) // columns), columns, squeeze=False)
+    for place, panel in zip(grid.ravel(), panels, strict=False):
+        if beside is not None and len(beside) > MOST_LINES and beside.numbers is not None:
+            _map(figure, place, found, along, beside, panel[0])
+        else:
+            _lines(place, found, along, beside, panel)
+    for spare in grid.ravel()[len(panels) :]:
+        spare.set_axis_off()
+    return figure
+
+
+def _left_out(found: Sweep) -> str:
+    lost = len(found.reasons) - found.answered
+    return f"; crosses: {lost} of {len(found.reasons)} points without an answer" if lost else ""
+
+
+def _nothing_to_draw(found: Sweep, axes: int, drawn: int) -> str:
+    if not drawn:
+        return "No point has an answer; the table says why."
+    if not axes:
+        return "There is one point alone; the table has its numbers."
+    names = ", ".join(name_of(axis) for axis in found.axes)
+    return f"{axes} axes ({names}) are too many for one picture; the table has all numbers."
+
+
+def _order(axes: list[Axis]) -> tuple[Axis, Axis | None]:
+    """The axis to draw along, one of numbers if there is one, and the other."""
+    if len(axes) == 1:
+        return axes[0], None
+    first, second = axes
+    swap = first.numbers is None and second.numbers is not None
+    return (second, first) if swap else (first, second)
+
+
+def _panels(drawn: list[Column]) -> list[list[Column]]:
+    """Columns by what they are of: modes that were followed share a panel."""
+    panels: dict[str, list[Column]] = {}
+    for column in drawn:
+        own = column.name if mode_of(column) is None else quantity_of(column)
+        panels.setdefault(own, []).append(column)
+    return list(panels.values())
+
+
+def _values(found: Sweep, along: Axis, beside: Axis | None, column: Column) -> si.FloatArray:
+    """A column over the two axes, shape (along, beside)."""
+    grid = column.values.reshape([len(axis) for axis in found.axes if len(axis) > 1])
+    order = [axis for axis in found.axes if len(axis) > 1]
+    if beside is None:
+        return grid[:, None]
+    return grid if order.index(along) == 0 else grid.T
+
+
+def _lines(axes: Axes, found: Sweep, along: Axis, beside: Axis | None, panel: list[Column]) -> None:
+    numbers = along.numbers
+    x = np.arange(len(along)) if numbers is None else numbers
+    factor, symbol = (1.0, "") if numbers is None else scaled(numbers, along.units[0])
+    scale, unit = scaled(np.concatenate([c.values for c in panel]), panel[0].unit)
+    # Modes that nothing drives are there, and do not matter.
+    quiet = {one.label for one in found.follows if not one.driven}
+    told, named = 0, False
+    for column in panel:
+        values = scale * _values(found, along, beside, column)
+        for number, line in enumerate(values.T):
+            color, dashes = style.LINES[told % len(style.LINES)]
+            label = mode_of(column)
+            if beside is not None:
+                label = step_words(beside, number)
+            if mode_of(column) in quiet:
+                color, dashes = style.MUTED, (0, (1.4, 1.2))
+                label = None if named else "not driven"
+                named = True
+            axes.plot(factor * x, line, color=color, ls=dashes, marker="o", ms=3, label=label)
+            told += 1
+            lost = np.isnan(line)
+            if lost.any() and not lost.all() and len(panel) == 1:
+                low = float(np.nanmin(values))
+                axes.plot(factor * x[lost], np.full(lost.sum(), low), "x", color=style.MUTED)
+    _along(axes, along, symbol)
+    axes.set_ylabel(labelled(_panel_name(panel), unit))
+    if told > 1:
+        style.legend_below(axes, columns=4, gap=0.22)
+
+
+def _panel_name(panel: list[Column]) -> str:
+    return f"{quantity_of(panel[0])} of {len(panel)} modes" if len(panel) > 1 else name_of(panel[0])
+
+
+def _along(axes: Axes, along: Axis, symbol: str) -> None:
+    if along.numbers is None:
+        axes.set_xticks(
+            range(len(along)),
+            [style.plain(step_words(along, k), 18) for k in range(len(along))],
+            rotation=30 if len(along) > 3 else 0,
+            ha="right" if len(along) > 3 else "center",
+        )
+    elif along.logarithmic:
+        axes.set_xscale("log")
+        style.plain_log(axes.xaxis)
+    axes.set_xlabel(labelled(name_of(along), symbol))
+
+
+def _map(
+    figure: Figure, axes: Axes, found: Sweep, along: Axis, beside: Axis, column: Column
+) -> None:
+    assert beside.numbers is not None
+    x = np.arange(len(along), dtype=float) if along.numbers is None else along.numbers
+    across, xs = (1.0, "") if along.numbers is None else scaled(x, along.units[0])
+    up, ys = scaled(beside.numbers, beside.units[0])
+    scale, unit = scaled(column.values, column.unit)
+    values = np.ma.masked_invalid(scale * _values(found, along, beside, column).T)
+    image = axes.pcolormesh(
+        across * x, up * beside.numbers, values, shading="nearest", cmap="cividis"
+    )
+    if min(values.shape) > 1 and values.count() > 3 and np.ptp(values.compressed()) > 0:
+        lines = axes.contour(
+            across * x, up * beside.numbers, values, 5, colors=style.PAPER, linewidths=0.9
+        )
+        axes.clabel(lines, fontsize=8.5, fmt=lambda v: f"{v:.3g}")
+    rows, columns = np.nonzero(np.ma.getmaskarray(values))
+    axes.plot(across * x[columns], up * beside.numbers[rows], "x", color=style.MUTED)
+    figure.colorbar(image, ax=axes, label=labelled(name_of(column), unit))
+    _along(axes, along, xs)
+    if beside.logarithmic:
+        axes.set_yscale("log")
+        style.plain_log(axes.yaxis)
+    axes.set_ylabel(labelled(name_of(beside), ys))
+    axes.grid(visible=False)

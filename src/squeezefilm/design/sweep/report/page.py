@@ -1,0 +1,180 @@
+"""A sweep's page: main effects, what decides, interactions, trade-offs, reasons and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.kit.numbers import printable
+from squeezefilm.core.kit.page_style import (
+    bullets,
+    links,
+    page,
+    picture_files,
+    picture_sections,
+    section,
+    stamped,
+    text_table,
+)
+from squeezefilm.design.sweep.answers import FOLLOWED
+from squeezefilm.design.sweep.effects import Effects, Varied, effects_of, varied_values
+from squeezefilm.design.sweep.report.effect_figures import (
+    effects_figure,
+    shares_figure,
+    tradeoffs_figure,
+    varied_name,
+)
+from squeezefilm.design.sweep.report.figures import sweep_figure
+from squeezefilm.design.sweep.report.words import labelled, name_of, scaled
+from squeezefilm.design.sweep.swept import Sweep, counted
+from squeezefilm.design.sweep.tradeoffs import non_dominated
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_MOST_ROWS = 20
+
+
+def wishes(
+    asked: Sequence[tuple[str, si.Unit]], less: Sequence[str], more: Sequence[str]
+) -> tuple[tuple[str, int], ...]:
+    """Of which answers less is better (1) or more (-1), by their columns' names; `asked` are those
+    there are, with their units.
+
+    Raises `InputError` for one that was not asked for, is named twice, or is of followed modes.
+    """
+    asked = [(name, unit) for name, unit in asked if name.partition(".")[0] != FOLLOWED]
+    by_name = {key: name for name, unit in asked for key in (name, name.removesuffix(unit.suffix))}
+    found: dict[str, int] = {}
+    for option, texts, sign in (("less", less, 1), ("more", more, -1)):
+        for name in (part.strip() for text in texts for part in text.split(",")):
+            if name.partition(".")[0] == FOLLOWED:
+                raise InputError(
+                    f"--{option} {name} is of modes that have names only once they are solved, so "
+                    "that nothing can be wished of them; name another number, like "
+                    "resonance_frequency, and ask for it",
+                    quantity=option,
+                )
+            if name not in by_name:
+                raise InputError(
+                    f"--{option} {name} was not asked for.{si.did_you_mean(name, by_name)} There "
+                    f"are: {', '.join(name for name, _ in asked)}",
+                    quantity=option,
+                )
+            if by_name[name] in found:
+                raise InputError(f"{name} is wished for twice; say it once, as less or as more")
+            found[by_name[name]] = sign
+    return tuple(found.items())
+
+
+def sweep_page(
+    found: Sweep, files: Sequence[str], better: tuple[tuple[str, int], ...] = ()
+) -> dict[str, str | bytes]:
+    """The page index.html and its pictures by name; `better` as of `wishes`."""
+    varied, effects = varied_values(found), effects_of(found)
+    figures: dict[str, tuple[str, Figure]] = {}
+    if not any(axis.sampled for axis in found.axes):
+        figures["sweep"] = ("The sweep", sweep_figure(found))
+    figures["effects"] = ("Main effects", effects_figure(found))
+    if effects:
+        figures["shares"] = ("What decides", shares_figure(effects, varied))
+    if len(found.columns) > 1:
+        figures["tradeoffs"] = ("Trade-offs", tradeoffs_figure((found, better)))
+    title = escape(printable(found.title))
+    return {
+        **picture_files(figures),
+        "index.html": page(
+            f"{title}: a sweep",
+            f"{title}: a sweep of {len(found.reasons)} points",
+            f"asked of {escape(', '.join(found.verbs))}, by squeezefilm; "
+            f"finger: {escape(printable(found.provenance['finger']))}",
+            picture_sections(figures)
+            + _decisive(effects, varied)
+            + _best(found, better)
+            + section("Points without an answer", bullets(_reasons(found)))
+            + section(
+                "Warnings", bullets(f"{text} (at {count} points)" for text, count in found.warnings)
+            ),
+            f"{stamped(found.provenance, 'SHA-256 of the display')}. Beside this page: "
+            f"{links(files)}.",
+        ),
+    }
+
+
+def _reasons(found: Sweep) -> list[str]:
+    said = counted(reason for reason in found.reasons if reason)
+    return [f"{reason} ({count} points)" for reason, count in said]
+
+
+def _decisive(effects: Sequence[Effects], varied: Sequence[Varied]) -> str:
+    """Tables of the shares, and of the pairs, of every answer."""
+    out = ""
+    for one in effects:
+        rows = [
+            (varied_name(v), _share(s.first, s.first_error), _share(s.total, s.total_error))
+            for v, s in zip(varied, one.shares, strict=True)
+        ]
+        pairs = [
+            (f"{varied_name(varied[i])} and {varied_name(varied[j])}", _share(share, error))
+            for (i, j), (share, error) in sorted(one.pairs.items(), key=lambda p: -p[1][0])[:10]
+        ]
+        told = (
+            "Exact for the points of this grid; a finer grid may say otherwise."
+            if one.explained is None
+            else f"From a fit to {one.points} points, which explains {one.explained:.0%} of the "
+            "variance of points left out of it; errors are one standard error, from drawing "
+            "the points again."
+        )
+        table = text_table(told, ("Varied", "Share alone", "Share with interactions"), rows)
+        if pairs:
+            table += text_table("Only both together", ("Pair", "Share"), pairs)
+        out += section(f"What decides: {escape(name_of(one.column))}", table)
+    return out
+
+
+def _share(share: float, error: float) -> str:
+    return f"{share:.1%}" if error == 0 else f"{share:.1%} ± {error:.1%}"
+
+
+def _best(found: Sweep, better: tuple[tuple[str, int], ...]) -> str:
+    """The rows that no other beats in what is wished for."""
+    if not better:
+        return section(
+            "Points that no other beats",
+            "<p>Say of which answers less is better and of which more, as in "
+            "<code>--less relative_friction --more amplitude_per_volt</code>, and they are marked "
+            "and listed here.</p>",
+        )
+    wanted = dict(better)
+    columns = [c for c in found.columns if c.name in wanted]
+    values = np.column_stack([wanted[c.name] * c.values for c in columns])
+    rows = np.flatnonzero(non_dominated(values))
+    rows = rows[np.argsort(values[rows, 0], kind="stable")]
+    scales = [scaled(c.values, c.unit) for c in columns]
+    settings = {
+        one.name: (one, scaled(one.values, one.unit) if not one.words else (1.0, ""))
+        for one in varied_values(found)
+    }
+    head = [
+        "Row",
+        *(labelled(varied_name(one), symbol) for one, (_, symbol) in settings.values()),
+        *(labelled(name_of(c), symbol) for c, (_, symbol) in zip(columns, scales, strict=True)),
+    ]
+    lines = [
+        [
+            str(row + 1),
+            *(
+                one.words[int(one.values[row])] if one.words else f"{factor * one.values[row]:.4g}"
+                for one, (factor, _) in settings.values()
+            ),
+            *(f"{f * c.values[row]:.4g}" for c, (f, _) in zip(columns, scales, strict=True)),
+        ]
+        for row in rows[:_MOST_ROWS].tolist()
+    ]
+    caption = f"{len(rows)} of {len(found.reasons)} points; rows are those of the table, from 1"
+    return section("Points that no other beats", text_table(caption, head, lines))

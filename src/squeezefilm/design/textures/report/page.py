@@ -1,0 +1,182 @@
+"""`write_render`: trace, envelope, numbers, figures and a page of a rendered texture."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import partial
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.formats.traces import Table, csv_text, parquet_bytes
+from squeezefilm.core.formats.wav import Waveform, wav_bytes
+from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.core.kit.numbers import printable
+from squeezefilm.core.kit.page_style import (
+    bullets,
+    drawn_figures,
+    links,
+    page,
+    picture_files,
+    picture_sections,
+    section,
+    stamped,
+    text_table,
+)
+from squeezefilm.design.textures.report import figures as draw
+from squeezefilm.design.textures.report.terminal import render_rows
+from squeezefilm.physics.render.program.made_for import MadeForSpeed
+from squeezefilm.physics.texture_files.hjif import HjifExport, ReferenceDevice, hjif_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
+
+_DAC_RATE = 192_000
+
+
+def trace_table(result: RenderAnalysis) -> Table:
+    """Every step of the loop as a table, with the origin in its metadata."""
+    return Table(
+        result.columns(),
+        {**result.provenance(), "texture": result.played.name, "display": result.display.name},
+    )
+
+
+def envelope_waveform(result: RenderAnalysis) -> Waveform:
+    """The amplitude commanded over time, full scale being the display's largest amplitude."""
+    stroke = result.stroke
+    return Waveform(
+        stroke.command,
+        stroke.control_rate,
+        "m",
+        stroke.envelope.amplitude_limit,
+        {**result.provenance(), "quantity": "amplitude commanded, zero-to-peak"},
+    )
+
+
+def drive_waveform(result: RenderAnalysis) -> Waveform:
+    """The drive's voltage at 192 kHz: the commands on a carrier at the drive frequency.
+
+    Full scale is the voltage limit.
+
+    Raises:
+        InputError: a display without a voltage, a control rate that does not divide 192 kHz, or a
+            carrier above what that rate can carry.
+    """
+    from squeezefilm.physics.render.resonator.carrier import carrier_block, samples_per_command
+
+    p, stroke = result.prediction, result.stroke
+    if p.voltage is None:
+        raise InputError("a drive in volts needs a display with a voltage")
+    samples = samples_per_command(stroke.control_rate, _DAC_RATE)
+    if p.frequency >= 0.5 * _DAC_RATE:
+        raise InputError(f"{p.frequency:.6g} Hz cannot be carried at {_DAC_RATE} samples a second")
+    volts = p.voltage * stroke.command / stroke.envelope.amplitude_limit
+    out = np.empty(stroke.command.size * samples)
+    carrier_block(0.0, 2 * np.pi * p.frequency / _DAC_RATE, volts, samples, 1.0, out)
+    return Waveform(
+        out,
+        float(_DAC_RATE),
+        "V",
+        p.voltage,
+        {**result.provenance(), "carrier_frequency_Hz": p.frequency},
+    )
+
+
+def hjif_export(result: RenderAnalysis) -> HjifExport:
+    """The texture under the stroke as MPEG haptics. Raises `InputError` as `hjif_of` does."""
+    p, played = result.prediction, result.played
+    speed = result.mean_speed
+    wanted = result.texture.texture(result.finger.x, result.finger.y, speed, result.finger.time)
+    made_for = MadeForSpeed.of(played.inverse.friction_at, played.amplitude(wanted, speed), speed)
+    frictional = result.texture.texture.quantity == "relative_friction"
+    return hjif_of(
+        result.texture.texture,
+        float(np.floor(1e6 * result.finger.x.min()) * 1e-6),
+        float(np.ceil(1e6 * result.finger.x.max()) * 1e-6),
+        device=ReferenceDevice(
+            result.display.name,
+            p.frequency,
+            p.voltage or 0.0,
+            result.stroke.envelope.amplitude_limit,
+        ),
+        title=played.name,
+        to_friction=None if frictional else partial(draw.friction_of, result, speed=speed),
+        made_for=made_for,
+    )
+
+
+def write_render(
+    result: RenderAnalysis,
+    folder: Path,
+    *,
+    table: str = "csv",
+    drive: bool = False,
+    hjif: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write everything of a rendering into `folder`; the path of index.html.
+
+    All is made in memory first; if a file cannot be written, those before it are taken away again.
+
+    Raises:
+        InputError: an unknown kind of table, what `drive_waveform` and `hjif_export` refuse, or a
+            folder that cannot be written to.
+    """
+    tell = progress or (lambda _: None)
+    if table not in ("csv", "parquet"):
+        raise InputError(f"a table cannot be '{table}'; it may be csv or parquet")
+    folder = require_folder(folder)
+    tell("figures")
+    figures = render_figures(result)
+    files = picture_files(figures)
+    tell("trace")
+    trace = trace_table(result)
+    name = f"trace.{table}"
+    files[name] = csv_text(trace) if table == "csv" else parquet_bytes(trace)
+    files["envelope.wav"] = wav_bytes(envelope_waveform(result))
+    if drive:
+        files["drive.wav"] = wav_bytes(drive_waveform(result), "int24")
+    summary = result.summary()
+    if hjif:
+        export = hjif_export(result)
+        files["texture.hjif"] = (json.dumps(export.document, indent=1) + "\n").encode()
+        summary["hjif"] = {
+            "lost": list(export.lost),
+            "rms_error": export.rms_error,
+            "largest_error": export.largest_error,
+            **({} if export.made_for is None else export.made_for.summary()),
+        }
+    files["fidelity.json"] = json_text(summary)
+    files["index.html"] = _page(result, figures, sorted({*files, "index.html"}))
+    write_folder(folder, files)
+    return folder / "index.html"
+
+
+def render_figures(result: RenderAnalysis) -> dict[str, tuple[str, Figure]]:
+    """The figures by the name of their file: heading and drawing."""
+    return drawn_figures(draw.FIGURES, result, "render-")
+
+
+def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:
+    title = escape(printable(result.played.name))
+    stamp = result.provenance()
+    head = ("Quantity", "Value", "Remark")
+    numbers = text_table("What was asked for and what the finger meets", head, render_rows(result))
+    beside = links(name for name in files if not name.endswith((".png", ".html")))
+    return page(
+        f"{title}: rendered texture",
+        title,
+        f"rendered on <code>{escape(printable(result.display.name))}</code> by squeezefilm",
+        section("Numbers", numbers)
+        + picture_sections(figures)
+        + section("Warnings", bullets(result.prediction.warnings)),
+        f"{stamped(stamp, 'SHA-256 of display, texture and motion')} ·\n"
+        f"seed {stamp['seed']}. Beside this page: {beside}.",
+    )

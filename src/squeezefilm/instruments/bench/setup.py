@@ -1,0 +1,163 @@
+"""What `squeezefilm play` works out first: texture, display and drive as a loop's plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import announce
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
+from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.tick import make_tick
+from squeezefilm.instruments.session.play.plan import PlayPlan
+from squeezefilm.instruments.session.play.tile import TextureTile, tile_of
+from squeezefilm.physics.chain.friction_table import FrictionTable
+from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.chain.rendered_texture import lowered
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.render.motion.estimator import MotionEstimator
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
+from squeezefilm.physics.texture_files.texture_file import TextureFile
+
+OUTPUT_DELAY: si.Second = 6e-3
+"""From a tick to its command at the plate: the player's pause, a block's length, the link and what
+its jitter may be (assumed; commands that come later than this are counted, and not played)."""
+_FINEST_PITCH: si.Metre = 1e-6
+_LONGEST_TILE_WAY: si.Metre = 0.1
+
+
+@dataclass(frozen=True)
+class KnownDevice:
+    """What is known of the device that plays.
+
+    Attributes:
+        sensor: what the finger is seen with.
+        amplitude_per_pickup: of its pickup (m/V), if known.
+        way: x that a tile covers (m), from and to; 0 to 10 cm, or what 512 amplitudes span.
+        twin: whether it is a twin, where an assumed insulation counts.
+    """
+
+    sensor: SensorModel = LVDT_10_KHZ
+    amplitude_per_pickup: si.MetrePerVolt | None = None
+    way: tuple[si.Metre, si.Metre] | None = None
+    twin: bool = False
+
+
+_NOTHING_KNOWN = KnownDevice()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlaySetup:
+    """A texture on a display, ready to be played.
+
+    Attributes:
+        display, texture, prediction: the inputs, and the display at its largest voltage.
+        inverse: the display's friction law, by which amplitudes become friction again.
+        sensor: what the finger is seen with, as the estimator believes it.
+        plan: for the player.
+        assumed_limits: names of the drive's limits that the display does not give.
+    """
+
+    display: Display
+    texture: TextureFile
+    prediction: Prediction
+    inverse: FrictionInverse
+    sensor: SensorModel
+    plan: PlayPlan
+    assumed_limits: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """What the texture is called."""
+        return self.texture.title or f"a texture of {self.texture.texture.quantity}"
+
+    def friction(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
+    ) -> si.DimensionlessArray:
+        """Relative friction (1) by the display's law at amplitudes (m, held beyond the largest)
+        under a finger at speeds (m/s); not a number where one of them is none."""
+        known = np.isfinite(amplitude) & np.isfinite(speed)
+        found = np.full(np.shape(amplitude), np.nan)
+        if np.any(known):
+            found[known] = self.inverse.friction_at(amplitude[known], speed[known])
+        return found
+
+
+def play_setup(
+    display: Display,
+    texture: TextureFile,
+    *,
+    device: KnownDevice = _NOTHING_KNOWN,
+    voltage: si.Volt | None = None,
+    surface: str | None = None,
+    rate: si.Hertz = 5e3,
+    compensation: str = "none",
+    mode: str = "stream",
+) -> PlaySetup:
+    """The plan for a texture on a display.
+
+    Args:
+        display: what plays; its drive's limits are the device's.
+        texture: what is to be felt.
+        device: what is known of it.
+        voltage: the most to use (V), less than the drive's own.
+        surface: of the display.
+        rate: of the loop (Hz).
+        compensation: "none" or "inverse".
+        mode: "stream" or "tile".
+
+    Raises:
+        InputError: a display that does not vibrate, limits that do not fit, an unknown
+            compensation or mode, or a texture that no tile can hold.
+    """
+    p = predict(display, voltage=voltage, surface=surface)
+    largest = p.vibration_amplitude
+    if p.voltage is None or largest <= 0.0 or p.relative_friction >= 1.0:
+        raise InputError(
+            f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
+            "plays no texture; give it a voltage"
+        )
+    limits = display.limits(p.frequency, p.voltage, twin=device.twin)
+    loaded = p.touch.mode or p.mode
+    tau = float(envelope_time_constant(loaded.quality_factor, loaded.resonance_frequency))
+    loop = LoopPlan(
+        program=lowered(texture, p, p.inverse),
+        rate=rate,
+        envelope=DrivenEnvelope(tau, tau, largest),
+        drive=DriveTable.linear(largest / p.voltage, p.voltage),
+        estimator=MotionEstimator.for_sensor(device.sensor),
+        compensation=compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
+        relative_friction=FrictionTable.of_inverse(p.inverse),
+        output_delay=OUTPUT_DELAY,
+    )
+    announce(make_tick, "real-time loop", 20)
+    plan = PlayPlan(
+        loop=loop,
+        limits=limits,
+        frequency=p.frequency,
+        twin=device.twin,
+        mode=mode,  # type: ignore[arg-type] # checked with a message by PlayPlan
+        tile=_tile(loop, device.way, p) if mode == "tile" else None,
+        sensor_latency=device.sensor.latency,
+        amplitude_per_pickup=device.amplitude_per_pickup,
+    )
+    assumed = display.drive.assumed_limits
+    return PlaySetup(display, texture, p, p.inverse, device.sensor, plan, assumed)
+
+
+def _tile(loop: LoopPlan, way: tuple[si.Metre, si.Metre] | None, p: Prediction) -> TextureTile:
+    first, last = (0.0, _LONGEST_TILE_WAY) if way is None else way
+    if not last > first:
+        raise InputError(f"a tile from {first:g} m to {last:g} m covers nothing; exchange them")
+    # Whole micrometres, which is what the device counts in.
+    pitch = max(1, int(np.ceil((last - first) / ((LONGEST_TILE - 1) * _FINEST_PITCH))))
+    origin = int(np.floor(first / _FINEST_PITCH))
+    size = min(LONGEST_TILE, int(np.ceil((last - first) / (pitch * _FINEST_PITCH))) + 1)
+    first, pitch_of = origin * _FINEST_PITCH, pitch * _FINEST_PITCH
+    return tile_of(loop.program, first, pitch_of, size, speed=p.speed, law=p.friction)

@@ -1,0 +1,138 @@
+"""Frames: a header, a payload and a CRC-32, stuffed by COBS and ended by a zero byte.
+
+Before stuffing a frame is `version u8, type u8, sequence u16, payload, CRC-32 u32`, little-endian;
+the CRC (that of zlib) covers everything before it, in every frame. `docs/development/protocol.md`
+is the description byte by byte.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from squeezefilm.core.errors import InputError
+
+VERSION = 1
+LONGEST_FRAME = 252
+"""Bytes of a frame before stuffing; one COBS block, so stuffing adds one byte."""
+_HEADER = struct.Struct("<BBH")
+_CRC = struct.Struct("<I")
+OVERHEAD = _HEADER.size + _CRC.size
+LONGEST_PAYLOAD = LONGEST_FRAME - OVERHEAD
+
+
+def cobs_encode(data: bytes) -> bytes:
+    """`data` without zero bytes, at most ⌈len/254⌉ bytes longer (one byte for no data).
+
+    Consistent overhead byte stuffing, so that a zero can end a frame (Cheshire & Baker 1999,
+    IEEE/ACM Trans. Networking 7, 159, 10.1109/90.769765).
+    """
+    out = bytearray([0])
+    code_at = 0
+    for position, byte in enumerate(data):
+        if byte:
+            out.append(byte)
+        run = len(out) - code_at
+        full = run == 255
+        if not byte or (full and position + 1 < len(data)):
+            out[code_at] = run
+            code_at = len(out)
+            out.append(0)
+    out[code_at] = len(out) - code_at
+    return bytes(out)
+
+
+def cobs_decode(data: bytes) -> bytes:
+    """What was encoded.
+
+    Raises:
+        InputError: a zero inside, or a code that points past the end.
+    """
+    out = bytearray()
+    at = 0
+    while at < len(data):
+        code = data[at]
+        end = at + code
+        if code == 0 or end > len(data) or 0 in data[at + 1 : end]:
+            raise InputError(f"{len(data)} bytes are no COBS block: bad code at byte {at}")
+        out += data[at + 1 : end]
+        if code < 255 and end < len(data):
+            out.append(0)
+        at = end
+    return bytes(out)
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One frame: its type, its sequence number (0…65535), what it carries, and its version."""
+
+    type: int
+    sequence: int
+    payload: bytes = b""
+    version: int = VERSION
+
+    def encoded(self) -> bytes:
+        """The bytes on the wire, the ending zero included.
+
+        Raises:
+            InputError: a payload or a number that does not fit.
+        """
+        if len(self.payload) > LONGEST_PAYLOAD:
+            raise InputError(
+                f"a payload of {len(self.payload)} bytes; at most {LONGEST_PAYLOAD} fit a frame; "
+                "send it in parts"
+            )
+        try:
+            body = _HEADER.pack(self.version, self.type, self.sequence) + self.payload
+        except struct.error as error:
+            raise InputError(f"a frame's type is one byte, its sequence two: {error}") from error
+        return cobs_encode(body + _CRC.pack(zlib.crc32(body))) + b"\0"
+
+
+def frame_from_bytes(stuffed: bytes) -> Frame:
+    """The frame in the bytes between two zeros.
+
+    Raises:
+        InputError: bytes that are no frame, or whose CRC differs.
+    """
+    body = cobs_decode(stuffed)
+    if not OVERHEAD <= len(body) <= LONGEST_FRAME:
+        raise InputError(
+            f"a frame of {len(body)} bytes; {OVERHEAD} to {LONGEST_FRAME} are allowed; read on"
+        )
+    (crc,) = _CRC.unpack_from(body, len(body) - _CRC.size)
+    if zlib.crc32(body[: -_CRC.size]) != crc:
+        raise InputError("a frame's CRC-32 differs from its bytes; drop it and read on")
+    version, kind, sequence = _HEADER.unpack_from(body)
+    return Frame(kind, sequence, body[_HEADER.size : -_CRC.size], version)
+
+
+@dataclass(slots=True)
+class Deframer:
+    """Cuts a stream of bytes into frames, in any pieces. Not thread-safe.
+
+    `damaged` counts what stood between two zeros and was no frame. Nothing is raised and memory
+    is bounded: bytes past the longest frame are dropped until the next zero.
+    """
+
+    damaged: int = 0
+    _bytes: bytearray = field(default_factory=bytearray)
+
+    def take(self, data: bytes) -> Iterator[Frame | None]:
+        """Every frame that `data` completes; None for one that was damaged."""
+        for byte in data:
+            if byte:
+                if len(self._bytes) <= LONGEST_FRAME + 1:
+                    self._bytes.append(byte)
+                continue
+            if not self._bytes:
+                continue
+            stuffed = bytes(self._bytes)
+            self._bytes.clear()
+            try:
+                yield frame_from_bytes(stuffed)
+            except InputError:
+                self.damaged += 1
+                yield None

@@ -1,0 +1,295 @@
+"""What the terminal shows of a device, and of a session on it, while it plays and after."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit.numbers import HZ, M, S, V, printable, shown
+from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
+from squeezefilm.physics.render.fidelity.report import lag_rows
+
+if TYPE_CHECKING:
+    from rich.console import Group
+
+    from squeezefilm.instruments.bench.check import DeviceCheck
+    from squeezefilm.instruments.bench.play import PlayResult
+    from squeezefilm.instruments.bench.played_session import Judged, PlayedSession
+    from squeezefilm.instruments.session.play.plan import PlayView
+    from squeezefilm.instruments.session.record.trace import TraceExport
+
+_BAR = 28
+_LINE_PERIOD = 1.0
+_SPEED = si.Unit("m/s")
+
+
+def show_export(done: TraceExport) -> None:
+    """Print what was exported, and what the trace had lost."""
+    console = plain_console()
+    console.print(
+        f"{done.to}: {done.rows} rows of {len(done.columns)} columns, {done.events} events"
+    )
+    for sentence in done.damage:
+        console.print(f"! {sentence}")
+
+
+def show_check(check: DeviceCheck) -> None:
+    """Print a device's checks as a table, and what to do about those that failed."""
+    console = plain_console()
+    heading(console, f"Device on {check.drive}")
+    rows = [
+        ("pass" if one.passed else "FAIL", one.name, one.measured, one.allowed)
+        for one in check.results
+    ]
+    table(
+        console,
+        ("", "check", "measured", "allowed"),
+        rows,
+        fixed=(0,),
+        styles=lambda row: "green" if row[0] == "pass" else "bold red",
+    )
+    bad = [one for one in check.results if not one.passed]
+    for one in bad:
+        console.print(f"! {one.name}: {one.advice}")
+    count = len(check.results)
+    console.print(f"{count - len(bad)} of {count} checks passed")
+
+
+@contextmanager
+def live_view(enabled: bool) -> Iterator[Callable[[PlayView], None] | None]:
+    """Show a session while it plays: a table at a terminal, a line a second elsewhere.
+
+    Yields the function to tell each view to, or None where nothing is to be shown. On standard
+    error, so that what a program reads stays clean.
+    """
+    if not enabled:
+        yield None
+        return
+    if not sys.stderr.isatty():
+        told = -math.inf
+
+        def line(view: PlayView) -> None:
+            nonlocal told
+            if view.time - told >= _LINE_PERIOD:
+                told = view.time
+                print(f"  {view_line(view)}", file=sys.stderr, flush=True)
+
+        yield line
+        return
+    from rich.console import Console
+    from rich.live import Live
+
+    console = Console(stderr=True, highlight=False, markup=False, emoji=False)
+    with Live(console=console, refresh_per_second=10, transient=True) as live:
+        yield lambda view: live.update(view_table(view))
+
+
+def view_line(view: PlayView) -> str:
+    """A moment of a session in one line."""
+    parts = [
+        f"{view.time:7.2f} s",
+        view.state.name.lower() + (f" ({view.fault.name.lower()})" if view.fault else ""),
+        f"x {_number(view.x, 1e3):>7} mm",
+        f"µ′/µ {_number(view.relative_friction, 1.0, 3)}",
+        f"amplitude {_number(view.amplitude, 1e6)} µm",
+        f"lag {_number(view.lag, 1e3, 3)} mm",
+        f"late {_number(view.lateness, 1e6, 0)} µs",
+        *view.flags,
+    ]
+    return ", ".join(parts)
+
+
+def view_table(view: PlayView) -> Group:
+    """A moment of a session as a table with bars, and what the last tick said below it."""
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    grid = Table.grid(padding=(0, 2))
+    for width in (13, 12, _BAR):
+        grid.add_column(no_wrap=True, min_width=width)
+    state = view.state.name.lower()
+    style = {"playing": "green", "fault": "bold red"}.get(state, "yellow")
+    known = "not known" if math.isnan(view.x) else f"{1e3 * view.x:.2f} mm"
+    speed = "" if math.isnan(view.speed) else f"{1e3 * view.speed:.0f} mm/s"
+    wanted = "" if math.isnan(view.wanted) else f"{1e6 * view.wanted:.2f} µm wanted"
+    fault = view.fault.name.lower() if view.fault else "none"
+    lines: list[tuple[str, str | Text, str]] = [
+        ("time", f"{view.time:.1f} s", f"{view.rows} rows recorded"),
+        ("state", Text(state, style=style), f"fault: {fault}"),
+        ("position", known, speed),
+        ("friction µ′/µ", _number(view.relative_friction, 1.0, 3), bar(view.relative_friction)),
+        ("amplitude", f"{_number(view.amplitude, 1e6)} µm", wanted),
+        ("output", f"{_number(view.level, 1.0)} V", ""),
+        ("lag", f"{_number(view.lag, 1e3, 3)} mm", "predicted across"),
+        ("lateness", f"{_number(view.lateness, 1e6, 1)} µs", ""),
+    ]
+    for name, value, remark in lines:
+        grid.add_row(Text(name, style="dim"), value, remark)
+    said = Text("; ".join(view.flags), no_wrap=True, overflow="ellipsis")
+    return Group(grid, said)
+
+
+def bar(share: float) -> str:
+    """A bar for a share from 0 to 1; empty where it is not known."""
+    if not math.isfinite(share):
+        return ""
+    filled = round(_BAR * min(max(share, 0.0), 1.0))
+    return "█" * filled + "·" * (_BAR - filled)
+
+
+def _number(value: float, scale: float, digits: int = 2) -> str:
+    return "–" if not math.isfinite(value) else f"{scale * value:.{digits}f}"
+
+
+def show_play(result: PlayResult) -> None:
+    """Print a session: how it ended, what was rendered, how late, how far behind."""
+    setup = result.session.setup
+    title = f"{setup.name} on {setup.display.title} [{setup.display.name}]"
+    show_rows(title, play_rows(result), play_warnings(result.session), fixed=(0, 1))
+
+
+def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
+    """The lines of the table: quantity, value, remark."""
+    session, outcome = result.session, result.outcome
+    plan = session.setup.plan
+    ended = outcome.ending.value
+    volts = float(plan.loop.drive.voltage[-1])
+    rows = [
+        ("Ended", ended, outcome.message),
+        ("Usable", "yes" if outcome.usable else "NO", _usable_because(result)),
+        (
+            "Played",
+            shown(_duration(session), S, 3),
+            f"mode {plan.mode}, {shown(plan.loop.rate, HZ, 3)}, compensation "
+            f"{plan.loop.compensation}, up to {shown(volts, V, 3)} at {shown(plan.frequency, HZ)}",
+        ),
+    ]
+    rows.append(("Finger", "", session.setup.display.whose_finger))
+    if plan.tile is not None and plan.tile.made_for is not None:
+        rows.append(("Tile", f"{plan.tile.amplitude.size} places", plan.tile.made_for.sentence()))
+    rows += _judged_rows("Record", session.by_record)
+    if session.by_truth is not None:
+        rows += _judged_rows("Truth", session.by_truth)
+    if session.position_error is not None:
+        rows.append(
+            ("Position error", shown(session.position_error, M, 3), "of the estimate, RMS, truth")
+        )
+    if session.lag is not None:
+        far = f"from newest sample to its command at the plate; {1e3 * session.lag.p99:.2f} mm"
+        rows.append(("Way predicted", f"{1e3 * session.lag.median:.2f} mm", f"{far} at 99 %"))
+    rows += _loop_rows(session.last("loop")) + _link_rows(session)
+    return rows
+
+
+def _usable_because(result: PlayResult) -> str:
+    """The numbers that say whether a session can be used, or why it cannot."""
+    found = result.outcome.usability
+    if found is None or result.outcome.failed:
+        return ""
+    return found.sentence or (
+        f"{100 * found.share_made:.1f} % of {found.ticks} ticks made, longest gap "
+        f"{shown(found.longest_gap, S, 3)}, {100 * found.share_late:.1f} % too late"
+    )
+
+
+def _duration(session: PlayedSession) -> float:
+    rows = session.trace.rows
+    return float(rows[-1, 1] - rows[0, 1]) if len(rows) else 0.0
+
+
+def _judged_rows(who: str, judged: Judged) -> list[tuple[str, str, str]]:
+    found = judged.fidelity
+    if found is None:
+        return [(f"{who}: contrast, lag", "–", judged.unjudged or "")]
+    rows = []
+    for f, kept, swing in zip(
+        found.spatial_frequency, found.contrast_kept, found.swing_kept, strict=True
+    ):
+        if math.isfinite(kept):
+            said = f"in its place; {100 * swing:.0f} % of that wave anywhere"
+            name = f"{who}: contrast at {shown(1 / f, M, 3)}"
+            rows.append((name, f"{100 * kept:.0f} %", said))
+    said = f"RMS of µ′/µ, swing wanted {found.wanted_swing:.2f}; by {judged.way.source}"
+    rows.append((f"{who}: friction error", f"{found.rms_error:.3f}", said))
+    return rows + lag_rows(found, f"{who}: lag")
+
+
+def _loop_rows(loop: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    late = loop.get("lateness")
+    if not late:
+        return [("Loop", "–", "it could not say how late it was")]
+    due = late["made"] + late["lost"]
+    rows = [
+        (
+            "Ticks lost",
+            f"{100 * late['lost'] / max(due, 1):.3f} %",
+            f"{late['lost']} of {due}; late {_micro(late['p50_s'])} median, "
+            f"{_micro(late['p99_s'])} at 99 %, {_micro(late['p99_9_s'])} at 99.9 %, "
+            f"{_micro(late['longest_s'])} at most",
+        )
+    ]
+    if "real_time_priority" in loop:
+        granted = "with" if loop["real_time_priority"] else "WITHOUT"
+        rows.append(
+            (
+                "Loop process",
+                f"{100 * loop['processor_share']:.0f} %",
+                f"of a processor, {granted} real-time priority; {loop['dropped_commands']} "
+                f"commands and {loop['dropped_rows']} rows dropped, {loop['stale_commands']} stale",
+            )
+        )
+    return rows
+
+
+def _link_rows(session: PlayedSession) -> list[tuple[str, str, str]]:
+    link, end = session.last("link"), session.last("end")
+    rows = []
+    if link:
+        rows.append(
+            (
+                "Link",
+                f"{link.get('lost', 0)} lost",
+                f"of {link.get('sent', 0)} frames; {link.get('damaged', 0)} damaged, "
+                f"{link.get('refused', 0)} refused; round trip "
+                f"{_micro(link.get('mean_round_trip_s'))} on average, "
+                f"{_micro(link.get('longest_round_trip_s'))} at most",
+            )
+        )
+    if end:
+        rows.append(
+            (
+                "Device",
+                f"{end.get('readings', 0)} readings",
+                f"{end.get('late_commands', 0)} commands too late to send, "
+                f"{end.get('device_late_ticks', 0)} late ticks of its own",
+            )
+        )
+    return rows
+
+
+def _micro(seconds: float | None) -> str:
+    return "–" if seconds is None else shown(seconds, S, 3)
+
+
+def play_warnings(session: PlayedSession) -> list[str]:
+    """What is doubtful of a session, a sentence each."""
+    said = []
+    if session.setup.assumed_limits:
+        said.append(
+            "the display's drive does not give "
+            + ", ".join(session.setup.assumed_limits)
+            + "; the device was given assumed limits"
+        )
+    for meaning, count in session.flags.items():
+        said.append(f"{count} ticks: {meaning}")
+    for event in session.device_events:
+        if event.get("fault") not in (None, "none"):
+            said.append(f"the device faulted at {event.get('time_s', 0.0):.3f} s: {event['fault']}")
+    said += list(session.trace.damage.sentences)
+    said += list(session.setup.prediction.warnings)
+    return [printable(text) for text in said]

@@ -1,0 +1,340 @@
+"""The simulated plate, amplifier, film, finger, hand, sensor and pickup as one object on one clock,
+and the record of what really happened.
+
+Python around `plant_kernel.advance`; everything that takes time is compiled.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import announce
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.twin import plant_kernel as k
+from squeezefilm.instruments.twin.envelope_step import Fingers
+from squeezefilm.instruments.twin.friction_rows import FrictionTables
+from squeezefilm.instruments.twin.hand import Hand
+from squeezefilm.instruments.twin.settings import TwinSettings
+from squeezefilm.instruments.twin.working_point import WorkingPoint
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.sliding.march import row_substeps, substeps
+from squeezefilm.physics.plate.heat.states import cooling_of, heat_capacity
+from squeezefilm.physics.plate.heat.thermal import driven_thickness, thermal_body
+
+_BUFFER = 2000  # rows between two visits to Python
+_PICKUP_RE, _PICKUP_IM = 11, 12
+
+
+@dataclass(frozen=True, slots=True)
+class PlantCounts:
+    """How often something was not as wanted, in steps of the plant since it began.
+
+    `at_rail`, `at_slew`, `at_current`: the amplifier's limits held the voltage back. `beyond`: the
+    amplitude left the tables. `failed`: the skin chattered without end. `lost`: sensor samples.
+    """
+
+    at_rail: int
+    at_slew: int
+    at_current: int
+    beyond: int
+    failed: int
+    lost: int
+
+
+class TruthRecord:
+    """Rows of the truth, their columns named in `k.COLUMNS`. Memory is bounded; the file is not.
+
+    The file is a CSV that grows by whole lines and is flushed with each block of them; numbers
+    read back exactly.
+    """
+
+    def __init__(self, rows: int, file: Path | None = None) -> None:
+        """Keep the newest `rows`; append all to `file`. Raises `InputError` if it can't be."""
+        self._rows = np.empty((rows, len(k.COLUMNS)))
+        self._written = 0
+        self._file: TextIO | None = None
+        if file is not None:
+            try:
+                self._file = file.open("w", encoding="utf-8", newline="")
+            except OSError as error:
+                raise InputError(
+                    f"cannot write the truth to {file}: {error.strerror}; give another file"
+                ) from error
+            self._file.write(",".join(k.COLUMNS) + "\n")
+
+    def append(self, rows: si.FloatArray) -> None:
+        """Add rows, shape (n, columns)."""
+        if self._file is not None:
+            lines = (",".join(repr(float(v)) for v in row) for row in rows)
+            self._file.write("".join(line + "\n" for line in lines))
+            self._file.flush()
+        size = self._rows.shape[0]
+        newest = rows[-size:]
+        first = self._written + len(rows) - len(newest)
+        self._rows[(first + np.arange(len(newest))) % size] = newest
+        self._written += len(rows)
+
+    @property
+    def written(self) -> int:
+        """How many rows there have been."""
+        return self._written
+
+    @property
+    def rows(self) -> si.FloatArray:
+        """The rows kept, oldest first, shape (n, columns); a copy."""
+        size = self._rows.shape[0]
+        if self._written <= size:
+            return self._rows[: self._written].copy()
+        return np.roll(self._rows, -(self._written % size), axis=0)
+
+    def column(self, name: str) -> si.FloatArray:
+        """One column of the rows kept. Raises `InputError` for another name."""
+        if name not in k.COLUMNS:
+            raise InputError(f"the truth has no column '{name}'; it has {', '.join(k.COLUMNS)}")
+        return self.rows[:, k.COLUMNS.index(name)]
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+
+class Plant:
+    """Plate and finger. Not thread-safe. Advance it to a time; read what it does there.
+
+    `hand` None leaves the plate alone. The truth is appended to `truth_file` where one is named.
+    Raises `InputError` for static friction that falls over a speed (`settings.dry`) on a display
+    whose law says itself what friction does with speed, as `slide` does.
+    """
+
+    def __init__(
+        self,
+        point: WorkingPoint,
+        settings: TwinSettings,
+        hand: Hand | None = None,
+        truth_file: Path | None = None,
+    ) -> None:
+        self.point, self.settings, self.hand = point, settings, hand
+        self.truth = TruthRecord(settings.truth_rows, truth_file)
+        friction = _friction(point)
+        self._c = _constants(point, settings, hand, friction)
+        self._places, self._plan = _path(hand, settings.tick_us)
+        self._s, self._n = np.zeros(k.STATE), np.zeros(k.COUNTS, dtype=np.int64)
+        self._s[k.X] = self._s[k.SKIN_X] = self._places[0, 0]
+        self._s[k.Y] = self._places[1, 0]
+        self._s[k.RELATIVE] = math.nan
+        self._s[k.CHARGE] = 1.0
+        self._s[k.RESONANCE] = k.resonance(0, 0.0, self._c)
+        sensor = settings.sensor
+        waiting = math.ceil((sensor.latency + 10 * sensor.jitter) * sensor.rate) + 16
+        self._ring = np.zeros((waiting, 5))
+        self._buffer = np.empty((_BUFFER, len(k.COLUMNS)))
+        forces = np.ascontiguousarray(point.forces, dtype=float)
+        highest = float(point.highest_amplitude)
+        self._rest = (
+            k.State(self._s, self._n, self._c, k.untouched(friction)),
+            Fingers(forces, point.load, highest),
+            k.Path(self._places, self._plan),
+            self._ring,
+            self._buffer,
+        )
+        announce(k.advance, "twin's plant", 20)
+
+    @property
+    def now(self) -> int:
+        """The time it has reached (µs), which never wraps."""
+        return int(self._n[k.NOW])
+
+    def advance(self, until: int, level: int, carrier: int) -> None:
+        """Advance to a time (µs) at an amplitude (µV) and a carrier frequency (mHz).
+
+        Raises `InputError` for a time that has passed.
+        """
+        if until < self.now:
+            raise InputError(f"the plant is at {self.now} us and was asked to go to {until} us")
+        while k.advance(until, level, carrier, *self._rest) < until:
+            self.drain()
+
+    def drain(self) -> None:
+        """Hand the rows of truth made so far to `truth`."""
+        self.truth.append(self._buffer[: self._n[k.ROWS]])
+        self._n[k.ROWS] = 0
+
+    def close(self) -> None:
+        """Hand over the last rows and close their file."""
+        self.drain()
+        self.truth.close()
+
+    @property
+    def envelope(self) -> complex:
+        """z (m): the vibration is Re(−i z e^{iωt}), real when driven at resonance."""
+        return complex(self._s[k.Z_RE], self._s[k.Z_IM])
+
+    @property
+    def amplitude(self) -> si.Metre:
+        """Of the vibration (m, zero-to-peak, at an antinode)."""
+        return abs(self.envelope)
+
+    @property
+    def resonance_frequency(self) -> si.Hertz:
+        """Where the plate's own resonance is now, without the finger (Hz)."""
+        return float(self._s[k.RESONANCE])
+
+    @property
+    def temperature_rise(self) -> si.Kelvin:
+        """How much warmer than the room its own losses have made the plate (K)."""
+        return float(self._s[k.WARMTH])
+
+    @property
+    def voltage(self) -> si.Volt:
+        """On the plate (V, peak), what limits allow."""
+        return float(self._s[k.VOLTAGE])
+
+    @property
+    def tangential_force(self) -> si.Newton:
+        """Of the friction between skin and surface (N), positive while the skin goes to +x."""
+        return float(self._s[k.FRICTION])
+
+    @property
+    def counts(self) -> PlantCounts:
+        """What was not as wanted."""
+        which = (k.AT_RAIL, k.AT_SLEW, k.AT_CURRENT, k.BEYOND, k.FAILED, k.LOST_SAMPLES)
+        return PlantCounts(*(int(self._n[i]) for i in which))
+
+    def sensed(self) -> tuple[int, int, bool]:
+        """What the device's position sensor shows now: x and y (µm), and whether it is touched."""
+        x, y = self._s[k.SEEN_X], self._s[k.SEEN_Y]
+        return round(x * 1e6), round(y * 1e6), bool(self._n[k.SEEN_TOUCHING])
+
+    @cached_property
+    def pickup_calibration(self) -> si.MetrePerVolt:
+        """Vibration amplitude per signal of the pickup (m/V), at the predicted resonance."""
+        return self.point.pickup_calibration(self.settings.pickup)
+
+    def pickup_level(self) -> int:
+        """The amplitude at the pickup's input now (µV), with its noise; 0 without a pickup."""
+        pickup, z = self.settings.pickup, self.envelope
+        if pickup.kind == "none":
+            return 0
+        if pickup.kind == "sensing_patch":
+            signal = pickup.sensitivity * z
+        else:
+            carrier = int(self._n[k.CARRIER])
+            omega = 2 * math.pi * (carrier * 1e-3 if carrier else self.resonance_frequency)
+            leak = 1j * pickup.feedthrough * self.point.capacitance * self.voltage
+            factor = self.point.force_factor * float(self._s[k.CHARGE])
+            signal = omega * pickup.shunt * (factor * z + leak)
+        seed, now = self.settings.seed, self.now
+        signal += pickup.noise * complex(
+            k.gaussian(seed, _PICKUP_RE, now), k.gaussian(seed, _PICKUP_IM, now)
+        )
+        return round(abs(signal) * 1e6)
+
+
+def _path(hand: Hand | None, tick: int) -> tuple[si.FloatArray, NDArray[np.int64]]:
+    if hand is not None:
+        return hand.path(tick)
+    # A hand that never begins.
+    plan = np.array([1 << 61, 1, 0, -1, 1, 1, 0], dtype=np.int64)
+    return np.zeros((2, 2)), plan
+
+
+def _friction(point: WorkingPoint) -> FrictionTables:
+    """What the kernel reads of friction, the speeds side by side."""
+    display = point.display
+    surface, finger = display.surface(), display.finger
+    rest = [
+        finger.friction_coefficient(surface.friction_coefficient, surface.roughness, float(force))
+        for force in point.forces
+    ]
+    relative = np.ascontiguousarray(np.swapaxes(point.relative_friction, 1, 2), dtype=float)
+    return FrictionTables(np.array(point.speeds, dtype=float), relative, np.array(rest))
+
+
+def _parts(
+    friction: FrictionTables, settings: TwinSettings, pad: FingerpadDynamics, force: float
+) -> int:
+    """In how many parts the skin is marched over a step of the plant."""
+    step, dry = 1e-6 * (settings.tick_us // settings.steps_per_tick), settings.dry
+    strongest = float(dry.kinetic_force(friction.coefficient.max(), force))
+    if friction.speed.size == 1:
+        return substeps(step, pad, dry, strongest)
+    if dry.static_ratio > 1 and dry.stribeck_speed > 0:
+        raise InputError(
+            f"dry.stribeck_speed = {dry.stribeck_speed:g} m/s of the twin's settings cannot be "
+            "used: the display's law says all that friction does with speed; leave it at 0, where "
+            "static_ratio holds the skin that rests",
+            quantity="stribeck_speed",
+        )
+    fall = -float(np.min(np.diff(friction.relative, axis=2) / np.diff(friction.speed)))
+    return row_substeps(step, pad, strongest * max(fall, 0.0))
+
+
+def _constants(
+    point: WorkingPoint, settings: TwinSettings, hand: Hand | None, friction: FrictionTables
+) -> si.FloatArray:
+    display, mode = point.display, point.mode
+    drift, amplifier, arm = settings.drift, settings.amplifier, settings.arm
+    sensor, dry, pad = settings.sensor, settings.dry, display.finger.fingerpad
+    step = settings.tick_us // settings.steps_per_tick
+    force = 0.0 if hand is None else hand.normal_force
+    ratio = drift.quality_factor_ratio
+    thermal, body = drift.on(display.thermal), thermal_body(display.actuator)
+    thickness = driven_thickness(display.actuator)
+    c = np.full(k.CONSTANTS, math.nan)
+    c[k.C_STEP] = step
+    c[k.C_ROW] = round(settings.truth_period * 1e6)
+    c[k.C_SEED] = settings.seed
+    c[k.C_F0] = mode.resonance_frequency
+    c[k.C_FACTOR] = point.force_factor
+    c[k.C_Q] = mode.quality_factor * ratio
+    c[k.C_PER_VOLT] = mode.amplitude_per_volt * ratio
+    c[k.C_OFFSET] = drift.offset
+    c[k.C_AGEING] = drift.ageing
+    c[k.C_COEFFICIENT] = thermal.temperature_coefficient
+    c[k.C_SWING] = drift.ambient_swing
+    c[k.C_PERIOD] = round(drift.ambient_period * 1e6)
+    c[k.C_COOLING : k.C_ROOM + 1] = cooling_of(thermal, body)
+    c[k.C_CAPACITY] = heat_capacity(thermal, body)
+    c[k.C_QUALITY_DRIFT] = thermal.quality_temperature_coefficient
+    c[k.C_CHARGE_DRIFT] = thermal.charge_temperature_coefficient
+    c[k.C_SOFTENING] = thermal.rayleigh_softening
+    # Of a stator no ceramic is described, and so no field.
+    c[k.C_FIELD_DRIFT] = 0.0 if thickness is None else thermal.rayleigh_charge / thickness
+    c[k.C_GAIN] = amplifier.gain
+    c[k.C_RAIL] = amplifier.highest_voltage
+    c[k.C_CURRENT] = amplifier.highest_current
+    c[k.C_SLEW] = amplifier.slew_rate
+    c[k.C_C0] = point.capacitance
+    c[k.C_LOSS] = amplifier.loss_tangent
+    c[k.C_MASS] = arm.mass
+    c[k.C_STIFFNESS] = arm.stiffness
+    c[k.C_DAMPING] = arm.damping
+    c[k.C_PAD_MASS] = pad.mass
+    c[k.C_PAD_DAMPING] = pad.damping
+    c[k.C_PAD_STIFFNESS] = pad.stiffness
+    c[k.C_FORCE] = force
+    c[k.C_SUBSTEPS] = _parts(friction, settings, pad, force)
+    c[k.C_STATIC] = dry.static_ratio
+    c[k.C_STRIBECK] = dry.stribeck_speed
+    c[k.C_EXPONENT] = dry.load_exponent
+    c[k.C_REFERENCE] = dry.reference_force
+    c[k.C_RATE] = sensor.rate
+    c[k.C_SHARE_LOST] = sensor.loss
+    c[k.C_LATENCY] = sensor.latency * 1e6
+    c[k.C_JITTER] = sensor.jitter * 1e6
+    c[k.C_NOISE] = sensor.noise
+    c[k.C_QUANTUM] = sensor.quantisation
+    if np.isnan(c).any():
+        missing = np.flatnonzero(np.isnan(c)).tolist()
+        raise RuntimeError(f"the plant's constants {missing} are not numbers; were they all set?")
+    return c

@@ -1,0 +1,208 @@
+"""A calibration in pictures: values before and after, the model beside what was measured, friction,
+and what to measure next."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.calibration_record import ComparedAnswer
+from squeezefilm.core.kit import style
+from squeezefilm.core.kit.numbers import shown, span
+from squeezefilm.core.kit.page_style import FigureOf
+from squeezefilm.measure.calibration.calibration import CalibratedValue
+from squeezefilm.measure.calibration.folder import FolderCalibration
+from squeezefilm.measure.calibration.identified import IDENTIFIED, NOT_TOLD
+from squeezefilm.physics.uncertainty.intervals import LEVEL
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_PRIOR: dict[str, Any] = {"color": style.MUTED, "lw": 1.4}
+_POSTERIOR: dict[str, Any] = {"color": style.BLUE, "lw": 4.5, "solid_capstyle": "butt"}
+_ROW, _REST = 0.29, 1.6
+_FINE = 1e-3  # up to which a difference is drawn in proportion, beyond it by its logarithm
+_TICKS = (-0.1, -0.01, -0.001, 0.0, 0.001, 0.01, 0.1)
+MOST_NEXT = 8
+"""Measurements that could be made next, of which the most telling are shown."""
+
+
+def sorted_values(found: FolderCalibration) -> list[CalibratedValue]:
+    """The values, those that the data told most of first."""
+    return sorted(found.calibration.values, key=lambda one: one.left)
+
+
+@style.drawn
+def values_figure(found: FolderCalibration) -> Figure:
+    """Each value's interval before and after, on the scale of the one before."""
+    values = sorted_values(found)
+    told = sum(one.left <= IDENTIFIED for one in values)
+    narrowed = sum(IDENTIFIED < one.left <= NOT_TOLD for one in values)
+    level = si.percent(LEVEL)
+    figure = style.new_figure(
+        f"{told} of {len(values)} values are identified by what was measured, {narrowed} narrowed, "
+        f"{len(values) - told - narrowed} not told",
+        f"{level} intervals; 0 and 1 are the ends of the interval before",
+        _REST + _ROW * max(len(values), 2),
+    )
+    axes = figure.subplots()
+    for row, one in enumerate(values):
+        low, high = one.prior
+        scale = (high - low) or 1.0
+        ends = [(end - low) / scale for end in one.interval]
+        axes.plot([0, 1], [row, row], **_PRIOR, label="" if row else "before")
+        axes.plot(ends, [row, row], **_POSTERIOR, label="" if row else "after")
+        axes.plot([(one.median - low) / scale], [row], **style.ESTIMATE)
+    _rows(axes, [one.path for one in values])
+    right = axes.secondary_yaxis("right")
+    right.set_yticks(range(len(values)), [si.percent(one.left) for one in values])
+    right.tick_params(length=0)
+    right.spines["right"].set_visible(False)
+    right.set_ylabel("spread left")
+    axes.set_xlabel("within the interval before")
+    style.legend_below(axes, gap=0.9 / (_REST + _ROW * len(values)))
+    return figure
+
+
+@style.drawn
+def compared_figure(found: FolderCalibration) -> Figure:
+    """What the model alone says of every measured number, before and after."""
+    rows = found.calibration.compared
+    far = [one for one in rows if one.after and abs(deviation(one)) > 2]
+    title = (
+        f"The calibrated model meets all {len(rows)} measured numbers within two standard errors"
+        if not far
+        else f"The calibrated model misses {len(far)} of {len(rows)} measured numbers by more than "
+        "two standard errors"
+    )
+    figure = style.new_figure(
+        title,
+        f"{si.percent(LEVEL)} intervals of the model alone, without what it is believed to be off "
+        "by; the scale is proportional within ±0.1 %, logarithmic beyond",
+        _REST + _ROW * max(len(rows), 2),
+    )
+    axes = figure.subplots()
+    for row, one in enumerate(rows):
+        _before_after(axes, row, one)
+        error = min(one.error, 0.9)
+        look: dict[str, Any] = {"color": style.ORANGE, "capsize": 3, "ms": 4, "lw": 1.2}
+        label = "" if row else "measured, ± one standard error"
+        axes.errorbar([0], [row], xerr=[error], fmt="D", zorder=4, label=label, **look)
+    _rows(axes, [row_name(one) for one in rows])
+    axes.axvline(0, **style.ZERO)
+    axes.set_xscale("symlog", linthresh=_FINE, linscale=0.6)
+    axes.set_xticks(
+        _TICKS, [f"{'−+'[one > 0]}{100 * abs(one):g} %" if one else "0" for one in _TICKS]
+    )
+    axes.minorticks_off()
+    axes.set_xlim(-0.95, 2)
+    axes.set_xlabel("model over measured, less 1")
+    style.legend_below(axes, columns=3, gap=0.9 / (_REST + _ROW * len(rows)))
+    return figure
+
+
+def _before_after(axes: Axes, row: int, one: ComparedAnswer) -> None:
+    looks = ((one.before, _PRIOR, "before"), (one.after, _POSTERIOR, "after"))
+    for ends, look, label in looks:
+        if ends:
+            axes.plot([ends[0] - 1, ends[2] - 1], [row, row], **look, label="" if row else label)
+
+
+def deviation(one: ComparedAnswer) -> float:
+    """By how many standard errors (measurement's and model's together) what was measured lies above
+    the calibrated model's median; NaN where the model has none."""
+    if not one.after:
+        return float("nan")
+    from scipy.special import ndtri
+
+    spread = (one.after[2] - one.after[0]) / (2 * float(ndtri((1 + LEVEL) / 2)))
+    return (1 - one.after[1]) / max(float(np.hypot(one.error, spread)), 1e-12)
+
+
+def row_name(one: ComparedAnswer) -> str:
+    """An observation by its name, and its recording where it has one."""
+    return style.plain(f"{one.said} ({one.recording})" if one.recording else one.said, 90)
+
+
+@style.drawn
+def friction_figure(found: FolderCalibration) -> Figure:
+    """Friction's interval before and after."""
+    before, after = found.calibration.before, found.calibration.after
+    pairs = (("as described", before), ("with what was measured", after))
+    known = [(name, one) for name, one in pairs if one is not None]
+    if after is None:
+        title = "Friction has no interval: too many draws have none"
+    elif before is None:
+        title = f"µ′/µ is {span(*after.interval)}"
+    else:
+        title = (
+            f"µ′/µ is {span(*after.interval)} where it was {span(*before.interval)}: "
+            f"{si.percent(after.width / before.width)} of that interval is left"
+        )
+    figure = style.new_figure(
+        title, f"{si.percent(LEVEL)} intervals at the display's own voltage, force and speed", 2.5
+    )
+    axes = figure.subplots()
+    for row, (_, one) in enumerate(known):
+        look = _POSTERIOR if one is after else _PRIOR | {"lw": 4.5}
+        axes.plot(one.interval, [row, row], **look)
+        axes.plot([one.median], [row], **style.ESTIMATE)
+    names = [f"{name},\n{shown(one.amplitude, si.Unit('m'), 2)}" for name, one in known]
+    _rows(axes, names)
+    axes.set(xlim=(0, 1.04), xlabel="relative friction µ′/µ")
+    return figure
+
+
+@style.drawn
+def next_figure(found: FolderCalibration) -> Figure:
+    """What each further measurement is expected to leave of friction's interval."""
+    options = found.calibration.next_measurements[:MOST_NEXT]
+    first = options[0]
+    figure = style.new_figure(
+        f"Next: {first.name}, which is expected to leave {si.percent(first.left)} of the interval "
+        "of friction",
+        "draws of the posterior, each in turn taken for the truth; accuracies are assumed",
+        _REST + _ROW * len(options),
+    )
+    axes = figure.subplots()
+    for row, one in enumerate(options):
+        axes.barh([row], [100 * one.left], height=0.6, **style.BARS)
+        axes.text(100 * one.left + 1, row, si.percent(one.left), va="center", fontsize=9.5)
+    _rows(axes, [f"{one.name} (to {one.accuracy})" for one in options])
+    axes.set(xlim=(0, 108), xlabel="expected to be left of the interval of µ′/µ (%)")
+    return figure
+
+
+def _rows(axes: Axes, names: list[str]) -> None:
+    """Rows from above, each with its name."""
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.grid(visible=False, axis="y")
+    axes.tick_params(axis="y", length=0)
+
+
+FIGURES = (
+    FigureOf("friction", "Friction before and after", friction_figure),
+    FigureOf(
+        "compared",
+        "The model beside every measurement",
+        compared_figure,
+        has=lambda one: one.calibration.compared,
+    ),
+    FigureOf(
+        "values",
+        "What the data say of each value",
+        values_figure,
+        has=lambda one: one.calibration.values,
+    ),
+    FigureOf(
+        "next",
+        "What to measure next",
+        next_figure,
+        has=lambda one: one.calibration.next_measurements,
+    ),
+)
+"""The figures of a calibration, in the order of its page."""

@@ -1,0 +1,177 @@
+"""What was fitted beside what was recorded, and what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
+from squeezefilm.measure.fits.by_kind import Fit
+from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
+from squeezefilm.measure.recordings import kinds
+from squeezefilm.measure.recordings.read import RecordingCheck
+from squeezefilm.measure.report.curves import comparison_figure
+from squeezefilm.measure.report.figures import scattered
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class Modelled(NamedTuple):
+    """Recorded and computed values over one abscissa, in the units that their labels say;
+    `relative` where they span decades, so that what is left is shown over what was recorded."""
+
+    x: si.FloatArray
+    data: si.Array
+    model: si.Array
+    x_label: str
+    y_label: str
+    relative: bool = False
+
+
+class _Subject(NamedTuple):
+    """What a picture is drawn of."""
+
+    check: RecordingCheck
+    fit: Any
+    title: str
+
+
+# By the name of a fit's abscissa: what it and the fit's `model` and `residual` are shown in.
+_OVER = {
+    "frequency": ("frequency (kHz)", 1e-3, "amplitude (nm/V)", 1e9),
+    "position": ("position (mm)", 1e3, "displacement (µm)", 1e6),
+    "time": ("time (ms)", 1e3, "displacement (µm)", 1e6),
+    "sweeps": ("frequency (kHz)", 1e-3, "displacement (µm)", 1e6),
+}
+
+
+def fit_figure(check: RecordingCheck, fit: Fit) -> Figure | None:
+    """Data, model and residual of a fit; None for a fit that has nothing to draw."""
+    if isinstance(fit, CurveComparison):
+        return comparison_figure(fit)
+    name = style.plain(check.recording.told.name, 60)
+    word = "an adequate fit" if fit.adequacy.adequate else "the fit is NOT adequate"
+    subject = _Subject(check, fit, f"{name}: {word}")
+    own = _OWN.get(type(check.recording))
+    if own is not None:
+        return own(subject)
+    found = modelled(check, fit)
+    return None if found is None else _over_abscissa((subject, found))
+
+
+def modelled(check: RecordingCheck, fit: Fit) -> Modelled | None:
+    """What a fit computed at the recording's points, over one abscissa; None where it has no such.
+
+    A fit has either `admittance`, a function of frequency, or arrays `model` and `residual` over a
+    `frequency`, `position` or `time` of its own; that of several sweeps over theirs in a row.
+    """
+    recording, told = check.recording, cast(Any, fit)
+    if isinstance(recording, kinds.ImpedanceSweep) and hasattr(told, "admittance"):
+        return _admittances(recording, told.admittance(recording.frequency))
+    if isinstance(recording, kinds.ImpedanceSweep) and recording.body is not None:
+        return _admittances(recording, told.model)
+    model, residual = getattr(told, "model", None), getattr(told, "residual", None)
+    if not isinstance(model, np.ndarray) or not isinstance(residual, np.ndarray):
+        return None
+    abscissas = {name: getattr(told, name, None) for name in _OVER}
+    if isinstance(recording, kinds.VoltageSweeps):
+        abscissas = {"sweeps": np.concatenate([one.frequency for one in recording.sweeps])}
+    for name, x in abscissas.items():
+        x_label, x_scale, y_label, scale = _OVER[name]
+        if isinstance(x, np.ndarray) and x.shape == model.shape:
+            data = scale * (model + residual)
+            return Modelled(x_scale * x, data, scale * model, x_label, y_label)
+    return None
+
+
+def _admittances(sweep: kinds.ImpedanceSweep, model: si.ComplexArray) -> Modelled:
+    labels = ("frequency (kHz)", "|Y| (mS)")
+    return Modelled(
+        sweep.frequency / 1e3, 1e3 * sweep.admittance, 1e3 * model, *labels, relative=True
+    )
+
+
+@style.drawn
+def _over_abscissa(drawn: tuple[_Subject, Modelled]) -> Figure:
+    (_, fit, title), found = drawn
+    figure = style.new_figure(title, fit.adequacy.sentence, 6.0)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    signed = not np.iscomplexobj(found.data) or not np.any(np.imag(found.data))
+    data, model = (np.real(one) if signed else np.abs(one) for one in (found.data, found.model))
+    upper.plot(found.x, data, ".", color=style.BLUE, ms=4, label="recorded")
+    # Points of several sweeps do not follow one another.
+    line = style.WANTED if np.all(np.diff(found.x) > 0) else {"color": style.ORANGE, "ls": ""}
+    upper.plot(found.x, model, **line, marker="" if line["ls"] else "_", label="fitted")
+    upper.set_ylabel(found.y_label)
+    style.legend_beside(upper)
+    left = found.data - found.model
+    left = np.real(left) if signed else np.abs(left)
+    label = "residual" if signed else "|residual|"
+    if found.relative:
+        upper.set_yscale("log")
+        style.plain_log(upper.yaxis)
+        left, label = 100 * left / np.abs(found.data), f"{label} (%)"
+    lower.plot(found.x, left, ".", color=style.PURPLE, ms=4)
+    lower.axhline(0, **style.ZERO)
+    lower.set(xlabel=found.x_label, ylabel=label)
+    return figure
+
+
+@style.drawn
+def _grid(subject: _Subject) -> Figure:
+    """A scan, and what its shapes leave of it, in the same colours."""
+    check, fit, title = subject
+    scan = cast(kinds.GridScan, check.recording)
+    figure = style.new_figure(f"{title}, most like {fit.label}", fit.adequacy.sentence, 6.0)
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    known = np.isfinite(scan.displacement)
+    reach = 1e6 * float(np.max(np.abs(scan.displacement[known])))
+    places = (scan.x[known], scan.y[known])
+    turn = np.exp(-0.5j * np.angle(np.sum(scan.displacement[known] ** 2)))
+    scattered(upper, places, 1e6 * np.real(turn * scan.displacement[known]), reach, "recorded (µm)")
+    scattered(lower, places, 1e6 * np.real(turn * fit.residual), reach, "left (µm)")
+    upper.set_xlabel("")
+    return figure
+
+
+@style.drawn
+def _raw(subject: _Subject) -> Figure:
+    """The response between two signals with its standard error, and its coherence."""
+    _, fit, title = subject
+    figure = style.new_figure(title, fit.adequacy.sentence, 5.6)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    f, h = fit.response.frequency / 1e3, 1e9 * np.abs(fit.response.displacement_per_volt)
+    error = 1e9 * np.asarray(fit.standard_error)
+    upper.fill_between(f, h - error, h + error, color=style.BAND, label="± one standard error")
+    upper.plot(f, h, color=style.BLUE, lw=1, label="H1")
+    upper.set_ylabel("amplitude (nm/V)")
+    style.legend_beside(upper)
+    if fit.response.coherence is not None:
+        lower.plot(f, fit.response.coherence, color=style.PURPLE, lw=1)
+    lower.set(xlabel="frequency (kHz)", ylabel="coherence", ylim=(0, 1.05))
+    return figure
+
+
+@style.drawn
+def _bench(subject: _Subject) -> Figure:
+    """µ at each amplitude with its interval."""
+    _, fit, title = subject
+    figure = style.new_figure(title, fit.adequacy.sentence, 4.6)
+    axes = figure.subplots()
+    for amplitude, one in zip(fit.amplitudes, fit.coefficients, strict=True):
+        axes.plot([1e6 * amplitude] * 2, one.interval, **style.INTERVAL)
+        axes.plot([1e6 * amplitude], [one.value], **style.ESTIMATE)
+    axes.set_ylim(0, None)
+    axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="friction coefficient µ")
+    return figure
+
+
+_OWN: dict[type, Callable[[_Subject], Figure]] = {
+    kinds.GridScan: _grid,
+    kinds.RawSignals: _raw,
+    kinds.FrictionBench: _bench,
+}

@@ -1,0 +1,1 @@
+"""From volts to what a finger feels: plate, film, contact, chain, rendering, perception."""

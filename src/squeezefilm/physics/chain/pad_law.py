@@ -1,0 +1,344 @@
+"""The pad of a finger on a vibration: what its ridges meet, how film and asperities carry it."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import announce
+from squeezefilm.core.errors import InputError, OutOfRangeError
+from squeezefilm.core.hard_limits import FINGER_SPEED
+from squeezefilm.core.materials import Gas
+from squeezefilm.physics.chain.amplitude_search import HIGHEST_AMPLITUDE
+from squeezefilm.physics.chain.friction_models import (
+    MODEL_KINDS,
+    FrictionLimits,
+    FrictionModel,
+    ModelKind,
+)
+from squeezefilm.physics.chain.pad_place import PadPlace
+from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED, Finger
+from squeezefilm.physics.contact.finger.load import compiled_finger
+from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.rough_contact import ContactLaw, RoughContact
+from squeezefilm.physics.contact.sharing.balance import require_balanced
+from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
+from squeezefilm.physics.contact.sharing.levitation import (
+    PUBLISHED_DECAY_LENGTH,
+    levitation_friction,
+    levitation_scale,
+    published_rest_gap,
+    ridge_films,
+    ridge_friction,
+)
+from squeezefilm.physics.contact.sharing.pad import (
+    FrictionRipple,
+    Limit,
+    PadFriction,
+    PadPosture,
+    friction_ripple,
+    pad_friction,
+    pad_points,
+)
+from squeezefilm.physics.display import Surface
+from squeezefilm.physics.plate.loaded_mode import mean_square_wave
+
+if TYPE_CHECKING:
+    from squeezefilm.physics.contact.sharing.kernel import CompiledPad
+
+_RIPPLE_POSITIONS = 24
+PascalPerMetreComplex = Annotated[complex, si.Unit("Pa/m")]
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class PadLaw:
+    """How film and asperities share the load of a pad, at one frequency and force, and the friction
+    that this leaves.
+
+    `position` is the pad's centre from an antinode, along a wave whose antinodes are all alike; a
+    `place` on the face, with what the ridges meet there, stands in its stead, and amplitudes are
+    still the best antinode's. `slip` is the gas's law of slip where the load is shared.
+    Without a place the wave is even. Raises `InputError` for a position and a place, and for either
+    with a model that knows the finger over an antinode only.
+    """
+
+    surface: Surface
+    finger: Finger
+    gas: Gas
+    half_wavelength: Annotated[si.Metre, si.Above(0)]
+    frequency: Annotated[si.Hertz, si.Above(0)]
+    normal_force: Annotated[si.Newton, si.Above(0)]
+    model: FrictionModel
+    position: si.Metre = 0.0
+    speed: Annotated[si.MetrePerSecond, FINGER_SPEED] = EXPLORING_SPEED
+    slip: str = "first"
+    place: PadPlace | None = None
+
+    def __post_init__(self) -> None:
+        elsewhere = self.position != 0 or self.place is not None
+        if elsewhere and not self.kind.shares_load:
+            raise InputError(
+                f"the model '{self.model}' knows the finger over an antinode only; ask a "
+                "levitation model, or leave position and place out",
+                quantity="place" if self.place is not None else "position",
+            )
+        if self.position and self.place is not None:
+            raise InputError("give a position along the wave or a place on the face, not both")
+
+    @property
+    def kind(self) -> ModelKind:
+        """What the model makes of film and skin."""
+        return MODEL_KINDS[self.model]
+
+    @si.checked_numbers
+    def sharing(
+        self,
+        amplitude: si.MetreLike,
+        limit: Limit = "own",
+        *,
+        posture: PadPosture | None = None,
+        yielding: bool = False,
+    ) -> PadFriction:
+        """How film and asperities share the load at amplitudes (m), whatever the model, in a limit
+        of the skin; how the pad lies (None: at `position`, level); and whether the finger's skin
+        yields at the ultrasonic frequency."""
+        skin = self.finger.skin if yielding else None
+        return self._pad(amplitude, limit=limit, posture=posture, skin=skin)
+
+    @si.checked_numbers
+    def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
+        """µ′/µ in both limits of the skin at amplitudes (m)."""
+        a = np.atleast_1d(np.asarray(amplitude, dtype=float))
+        return FrictionLimits(a, self.friction_in("own", a), self.friction_in("one-gap", a))
+
+    def friction_in(self, limit: Limit, amplitude: si.MetreArray) -> si.DimensionlessArray:
+        """µ′/µ in a limit of the skin at amplitudes (m), shape (n,), at the law's speed."""
+        if self.kind.friction == "lift":
+            return np.asarray(self._lifted(amplitude, self.speed, limit)[0])
+        return self.sharing(amplitude, limit).relative_friction
+
+    def _lifted(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecondLike, limit: Limit
+    ) -> si.DimensionlessArray:
+        """µ′/µ by `levitation_friction`, shape (speeds, amplitudes): the mean over ridges that each
+        meet their own amplitude, or one film that meets the root of their mean square."""
+        met, shares = self.ridge_swings
+        _require_tabulated(amplitude, met)
+        if limit == "one-gap":
+            met, shares = np.sqrt(met**2 @ shares)[None], np.ones(1)
+        at_ridges = amplitude[:, None] * met
+        speeds = np.atleast_1d(speed).tolist()
+        return np.stack([self._lifted_ridge(at_ridges, pace) @ shares for pace in speeds])
+
+    def _lifted_ridge(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecond
+    ) -> si.DimensionlessArray:
+        """µ′/µ of a ridge at the amplitudes that it meets (m), any shape, by `levitation_friction`
+        with the length fitted to people or the gap and length of 2016, or by `ridge_friction`."""
+        pressure, ambient = self.contact_pressure, self.gas.ambient_pressure
+        if self.kind.ridges:
+            load = self.finger.plateau_pressure(self.normal_force)
+            width, length = self.finger.plateau_width, self.finger.ridge_length_at(speed)
+            films = ridge_films(self.frequency, width, self.gas, self.slip)
+            return ridge_friction(films, amplitude, load, length)
+        if self.kind.fitted:
+            length = float(self.finger.decay_length_at(speed))
+            return levitation_friction(amplitude / levitation_scale(length, pressure, ambient))
+        scale = levitation_scale(PUBLISHED_DECAY_LENGTH, pressure, ambient)
+        return levitation_friction(amplitude / scale, published_rest_gap(pressure))
+
+    def ripple(self, amplitude: si.Metre) -> FrictionRipple:
+        """µ′/µ along an even wave at an amplitude (m), each ridge by itself: by the law's
+        levitation, else by partial levitation whatever the model. See `friction_ripple`."""
+        if self.kind.friction == "lift":
+            position = np.arange(_RIPPLE_POSITIONS) / _RIPPLE_POSITIONS * self.half_wavelength
+            along = [replace(self, place=None, position=float(x)) for x in position]
+            lifted = [law.friction_in("own", np.array([amplitude]))[0] for law in along]
+            return FrictionRipple(
+                position, np.array(lifted), self.contact_side, self.half_wavelength
+            )
+        return friction_ripple(
+            self._films,
+            self.asperities,
+            amplitude,
+            self.half_wavelength,
+            self.finger,
+            normal_force=self.normal_force,
+        )
+
+    @property
+    def _films(self) -> FilmTable:
+        return film_table(self.frequency, self.finger.plateau_width, self.gas, self.slip)
+
+    @cached_property
+    def asperities(self) -> ContactLaw:
+        """What skin and surface carry between them."""
+        return self.finger.asperity_law(self.surface.roughness)
+
+    @property
+    def contact_side(self) -> si.Metre:
+        """The side of the square contact at this force (m)."""
+        return float(np.sqrt(self.finger.contact_area(self.normal_force)))
+
+    @property
+    def contact_pressure(self) -> si.Pascal:
+        """The finger's mean pressure on the contact at this force (Pa), grooves included."""
+        return self.normal_force / self.finger.contact_area(self.normal_force)
+
+    @si.checked_numbers
+    def felt_stiffness(
+        self, amplitude: Annotated[si.Metre, si.AtLeast(0.0)]
+    ) -> PascalPerMetreComplex:
+        """What the plate feels of the finger per area of contact (Pa/m, complex) at an amplitude
+        (m) of an even wave, wherever the pad is: of `sharing` what the vibration depends on,
+        without the friction. See `load_kernel.between`."""
+        from squeezefilm.physics.contact.sharing import kernel
+
+        met, known = self._even_swings[0], self._compiled
+        _require_tabulated(amplitude, met)
+        rows, table = np.zeros((met.size, kernel.COLUMNS)), self._films
+        while True:
+            _, found, lacking = kernel.felt_stiffness(amplitude, known, table.compiled, rows)
+            if lacking < 0:
+                break
+            table.build(lacking)
+        if lacking == -2:
+            swings, alike = amplitude * met, np.full(met.size, known.pressure)
+            with self._named_force():
+                require_balanced(rows, self.asperities, swings, alike)
+        return complex(found)
+
+    def __getstate__(self) -> dict[str, object]:
+        """What is pickled: not the form for compiled code, most of it tables made anew at once."""
+        return {name: value for name, value in vars(self).items() if name != "_compiled"}
+
+    @cached_property
+    def _compiled(self) -> CompiledPad:
+        """The pad on an even wave as the compiled code takes it."""
+        from squeezefilm.physics.contact.sharing import kernel
+
+        announce(kernel.felt_stiffness, "stiffness under the finger", 20)
+        finger, law = self.finger, self.asperities
+        share, (met, shares) = finger.plateau_width / finger.ridge_period, self._even_swings
+        return kernel.CompiledPad(
+            kernel.CompiledRidges(met, np.zeros(met.size), shares),
+            finger.plateau_pressure(self.normal_force),
+            compiled_finger(finger.plateau_width, self.frequency, self.gas, finger.skin, share),
+            law.least_gap if isinstance(law, RoughContact) else -math.inf,
+            law.compiled(),
+        )
+
+    @property
+    def mean_square(self) -> si.Dimensionless:
+        """The mean square over the contact of the amplitude over the best antinode's."""
+        if self.place is None:
+            return self.mean_square_even
+        met, shares = self.ridge_swings
+        return float(met**2 @ shares)
+
+    @property
+    def mean_square_even(self) -> si.Dimensionless:
+        """The same of an even wave, wherever the pad is."""
+        return mean_square_wave(self.half_wavelength, self.contact_side, self.position)
+
+    @cached_property
+    def ridge_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+        """The amplitudes that ridges meet over the best antinode's, and the shares that meet them:
+        those of an even wave, or, at a place, few that stand for them all."""
+        if self.place is None:
+            return self._even_swings
+        return self.place.met(self.finger, self.contact_side)
+
+    @cached_property
+    def largest_amplitude(self) -> si.Metre:
+        """The amplitude (m, zero-to-peak) up to which no ridge meets more than 50 µm: less than
+        that itself where the face at the place moves further than the antinode."""
+        return HIGHEST_AMPLITUDE / max(1.0, float(np.max(self.ridge_swings[0])))
+
+    @cached_property
+    def _even_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
+        """The same of an even wave, wherever the pad is."""
+        points = pad_points(self.finger, self.contact_side)
+        wave = PadPosture(self.position).over_the_antinode(points.along, self.half_wavelength)
+        kinds, alike = np.unique(np.round(wave, 9), return_inverse=True)
+        return kinds, np.bincount(alike, weights=points.shares).astype(float)
+
+    @si.checked_numbers
+    def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
+        """µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,): the pad's in the limit
+        "own" is the mean over its ridges."""
+        if self.kind.friction == "lift":
+            return self._lifted_ridge(amplitude, self.speed)
+        posture, at = PadPosture(swings=np.ones(1)), np.zeros(1)
+        found = self._pad(amplitude, limit="own", points=at, posture=posture)
+        return found.relative_friction
+
+    @cached_property
+    def friction_coefficient(self) -> si.Dimensionless:
+        """µ without vibration, at this force. See `Finger.friction_coefficient`."""
+        return self.finger.friction_coefficient(
+            self.surface.friction_coefficient, self.surface.roughness, self.normal_force
+        )
+
+    def _pad(
+        self,
+        amplitude: si.MetreLike,
+        *,
+        limit: Limit,
+        points: si.MetreArray | None = None,
+        posture: PadPosture | None = None,
+        skin: Skin | None = None,
+    ) -> PadFriction:
+        if posture is None:
+            # A pad that lies level: where along it a ridge is makes no difference.
+            met, shares = self.ridge_swings
+            points, posture = np.zeros(met.size), PadPosture(swings=met, shares=shares)
+            _require_tabulated(amplitude, met)
+        elif points is None:
+            of_ridges = pad_points(self.finger, self.contact_side)
+            points = of_ridges.along
+            if posture.shares is None:
+                posture = replace(posture, shares=of_ridges.shares)
+        with self._named_force():
+            return pad_friction(
+                self._films,
+                self.asperities,
+                amplitude,
+                self.half_wavelength,
+                points,
+                self.finger.plateau_pressure(self.normal_force),
+                limit=limit,
+                posture=posture,
+                skin=skin,
+            )
+
+    @contextlib.contextmanager
+    def _named_force(self) -> Iterator[None]:
+        """Within it what is out of range says under which force."""
+        try:
+            yield
+        except OutOfRangeError as error:
+            shown = si.format_quantity(self.normal_force, si.Unit("N"))
+            raise OutOfRangeError(f"under a normal force of {shown}: {error}") from error
+
+
+def _require_tabulated(amplitude: si.MetreLike, met: si.DimensionlessArray) -> None:
+    """Refuse what ridges cannot meet: films at such swings take minutes to tabulate, and no plate
+    moves so far."""
+    most = float(np.max(amplitude)) * float(np.max(met))
+    if most > HIGHEST_AMPLITUDE * (1 + 1e-9):
+        shown, highest = (
+            si.format_quantity(one, si.Unit("m")) for one in (most, HIGHEST_AMPLITUDE)
+        )
+        raise OutOfRangeError(
+            f"a ridge would meet an amplitude of {shown}; friction is known up to {highest}. "
+            "Vibrate less, or take a place where the face moves less"
+        )

@@ -1,0 +1,278 @@
+"""The finger on the vibrating surface: what it takes from the vibration, and how it is carried."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import ConvergenceError
+from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.contact.finger.load import (
+    NewtonSecondPerMetreComplex,
+    finger_impedance,
+)
+from squeezefilm.physics.contact.sharing.pad import PadFriction
+from squeezefilm.physics.plate.loaded_mode import LoadedMode, loaded_mode
+from squeezefilm.physics.plate.working_mode import WorkingMode
+
+_MOST_STEPS = 40
+# Where an amplitude is searched, over the free one: fine where two may lie side by side.
+_BELOW = np.concatenate([np.linspace(1.0, 0.05, 120), np.geomspace(0.05, 1e-6, 41)[1:]])
+# Of the mean square of the mode under a pad, between which amplitudes are interpolated.
+_KNOTS = 17
+TOLERANCE: si.Dimensionless = 1e-11
+"""To which amplitude and load fit where nothing else is asked, a share of the free amplitude."""
+
+_LEAST_AMPLITUDE: si.Metre = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """A finger on a mode: the amplitude it is left with, and what the plate feels of it.
+
+    `free_amplitude` is the one without the finger at the same voltage and frequency; `mode` how
+    the finger detunes and damps it, None where the modal mass is not known and the finger is taken
+    to change nothing; `law` the pad that is carried, None where the surface stands still, and so
+    is `impedance`: what the plate feels of the finger at this amplitude, as `finger_impedance`
+    gives it (N·s/m).
+    """
+
+    free_amplitude: si.Metre
+    amplitude: si.Metre
+    mode: LoadedMode | None
+    law: FrictionLaw | None
+    impedance: NewtonSecondPerMetreComplex | None = None
+
+    @functools.cached_property
+    def sharing(self) -> PadFriction | None:
+        """How film and asperities share the load at this amplitude, each ridge where it is; None
+        where the surface stands still. Raises what the load balance raises."""
+        law = self.law
+        return None if law is None else law.sharing(self.amplitude)
+
+    @property
+    def kept(self) -> si.Dimensionless:
+        """The amplitude with the finger over the one without (1 at rest)."""
+        return self.amplitude / self.free_amplitude if self.free_amplitude > 0 else 1.0
+
+
+@si.checked_numbers
+def touch(
+    mode: WorkingMode,
+    law: FrictionLaw,
+    free_amplitude: si.Metre,
+    *,
+    tolerance: Annotated[si.Dimensionless, si.AtLeast(1e-12), si.AtMost(0.01)] = TOLERANCE,
+) -> Touch:
+    """The vibration with a finger on it, whose load depends on the amplitude.
+
+    Solved until amplitude and load fit to a `tolerance`, a share of the free amplitude.
+
+    The finger rests where the law has it, film and asperities in the balance of the law (partial
+    levitation, whatever its model). Where several amplitudes fit (a finger that lets go as the film
+    lifts it) this is the one reached from the free plate. Range: see `loaded_mode` and
+    `load_kernel.between`. Raises `ConvergenceError` if amplitude and finger do not settle, and what
+    the load balance raises.
+    """
+    if free_amplitude < _LEAST_AMPLITUDE:
+        return Touch(free_amplitude, free_amplitude, None, None)
+    left = _touched(mode, _Pad.of(law), free_amplitude, tolerance)
+    impedance = left.felt.impedance(law.frequency)
+    return Touch(free_amplitude, left.amplitude, left.mode, law, impedance)
+
+
+@si.checked_numbers
+def held_touch(mode: WorkingMode, law: FrictionLaw, amplitude: si.Metre) -> Touch:
+    """The finger on a vibration whose amplitude with the finger on it is known (m): `touch` from
+    its end to its beginning. Range and errors as those of `touch`."""
+    if amplitude == 0:
+        return Touch(amplitude, amplitude, None, None)
+    felt = _carried(_Pad.of(law), amplitude)
+    loaded = None if mode.modal_mass is None else _loaded(mode, mode.modal_mass, felt)
+    kept = 1.0 if loaded is None else loaded.amplitude_ratio(law.frequency) / _alone(mode, law)
+    if amplitude / kept < _LEAST_AMPLITUDE:
+        return Touch(amplitude, amplitude, None, None)
+    return Touch(amplitude / kept, amplitude, loaded, law, felt.impedance(law.frequency))
+
+
+@si.checked_numbers
+def touched_amplitudes(
+    mode: WorkingMode,
+    law: FrictionLaw,
+    free_amplitude: si.Metre,
+    mean_square: Annotated[si.DimensionlessArray, si.AtLeast(0.0)],
+) -> si.MetreArray:
+    """The best antinode's amplitude (m) with the finger at places of other mean squares.
+
+    `mean_square` of the mode over the contact, the best antinode at 1, any shape: a finger beside
+    the antinodes takes less. As `touch` at some dozen of them, interpolated within 1e-4 of the
+    amplitude. Raises as `touch` does.
+    """
+    if mode.modal_mass is None or free_amplitude < _LEAST_AMPLITUDE:
+        return np.full(mean_square.shape, free_amplitude)
+    low, high = float(np.min(mean_square)), float(np.max(mean_square))
+    # Amplitudes fall fastest where a pad just begins to lie on the mode, nearly as 1/(1 + c x).
+    knots = low + (high - low) * np.linspace(0, 1, _KNOTS if high > low else 1) ** 2
+    over = dataclasses.replace(law, place=None, position=0.0)
+    left = [
+        _touched(mode, _Pad.at(over, float(one)), free_amplitude, TOLERANCE).amplitude
+        for one in knots
+    ]
+    if high == low:
+        return np.full(mean_square.shape, left[0])
+    return 1 / np.asarray(PchipInterpolator(knots, 1 / np.array(left))(mean_square))
+
+
+class _Pad(NamedTuple):
+    """A pad by how much of the mode it lies on: its law, the mean square of the mode there, and
+    what an antinode of an even wave with that mean square moves over the best one."""
+
+    law: FrictionLaw
+    mean_square: float
+    scale: float
+
+    @classmethod
+    def of(cls, law: FrictionLaw) -> _Pad:
+        """As a law has its pad."""
+        return cls.at(law, law.mean_square)
+
+    @classmethod
+    def at(cls, law: FrictionLaw, mean_square: float) -> _Pad:
+        """Where the mode has a mean square."""
+        return cls(law, mean_square, (mean_square / law.mean_square_even) ** 0.5)
+
+
+def _touched(mode: WorkingMode, pad: _Pad, free_amplitude: si.Metre, tolerance: float) -> _Left:
+    """The vibration with a pad on it."""
+    modal_mass, frequency = mode.modal_mass, pad.law.frequency
+    if modal_mass is None:
+        return _Left(free_amplitude, None, _carried(pad, free_amplitude))
+    alone = _alone(mode, pad.law)
+
+    def made(amplitude: float) -> _Left:
+        """Under a finger that lies on the mode as it does at an amplitude."""
+        felt = _carried(pad, amplitude)
+        loaded = _loaded(mode, modal_mass, felt)
+        new = free_amplitude * loaded.amplitude_ratio(frequency) / alone
+        return _Left(new, loaded, felt)
+
+    return _settled(made, free_amplitude, tolerance) or _searched(
+        made, free_amplitude, free_amplitude / alone, tolerance
+    )
+
+
+def _settled(made: Callable[[float], _Left], free: float, tolerance: float) -> _Left | None:
+    """The vibration that makes itself, by secants from the free one; None if it takes too long."""
+    amplitude, slope, before = free, 0.0, None
+    for _ in range(_MOST_STEPS):
+        found = made(amplitude)
+        new = found.amplitude
+        if abs(new - amplitude) <= tolerance * free:
+            return found
+        # Where the finger takes much the two chase each other for long: the secant cuts that short.
+        if before is not None:
+            slope = (new - before[1]) / (amplitude - before[0])
+        before = amplitude, new
+        # A slope near 1 is held back: the next place is at most three times the last change away.
+        further = amplitude + (new - amplitude) / (1 - min(max(slope, -1.0), 2 / 3))
+        amplitude = further if further > 0 else new
+    return None
+
+
+def _searched(made: Callable[[float], _Left], free: float, most: float, tolerance: float) -> _Left:
+    """The vibration that makes itself nearest to the free one, below `most` (m, the mode's free
+    amplitude at its resonance): where two such are about to become one and vanish, secants crawl.
+    """
+    from scipy.optimize import brentq
+
+    def gain(amplitude: float) -> float:
+        return made(amplitude).amplitude - amplitude
+
+    near, at_near = free, gain(free)
+    # A finger takes energy and gives none, so that nothing above `most` is made.
+    end = most * (1 + 1e-9)
+    places = free * _BELOW if at_near < 0 else np.linspace(free, end, _BELOW.size)
+    for far in places[1:].tolist():
+        at_far = gain(far)
+        if at_near * at_far <= 0:
+            amplitude = float(brentq(gain, near, far, xtol=1e-12 * free, rtol=1e-14))
+            found = made(amplitude)
+            at_near = found.amplitude - amplitude
+            if abs(at_near) <= tolerance * free:
+                return found
+            break
+        near, at_near = far, at_far
+    raise ConvergenceError(
+        f"the amplitude under the finger did not settle (last change {abs(at_near):.3g} m of "
+        f"{free:.3g} m); the finger may be heavier than the mode, which is outside of what one "
+        "mode can tell",
+        residual=abs(at_near) / free,
+        iterations=_MOST_STEPS + _BELOW.size,
+    )
+
+
+@si.checked_numbers
+def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: si.Metre) -> si.Dimensionless:
+    """The amplitude with the finger over the one without, where the former is known (m)."""
+    if mode.modal_mass is None or amplitude < _LEAST_AMPLITUDE:
+        return 1.0
+    loaded = _loaded(mode, mode.modal_mass, _carried(_Pad.of(law), amplitude))
+    return loaded.amplitude_ratio(law.frequency) / _alone(mode, law)
+
+
+@si.checked_numbers
+def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: si.MetreArray) -> si.ComplexArray:
+    """The finger's modal stiffness over the mode's own, δ (complex), at amplitudes with the finger
+    on (m), shape (n,). Zero where the modal mass is not known: the finger is left out."""
+    found: si.ComplexArray = np.zeros(np.shape(amplitude), dtype=complex)
+    if mode.modal_mass is None:
+        return found
+    pad = _Pad.of(law)
+    for i, one in enumerate(np.ravel(amplitude).tolist()):
+        found.flat[i] = _loaded(mode, mode.modal_mass, _carried(pad, one)).load_ratio
+    return found
+
+
+def _carried(pad: _Pad, amplitude: si.Metre) -> _Felt:
+    """What the plate feels at an amplitude of the best antinode."""
+    law = pad.law
+    stiffness = law.felt_stiffness(pad.scale * amplitude)
+    return _Felt(stiffness, law.finger.contact_area(law.normal_force), pad.mean_square)
+
+
+class _Felt(NamedTuple):
+    """What a plate feels of a finger: complex stiffness per area (Pa/m), area of contact (m²), and
+    the mean square of the wave over it."""
+
+    stiffness_per_area: complex
+    area: float
+    mean_square: float
+
+    def impedance(self, frequency: float) -> complex:
+        """Of the whole finger, at the antinode (N·s/m)."""
+        return finger_impedance(self.stiffness_per_area, self.area, frequency, self.mean_square)
+
+
+class _Left(NamedTuple):
+    """What is left of a vibration: its amplitude (m), the mode and what the plate feels then."""
+
+    amplitude: float
+    mode: LoadedMode | None
+    felt: _Felt
+
+
+def _loaded(mode: WorkingMode, modal_mass: float, felt: _Felt) -> LoadedMode:
+    return loaded_mode(mode.resonance_frequency, mode.quality_factor, modal_mass, *felt)
+
+
+def _alone(mode: WorkingMode, law: FrictionLaw) -> float:
+    """The amplitude without a finger at the law's frequency, over that at the resonance."""
+    free = LoadedMode(mode.resonance_frequency, mode.quality_factor, 0j)
+    return free.amplitude_ratio(law.frequency)

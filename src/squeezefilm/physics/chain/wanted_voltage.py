@@ -1,0 +1,83 @@
+"""The voltage for a wanted friction: the chain of a display from its end to its beginning."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
+from squeezefilm.core.errors import UnreachableError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.physics.chain.area_map import at_best_place
+from squeezefilm.physics.chain.chosen_mode import chosen_mode
+from squeezefilm.physics.chain.free_vibration import amplitude_per_volt
+from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
+from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, FrictionModel
+from squeezefilm.physics.chain.pad_place import FacePlace, pad_place
+from squeezefilm.physics.chain.touch import kept_at
+from squeezefilm.physics.display import NamedDisplay
+from squeezefilm.physics.plate.working_mode import PlateTheory, WorkingMode
+from squeezefilm.physics.plausibility.checks import require_plausible
+
+WantedFriction = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
+"""A µ′/µ that is asked for."""
+
+
+@reads_text
+@si.checked_numbers
+def voltage_for_friction(
+    display: NamedDisplay,
+    relative_friction: WantedFriction,
+    *,
+    frequency: si.Hertz | None = None,
+    normal_force: si.Newton | None = None,
+    surface: str | None = None,
+    theory: PlateTheory | None = None,
+    model: FrictionModel | None = None,
+    speed: si.MetrePerSecond | None = None,
+    place: FacePlace | None = None,
+    position: si.Metre | None = None,
+) -> tuple[si.Volt, si.Metre]:
+    """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
+
+    The inverse of `predict`, with the pad where that has it, the finger's damping and detuning
+    included; linear in the voltage up to there. The amplitude is the antinode's, with the finger
+    on, wherever the pad is. Raises
+    `UnreachableError` where no amplitude does, or where the voltage would be more than the 2 kV
+    that a `Drive` may have.
+    """
+    require_plausible(display)
+    mode, _ = chosen_mode(display.actuator, theory)
+    drive_frequency = mode.resonance_frequency if frequency is None else frequency
+    si.require("frequency", drive_frequency, si.Unit("Hz"), above=0)
+    law = friction_law(
+        display,
+        mode.half_wavelength,
+        drive_frequency,
+        surface=display.surface(surface),
+        normal_force=normal_force,
+        model=model or DEFAULT_MODEL,
+        speed=speed,
+        position=position or 0.0,
+        place=pad_place(display.actuator, mode, drive_frequency, place),
+    )
+    if place is None and position is None:
+        law = at_best_place(display, mode, law)
+    return _needed(mode, law, relative_friction)
+
+
+def _needed(
+    mode: WorkingMode, law: FrictionLaw, relative_friction: si.Dimensionless
+) -> tuple[si.Volt, si.Metre]:
+    """Voltage (V) and the best antinode's amplitude (m) for a µ′/µ of a law."""
+    amplitude = law.amplitude_for(relative_friction)
+    if amplitude == 0:
+        return 0.0, 0.0
+    volts = amplitude / (amplitude_per_volt(mode, law.frequency) * kept_at(mode, law, amplitude))
+    if volts > HIGHEST_VOLTAGE:
+        raise UnreachableError(
+            f"relative_friction = {relative_friction:.4g} needs {amplitude * 1e6:.3g} µm and so "
+            f"{volts:.4g} V; a drive may have {HIGHEST_VOLTAGE:.4g} V. Drive at the resonance, ask "
+            "for less, or take a plate with more amplitude per volt"
+        )
+    return float(volts), amplitude

@@ -1,0 +1,256 @@
+"""Partial levitation: gas film and asperities share the load of a ridge's plateau.
+
+Over a plateau h(T) = u − a cos T, u its mean gap. In the mean over a period
+
+    ⟨p_gas⟩ − p0 + ⟨p_a(h(T))⟩ = p_plateau,        µ′/µ = ⟨p_a⟩ / p_plateau
+
+with the film solved (`gas_table`) and p_a the asperities' law, which does not know the load.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import announce
+from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError, OutOfRangeWarning
+from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
+from squeezefilm.physics.contact.sharing.film_panels import DEEPEST_EXCURSION
+from squeezefilm.physics.contact.sharing.gas_table import FilmTable
+
+
+@dataclass(frozen=True, eq=False)
+class LoadSharing:
+    """Balances of plateaus, arrays of one shape.
+
+    Pressures are means over plateau and period, the gas's over ambient. `gap_amplitude` differs
+    from `amplitude` (the plate's) by what the skin moves, `skin_amplitude`. `residual` is the
+    imbalance over the plateau's pressure, `relative_friction_error` what the film table's error
+    bound leaves of doubt in µ′/µ.
+    """
+
+    amplitude: si.MetreArray
+    plateau_pressure: si.PascalArray
+    mean_gap: si.MetreArray
+    gas_pressure: si.PascalArray
+    asperity_pressure: si.PascalArray
+    gap_amplitude: si.MetreArray
+    skin_amplitude: si.MetreArray
+    residual: si.DimensionlessArray
+    film_error: float
+    steps: si.FloatArray
+    asperities: ContactLaw
+    model: str
+
+    @property
+    def relative_friction(self) -> si.DimensionlessArray:
+        """µ′/µ: the asperities' share of the load (dimensionless)."""
+        return self.asperity_pressure / (self.asperity_pressure + self.gas_pressure)
+
+    @property
+    def relative_friction_error(self) -> si.DimensionlessArray:
+        """The bound on the error of µ′/µ: that of the film times the gas's share."""
+        return self.film_error * (1 - self.relative_friction) + np.abs(self.residual)
+
+
+@si.checked_numbers
+def share_load(
+    table: FilmTable,
+    asperities: ContactLaw,
+    amplitude: Annotated[si.MetreLike, si.AtLeast(0.0), si.AtMost(1e-4)],
+    plateau_pressure: Annotated[si.PascalLike, si.Above(0.0)],
+    *,
+    skin: Skin | None = None,
+) -> LoadSharing:
+    """Each plateau at its own balance; amplitude (m, of the plate there) and pressure broadcast.
+
+    Without a `skin` the finger is rigid at the ultrasonic frequency. Raises `InputError` for
+    values that cannot be used, `OutOfRangeError` where the asperities are pressed through (the gap
+    would close beyond 99.3 % of its mean, or below nothing), `ConvergenceError` where no balance
+    is found. Warns `OutOfRangeWarning` of a pressure above the law's `largest_pressure`.
+    """
+    from squeezefilm.physics.contact.sharing import kernel
+
+    announce(kernel.balance_rows, "load balance", 20)
+    form = np.broadcast_shapes(np.shape(amplitude), np.shape(plateau_pressure))
+    a = np.array(np.broadcast_to(amplitude, form), dtype=float).ravel()
+    p = np.array(np.broadcast_to(plateau_pressure, form), dtype=float).ravel()
+    rows = np.zeros((a.size, kernel.COLUMNS))
+    solve: Any = kernel.balance_rows
+    law, impedance = asperities.compiled(), _impedance(skin, table)
+    while True:
+        lacking = solve(a, p, impedance, law, table.compiled, rows)
+        if lacking < 0:
+            break
+        table.build(lacking)
+    require_balanced(rows, asperities, a, p)
+    model = _model(table, asperities, skin, "each plateau at its own balance")
+    return _shared(a.reshape(form), p.reshape(form), rows, table, asperities, model)
+
+
+@si.checked_numbers
+def share_load_tied(
+    table: FilmTable,
+    asperities: ContactLaw,
+    amplitude: Annotated[si.MetreArray, si.AtLeast(0.0), si.AtMost(1e-4)],
+    plateau_pressure: Annotated[si.Pascal, si.Above(0.0)],
+    *,
+    offset: si.MetreArray | None = None,
+    shares: Annotated[si.DimensionlessArray, si.AtLeast(0.0)] | None = None,
+    skin: Skin | None = None,
+) -> LoadSharing:
+    """Plateaus tied to one mean gap u (ridge i at u + offset[i]) that carry a mean pressure (Pa).
+
+    `amplitude` (m) is one-dimensional, one value for each ridge, and so are `shares`, of all the
+    ridges that each stands for (None: alike); all else that is given back is of shape ():
+    pressures are means over all plateaus and the period, `gap_amplitude` and `skin_amplitude`
+    those of the last ridge. Raises as `share_load` does.
+    """
+    from squeezefilm.physics.contact.sharing import kernel
+
+    announce(kernel.balance, "load balance", 20)
+    a = np.ascontiguousarray(np.ravel(amplitude), dtype=float)
+    shift = np.zeros_like(a) if offset is None else np.ascontiguousarray(offset, dtype=float)
+    si.require("offset", shift, si.Unit("m"), at_least=-1e-4, at_most=1e-4)
+    part = np.full(a.size, 1 / a.size) if shares is None else np.ascontiguousarray(shares)
+    for name, one in (("offset", shift), ("shares", part)):
+        if one.shape != a.shape:
+            raise InputError(f"{a.size} ridges need {a.size} of {name}", quantity=name)
+    ridges = kernel.CompiledRidges(a, shift, part)
+    row = np.zeros(kernel.COLUMNS)
+    solve: Any = kernel.balance
+    law, impedance = asperities.compiled(), _impedance(skin, table)
+    while True:
+        solve(ridges, plateau_pressure, impedance, law, table.compiled, row)
+        if int(row[kernel.STATUS]) != kernel.NEEDS_PANEL:
+            break
+        table.build(int(row[kernel.PANEL]))
+    _refuse(row[None, :], a.max(keepdims=True), np.array([plateau_pressure]))
+    # Whichever ridge comes nearest; where the skin yields only the last one's swing is known.
+    nearest = row[kernel.GAP] + (
+        np.min(shift - a) if skin is None else shift[-1] - row[kernel.SWING]
+    )
+    pressure = np.array(plateau_pressure)
+    _require_law(asperities, np.array(nearest), pressure)
+    model = _model(table, asperities, skin, "all plateaus at one mean gap")
+    return _shared(a, pressure, row, table, asperities, model)
+
+
+def _shared(
+    amplitude: si.FloatArray,
+    pressure: si.FloatArray,
+    rows: si.FloatArray,
+    table: FilmTable,
+    asperities: ContactLaw,
+    model: str,
+) -> LoadSharing:
+    """Balances as they are handed out, in the shape of the pressure."""
+    from squeezefilm.physics.contact.sharing import kernel
+
+    columns = {
+        "mean_gap": kernel.GAP,
+        "gas_pressure": kernel.GAS,
+        "asperity_pressure": kernel.ASPERITIES,
+        "gap_amplitude": kernel.SWING,
+        "skin_amplitude": kernel.SKIN,
+        "residual": kernel.RESIDUAL,
+        "steps": kernel.STEPS,
+    }
+    return LoadSharing(
+        amplitude=amplitude,
+        plateau_pressure=pressure,
+        film_error=table.relative_error,
+        asperities=asperities,
+        model=model,
+        **{name: rows[..., at].reshape(pressure.shape) for name, at in columns.items()},
+    )
+
+
+def require_balanced(
+    rows: si.FloatArray, law: ContactLaw, amplitude: si.FloatArray, pressure: si.FloatArray
+) -> None:
+    """Raise what `share_load` raises of the kernel's rows, each plateau at an amplitude (m) under a
+    pressure (Pa) of its own."""
+    from squeezefilm.physics.contact.sharing import kernel
+
+    _refuse(rows, amplitude, pressure)
+    _require_law(law, rows[:, kernel.GAP] - rows[:, kernel.SWING], pressure)
+
+
+def _require_law(law: ContactLaw, nearest: si.FloatArray, pressure: si.FloatArray) -> None:
+    """Refuse balances that press a rough interface nearly flat, where its law ends, at the
+    `nearest` gap of a period (m); warn of plateaus pressed so hard that the law of asperities does
+    not hold even at rest."""
+    if isinstance(law, RoughContact):
+        flat = nearest < law.least_gap
+        if np.any(flat):
+            most = si.format_quantity(law.largest_pressure, si.Unit("Pa"))
+            shown = si.format_quantity(float(np.min(pressure[flat])), si.Unit("Pa"))
+            raise OutOfRangeError(
+                f"a plateau under {shown} brings nearly everything into contact once a period: the "
+                f"gap falls below {LEAST_GAP} of the roughness, where the contact's law ends; at "
+                f"rest it holds to {most}. Press less, vibrate less, or take a rougher or stiffer "
+                "skin"
+            )
+    elif np.any(pressure > law.largest_pressure):
+        most = si.format_quantity(law.largest_pressure, si.Unit("Pa"))
+        shown = si.format_quantity(float(np.max(pressure)), si.Unit("Pa"))
+        warnings.warn(
+            f"a plateau under {shown} presses most of its asperities flat even at rest, where they "
+            f"no longer carry by themselves: {law.words} hold to {most}. Press less, or take the "
+            "contact of a rough elastic interface (RoughContact)",
+            OutOfRangeWarning,
+            stacklevel=3,
+        )
+
+
+def _impedance(skin: Skin | None, table: FilmTable) -> si.FloatArray:
+    if skin is None:
+        return np.zeros(3)
+    D = skin.dynamic_stiffness(table.frequency)
+    return np.array([D.real, D.imag, 1.0])
+
+
+def _model(table: FilmTable, asperities: ContactLaw, skin: Skin | None, tie: str) -> str:
+    yields = "rigid" if skin is None else "yielding"
+    return (
+        f"partial levitation, {tie}: strip films of {table.width * 1e6:.4g} µm with slip "
+        f"'{table.slip}', {asperities.words}, {yields} skin"
+    )
+
+
+def _refuse(rows: si.FloatArray, amplitude: si.FloatArray, pressure: si.FloatArray) -> None:
+    from squeezefilm.physics.contact.sharing import kernel
+
+    bad = np.flatnonzero(rows[:, kernel.STATUS] != kernel.BALANCED)
+    if bad.size == 0:
+        return
+    at = int(bad[0])
+    status = int(rows[at, kernel.STATUS])
+    asked = (
+        f"a plateau under {si.format_quantity(pressure[at], si.Unit('Pa'))} at an amplitude of "
+        f"{si.format_quantity(amplitude[at], si.Unit('m'))}"
+    )
+    if status == kernel.PRESSED_THROUGH:
+        raise OutOfRangeError(
+            f"{asked} is pressed through its asperities: gas and asperities do not carry it at a "
+            f"gap closed by {si.percent(DEEPEST_EXCURSION, 1)} of its mean, or closed altogether. "
+            "Press less, vibrate less, or take asperities that carry more"
+        )
+    if status == kernel.OUT_OF_TABLE:
+        raise OutOfRangeError(
+            f"{asked} leads to a gap for which the film is not tabulated: the asperities hold skin "
+            "and surface too far apart or too near for a film, whose squeeze number is out of 3e-4 "
+            "to 1.6e5. Check the roughness of surface and skin, frequency, plateau width and "
+            "ambient pressure"
+        )
+    raise ConvergenceError(
+        f"{asked} was not balanced; the residual is {rows[at, kernel.RESIDUAL]:.3g} of the load",
+        residual=float(rows[at, kernel.RESIDUAL]),
+        iterations=int(rows[at, kernel.STEPS]),
+    )

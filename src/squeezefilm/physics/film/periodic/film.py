@@ -1,0 +1,212 @@
+"""The periodic steady state of a 1-D gas film: strip, disc, or any profile of the gap.
+
+Solves, for one period of the motion, the compressible Reynolds equation
+
+    ∂/∂X (H³ φ P^{1/n} ∂P/∂X) = σ ∂(P^{1/n} H)/∂T,   P = 1 at the edges,
+
+by Fourier collocation in time and finite volumes in space; see `kernel` for the method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import announce
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.film.gas import Aim, Gas, slip_law
+from squeezefilm.physics.film.periodic.batch import MOST_NEWTON, check_film, compiled
+from squeezefilm.physics.film.periodic.nested import (
+    NEWTON_SHARE,
+    PROFILE_MARGINS,
+    UNIFORM_MARGINS,
+    Kind,
+    Nested,
+    levels_of,
+    load_times,
+    refine,
+)
+from squeezefilm.physics.film.periodic.profile import (
+    GapProfile,
+    profile_from_function,
+    sampled_grid,
+)
+from squeezefilm.physics.film.periodic.records import Resolution
+from squeezefilm.physics.film.periodic.resolution import CELLS, first_guess
+from squeezefilm.physics.film.periodic.small import LARGEST, enlarged, reduced, small_film
+from squeezefilm.physics.film.periodic.solution import (
+    NO_FIELD,
+    Asked,
+    FilmSolution,
+    Found,
+    assembled,
+    extrapolated_field,
+)
+
+
+@si.checked_numbers
+def solve_uniform(
+    squeeze_number: si.Dimensionless,
+    excursion_ratio: si.Dimensionless,
+    *,
+    shape: str = "strip",
+    polytropic_exponent: si.Dimensionless = 1.0,
+    knudsen_number: si.Dimensionless = 0.0,
+    slip: str = "first",
+    tolerance: float = 5e-3,
+) -> FilmSolution:
+    """The film under H = 1 + ε cos T of an infinitely long strip, open at both edges, or of a disc.
+
+    `squeeze_number` σ = 12 η ω l0²/(p0 H0²) is on the strip's full width l0 or on the disc's
+    radius; `excursion_ratio` is ε. `polytropic_exponent` runs from 1 (isothermal) to 5/3;
+    `knudsen_number` is the free path at ambient pressure over H0, used locally as Kn/(P H) in the
+    law `slip` (see `gas.SLIP_LAWS`). `tolerance` is relative, on the over-pressure W − 1; the
+    resolution follows it.
+
+    Checked for σ from 0.01 to 1e4, |ε| to 0.95, n to 1.4, Kn to 0.3. Raises `InputError` for a
+    value that no film has (σ ≤ 0, |ε| ≥ 1, NaN …) and `ConvergenceError`, with the partial
+    result, where the tolerance is not reached.
+    """
+    si.require_one_of("shape", shape, ("strip", "disc"))
+    sigma, n, kn = squeeze_number, polytropic_exponent, knudsen_number
+    asked = Asked(shape, sigma, excursion_ratio, n, kn, slip, tolerance, None)
+    check_film(sigma, excursion_ratio, n, kn, tolerance)
+    gas = Gas(n, kn, slip_law(slip, kn))
+    small = small_film(asked, gas) if abs(excursion_ratio) < LARGEST else None
+    # The closed form where it is nearer than rounding lets a solve come, or where that fails.
+    if small and small[0].met and small[0].error <= compiled().rounding(sigma, n, small[0].over):
+        return assembled(asked, *small, excursion_ratio)
+    grid, found = _refined_uniform(shape, sigma, abs(excursion_ratio), gas, tolerance)
+    if small and small[0].met and not found.met:
+        return assembled(asked, *small, excursion_ratio)
+    mirrored = shape == "strip"
+    field = extrapolated_field(grid.levels, grid.x, grid.harmonics, n, mirrored=mirrored)
+    if excursion_ratio < 0.0:
+        found, field = found.later(), field.later()
+    return assembled(asked, found, field, excursion_ratio)
+
+
+def _refined_uniform(
+    shape: str, sigma: float, eps: float, gas: Gas, tolerance: float
+) -> tuple[Nested, Found]:
+    """A uniform gap's film: on half a strip, or on a disc's radius."""
+    u, strip = compiled(), shape == "strip"
+    # A disc of radius R films like a strip about 1.5 R wide.
+    wide = sigma * (1.0 if strip else 2.25)
+    n, kn, law = gas
+    films = u.Films(*np.array([[sigma], [eps], [n], [kn]]), law, u.STRIP if strip else u.DISC)
+    a = u.edge_grading(wide, eps)
+
+    def solve(resolution: Resolution) -> Nested:
+        cells = resolution.cells
+        out = np.full((1, u.COLUMNS), np.nan)
+        rows = 7 * resolution.times.row + resolution.check.row
+        keep = np.empty(cells // 4 * rows)
+        u.solve_rows(0, 1, films, resolution, Aim(NEWTON_SHARE * tolerance, MOST_NEWTON), out, keep)
+
+        def share(m: int) -> si.FloatArray:
+            g, vol, part = np.zeros(m + 1), np.zeros(m + 1), np.zeros(m + 1)
+            u.grid(m, films.shape, 1.0, a, g, vol, part)
+            return part
+
+        xi = np.linspace(0.0, 1.0, cells + 1)
+        x = (0.5 if strip else 1.0) * xi * (1.0 + a * (1.0 - xi * xi))
+        gap = np.repeat(np.array([[1.0], [eps]], dtype=complex), cells + 1, axis=1)
+        return Nested(resolution, x, gap, out[0], levels_of(keep, resolution, True, share))
+
+    one = (np.array([wide]), np.array([eps]), np.array([kn]))
+    c, t = first_guess(*one, tolerance, least_cells=16, least_times=11)
+    kind = Kind(wide / (n * (1.0 + 6.0 * kn)), eps, 1, films.shape, UNIFORM_MARGINS, n, sigma)
+    return refine(solve, kind, (int(CELLS[c[0]]), int(t[0])), tolerance, int(CELLS[-1]))
+
+
+@si.checked_numbers
+def solve_profile(
+    squeeze_number: si.Dimensionless,
+    profile: GapProfile | Callable[[si.FloatArray, si.FloatArray], ArrayLike],
+    *,
+    polytropic_exponent: si.Dimensionless = 1.0,
+    knudsen_number: si.Dimensionless = 0.0,
+    slip: str = "first",
+    tolerance: float = 5e-3,
+    field: bool = True,
+) -> FilmSolution:
+    """The film of a strip whose gap H(X, T) varies along it, −1/2 ≤ X ≤ 1/2, open at both edges.
+
+    `profile` comes from `flexural_profile`, `profile_from_samples` or `profile_from_function`, or
+    is a function H(X, T) that broadcasts. σ is on the full length l0 and the reference gap H0
+    that H is relative to. The other inputs, range and errors are those of `solve_uniform`; a gap
+    that closes raises `GeometryError`, one that is not periodic `InputError`. Stiffness and
+    damping are relative to the largest amplitude of the first harmonic of H (NaN for a gap
+    that does not move). Without `field`, the pressure, its mean and the gap are left empty (and
+    stiffness, damping and harmonics beyond the mean NaN): for sweeps that want the load alone.
+    """
+    if not isinstance(profile, GapProfile):
+        if not callable(profile):
+            raise InputError(
+                f"profile of type {type(profile).__name__} cannot be used: give a GapProfile or a "
+                f"function H(X, T); for arrays use profile_from_samples"
+            )
+        profile = profile_from_function(profile)
+    check_film(squeeze_number, 0.0, polytropic_exponent, knudsen_number, tolerance)
+    sigma = float(squeeze_number)
+    gas = Gas(float(polytropic_exponent), float(knudsen_number), slip_law(slip, knudsen_number))
+    n, kn, _ = gas
+    asked = Asked("profile", sigma, profile.excursion, n, kn, slip, tolerance, profile)
+    solvable, factor = enlarged(profile)
+    grid, found = _refined_profile(solvable, sigma, gas, tolerance, field)
+    shown, mirrored = NO_FIELD, profile.symmetric
+    if field:
+        shown = extrapolated_field(grid.levels, grid.x, grid.harmonics, n, mirrored=mirrored)
+    return assembled(asked, *reduced(found, shown, factor, tolerance), profile.excursion)
+
+
+def _refined_profile(
+    profile: GapProfile, sigma: float, gas: Gas, tolerance: float, field: bool
+) -> tuple[Nested, Found]:
+    """A profile's film: on half of it where it is symmetric, otherwise from edge to edge."""
+    from squeezefilm.physics.film.periodic import uniform as u
+    from squeezefilm.physics.film.periodic.varying import Profile, solve_varying
+
+    announce(solve_varying, "solver of film profiles", 20)
+    closed, depth = profile.symmetric, profile.depth
+    # Rounded, so that a sweep over σ finds its grids again.
+    grading = round(float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, depth)), 2)
+    aim = Aim(tolerance * (NEWTON_SHARE if field else 1.0), MOST_NEWTON)
+
+    def solve(resolution: Resolution) -> Nested:
+        cells, times, check = resolution
+        x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
+        even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
+        row = np.full(u.COLUMNS, np.nan)
+        keep = np.empty(cells // 4 * (7 * times.row + check.row) if field else 0)
+        loads = (load_times(times.number, depth), load_times(check.number, depth))
+        gap = Profile(slope, even, odd, depth, closed)
+        solve_varying(sigma, gas, gap, resolution, loads, aim, row, keep)
+
+        def share(m: int) -> si.FloatArray:
+            part = slope[:: 2 * cells // m] * (2.0 / m)
+            part[[0, -1]] *= 0.5
+            return part
+
+        levels = levels_of(keep, resolution, closed, share) if field else []
+        return Nested(resolution, x[::2], harmonics[:, ::2], row, levels)
+
+    one = (
+        np.array([sigma]),
+        np.array([max(profile.mean_depth, 1e-3)]),
+        np.array([gas.knudsen_number]),
+    )
+    c, t = first_guess(
+        *one, tolerance, least_cells=16 if field else 8, least_times=2 * profile.orders + 1
+    )
+    waves = profile.features / (2.0 if closed else 1.0)
+    cells = max(int(CELLS[c[0]]), 4 * round(4.0 * waves * (0.01 / tolerance) ** 0.25))
+    cells *= 1 if closed else 2
+    n, kn = gas.polytropic_exponent, gas.knudsen_number
+    local = sigma / (n * (1.0 + 6.0 * kn))
+    kind = Kind(local, depth, 1 if closed else 2, u.STRIP, PROFILE_MARGINS, n, sigma)
+    return refine(solve, kind, (cells, int(t[0])), tolerance, 6000)

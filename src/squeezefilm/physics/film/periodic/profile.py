@@ -1,0 +1,303 @@
+"""The gap of a 1-D film as it varies along the film and over a period, and the grid it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import GeometryError, InputError
+
+_TIMES = 128
+_MOST_ORDERS = 40
+_NEGLIGIBLE = 1e-12
+
+Harmonics = Callable[[si.FloatArray], si.ComplexArray]
+GapFunction = Callable[[si.FloatArray, si.FloatArray], ArrayLike]
+"""H(X, T) at places and times that broadcast."""
+
+
+@dataclass(frozen=True, eq=False)
+class GapProfile:
+    """A gap H(X, T) = Re Σ h_k(X) e^{ikT} over −1/2 ≤ X ≤ 1/2, relative to the reference gap H0.
+
+    `harmonics(X)` returns the h_k, shape (orders, len(X)). Made by `flexural_profile`,
+    `profile_from_function` or `profile_from_samples`; making one checks that the gap never
+    closes. `excursion` is the largest |h_1|, `depth` the largest relative excursion
+    (max − min)/(max + min) over a period at any X, `mean_depth` its mean along X, `features` the
+    number of waves along X.
+    """
+
+    harmonics: Harmonics
+    description: str
+    symmetric: bool = field(init=False)
+    excursion: float = field(init=False)
+    depth: float = field(init=False)
+    mean_depth: float = field(init=False)
+    features: float = field(init=False)
+    orders: int = field(init=False)
+    _map: tuple[si.FloatArray, si.FloatArray, si.FloatArray] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        x = np.linspace(-0.5, 0.5, 2049)
+        h = np.asarray(self.harmonics(x), dtype=complex)
+        if h.ndim != 2 or h.shape[1] != len(x) or not np.all(np.isfinite(h)):
+            raise InputError(
+                f"gap harmonics of {self.description} have shape {h.shape} or values that are not "
+                f"finite; they must be finite and of shape (orders, {len(x)})"
+            )
+        mean = h[0].real
+        waves = max(_extrema(mean), _extrema(np.abs(h[1])) if len(h) > 1 else 0)
+        if waves > 100:
+            x = np.linspace(-0.5, 0.5, 40 * waves + 1)
+            h = np.asarray(self.harmonics(x), dtype=complex)
+            mean = h[0].real
+        times = 2.0 * np.pi * np.arange(64) / 64
+        gap = evaluate(h, times)
+        if gap.min() <= 0.0:
+            at, when = np.unravel_index(int(np.argmin(gap)), gap.shape)
+            raise GeometryError(
+                f"the gap of {self.description} closes: H = {gap.min():.4g} at X = {x[at]:.4g}, "
+                f"T = {times[when]:.4g}. It must stay above 0; reduce the amplitude or raise the "
+                f"mean gap"
+            )
+        high, low = gap.max(axis=1), gap.min(axis=1)
+        put = object.__setattr__
+        put(self, "symmetric", bool(np.abs(h - h[:, ::-1]).max() < 1e-10 * np.abs(h).max()))
+        put(self, "excursion", float(np.abs(h[1]).max()) if len(h) > 1 else 0.0)
+        put(self, "depth", float(((high - low) / (high + low)).max()))
+        put(self, "mean_depth", float(((high - low) / (high + low)).mean()))
+        put(self, "features", 0.5 * waves)
+        put(self, "orders", len(h))
+        put(self, "_map", self._density(max(1024, int(128 * waves))))
+
+    def gap(self, X: ArrayLike, T: ArrayLike) -> si.FloatArray:
+        """H at positions X and times T, shape (len(X), len(T))."""
+        return evaluate(self.harmonics(np.atleast_1d(np.asarray(X, float))), np.atleast_1d(T))
+
+    def _density(self, cells: int) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
+        """Knots X, the cumulated density of grid points there, and the density.
+
+        The pressure turns where the gap is small: 60 % of the points go by 1/H, the others
+        evenly. The density is a smooth function of X alone, so that errors stay a series in h².
+        """
+        x = np.linspace(-0.5, 0.5, 2 * cells + 1)
+        inverse = 1.0 / self.harmonics(x)[0].real
+        inverse /= (inverse[:-2:2] + 4.0 * inverse[1:-1:2] + inverse[2::2]).sum() / (6.0 * cells)
+        density = 0.4 + 0.6 * inverse
+        parts = (density[:-2:2] + 4.0 * density[1:-1:2] + density[2::2]) / (6.0 * cells)
+        cumulated = np.concatenate([[0.0], np.cumsum(parts)]) - 0.5
+        return x[::2], cumulated, density[::2]
+
+    def grid(self, xi: si.FloatArray, grading: float) -> tuple[si.FloatArray, si.FloatArray]:
+        """X and dX/dξ for ξ in [−1, 1], graded to the edges and to where the gap is small."""
+        knots, cumulated, density = self._map
+        eta = 0.5 * xi * (1.0 + grading * (1.0 - xi * xi))
+        j = np.clip(np.searchsorted(cumulated, eta) - 1, 0, len(knots) - 2)
+        width = cumulated[j + 1] - cumulated[j]
+        t = (eta - cumulated[j]) / width
+        u = 1.0 - t
+        x = (
+            knots[j] * (1.0 + 2.0 * t) * u * u
+            + knots[j + 1] * t * t * (3.0 - 2.0 * t)
+            + width * t * u * (u / density[j] - t / density[j + 1])
+        )
+        rise = 6.0 * t * u * (knots[j + 1] - knots[j]) / width
+        turn = u * (1.0 - 3.0 * t) / density[j] - t * (2.0 - 3.0 * t) / density[j + 1]
+        return x, (rise + turn) * 0.5 * (1.0 + grading - 3.0 * grading * xi * xi)
+
+
+@lru_cache(maxsize=16)
+def sampled_grid(
+    profile: GapProfile, cells: int, closed: bool, grading: float
+) -> tuple[si.FloatArray, si.FloatArray, si.ComplexArray]:
+    """X, dX/dξ and the gap's harmonics at the 2·cells + 1 nodes and faces; kept for sweeps.
+
+    `closed`: from the plane of symmetry to the edge, otherwise from edge to edge.
+    """
+    x, slope = profile.grid(np.linspace(0.0 if closed else -1.0, 1.0, 2 * cells + 1), grading)
+    harmonics = np.asarray(profile.harmonics(x), dtype=complex)
+    for array in (x, slope, harmonics):
+        array.setflags(write=False)
+    return x, slope, harmonics
+
+
+def evaluate(harmonics: si.ComplexArray, times: ArrayLike) -> si.FloatArray:
+    """Re Σ h_k e^{ikT}, shape (positions, times)."""
+    orders = np.arange(len(harmonics))
+    wave = np.exp(1j * np.outer(orders, np.asarray(times, float)))
+    return np.asarray((harmonics.T @ wave).real)
+
+
+def _extrema(values: si.FloatArray) -> int:
+    rise = np.diff(values)
+    rise = rise[np.abs(rise) > 1e-9 * (np.abs(values).max() + 1e-300)]
+    return int(np.count_nonzero(rise[1:] * rise[:-1] < 0.0))
+
+
+# What a gap's harmonics are computed from: values and not closures, so that a film can be pickled.
+
+
+@dataclass(frozen=True, slots=True)
+class _Flexural:
+    """H = 1 + τ·2X + δ cos k2X + ε cos k1X cos T."""
+
+    excursion_ratio: float
+    wavenumber: float
+    ridge_depth: float
+    ridge_wavenumber: float
+    tilt: float
+
+    def __call__(self, x: si.FloatArray) -> si.ComplexArray:
+        ridges = self.ridge_depth * np.cos(self.ridge_wavenumber * x)
+        wave = self.excursion_ratio * np.cos(self.wavenumber * x)
+        return np.array([1.0 + 2.0 * self.tilt * x + ridges, wave], dtype=complex)
+
+
+@dataclass(frozen=True, slots=True)
+class _Given:
+    """A function H(X, T), sampled over a period."""
+
+    gap: GapFunction
+    orders: int
+
+    def __call__(self, x: si.FloatArray) -> si.ComplexArray:
+        times = 2.0 * np.pi * np.arange(_TIMES) / _TIMES
+        h = np.fft.rfft(_sampled(self.gap, x, times), axis=1)[:, : self.orders].T / _TIMES
+        h[1:] *= 2.0
+        return np.asarray(h)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Splined:
+    """Harmonics at places X, cubic splines between them."""
+
+    position: si.FloatArray
+    spectrum: si.ComplexArray
+
+    def __call__(self, x: si.FloatArray) -> si.ComplexArray:
+        from scipy.interpolate import CubicSpline
+
+        return np.asarray(CubicSpline(self.position, self.spectrum, axis=1)(x), dtype=complex)
+
+
+def _sampled(gap: GapFunction, x: si.FloatArray, times: si.FloatArray) -> si.FloatArray:
+    given = np.asarray(gap(x[:, None], times[None, :]), dtype=float)
+    return np.array(np.broadcast_to(given, (len(x), len(times))))
+
+
+@si.checked_numbers
+def flexural_profile(
+    excursion_ratio: Annotated[float, si.Above(-1.0), si.Below(1.0)],
+    *,
+    wavenumber: float = 0.0,
+    ridge_depth: float = 0.0,
+    ridge_wavenumber: float = 0.0,
+    tilt: float = 0.0,
+) -> GapProfile:
+    """A flexural wave under ridges, tilted: H = 1 + τ·2X + δ cos k2X + ε cos k1X cos T.
+
+    With `excursion_ratio` ε, `wavenumber` k1 = 2π l0/λ, `ridge_depth` δ, `ridge_wavenumber`
+    k2 = 2π l0/L and `tilt` τ this is eq. 2 of Biet, Giraud & Lemaire-Semail (2008), with static
+    roughness. Raises `InputError` for values that are not finite or ε ≥ 1, and `GeometryError`
+    for a gap that closes.
+    """
+    harmonics = _Flexural(excursion_ratio, wavenumber, ridge_depth, ridge_wavenumber, tilt)
+    text = f"flexural profile ε = {excursion_ratio:.4g}, k1 = {wavenumber:.4g}"
+    if ridge_depth:
+        text += f", δ = {ridge_depth:.4g}, k2 = {ridge_wavenumber:.4g}"
+    if tilt:
+        text += f", tilt {tilt:.4g}"
+    return GapProfile(harmonics, text)
+
+
+def profile_from_function(gap: GapFunction, description: str = "given function") -> GapProfile:
+    """A gap H(X, T) given as a function that broadcasts, T in radians.
+
+    Raises `InputError` for a gap that is not periodic in T with period 2π, not finite or with
+    more than 40 harmonics, and `GeometryError` for one that closes.
+    """
+
+    x = np.linspace(-0.5, 0.5, 101)
+    times = 2.0 * np.pi * np.arange(_TIMES) / _TIMES
+    now, later = _sampled(gap, x, times), _sampled(gap, x, times + 2.0 * np.pi)
+    _check_periodic(now, later, x, times, description)
+    spectrum = np.abs(np.fft.rfft(now, axis=1)).max(axis=0)
+    significant = np.flatnonzero(spectrum > _NEGLIGIBLE * spectrum.max())
+    orders = int(significant.max()) + 1
+    _require_smooth(orders, description)
+    return GapProfile(_Given(gap, orders), description)
+
+
+def profile_from_samples(
+    X: ArrayLike, T: ArrayLike, H: ArrayLike, description: str = "measured profile"
+) -> GapProfile:
+    """A gap from samples H[i, j] at positions X[i], −1/2 to 1/2, and evenly spaced times T[j].
+
+    T covers one period: from 0 to 2π with both ends (then the ends must agree) or without the
+    last. Cubic splines along X, Fourier series in T. Raises `InputError` for shapes, orders or
+    ends that do not fit and for a profile that is not periodic, `GeometryError` for a closed gap.
+    """
+    x, t, h = (np.asarray(a, dtype=float) for a in (X, T, H))
+    if x.ndim != 1 or t.ndim != 1 or h.shape != (len(x), len(t)) or len(x) < 4 or len(t) < 3:
+        raise InputError(
+            f"samples of shape {h.shape} at {x.shape} positions and {t.shape} times cannot be "
+            f"used: H needs shape (len(X), len(T)), at least 4 positions and 3 times"
+        )
+    for name, values in (("X", x), ("T", t), ("H", h)):
+        si.require(name, values)
+    if np.any(np.diff(x) <= 0.0) or abs(x[0] + 0.5) > 1e-9 or abs(x[-1] - 0.5) > 1e-9:
+        raise InputError(
+            f"X runs from {x[0]:.6g} to {x[-1]:.6g}: it must rise strictly from -0.5 to 0.5"
+        )
+    steps = np.diff(t)
+    if np.ptp(steps) > 1e-6 * abs(steps).max() or steps[0] <= 0.0:
+        raise InputError(
+            f"T has steps from {steps.min():.4g} to {steps.max():.4g}: space it evenly"
+        )
+    period = 2.0 * np.pi
+    if abs(t[-1] - t[0] - period) < 1e-6:
+        _check_periodic(h[:, :1], h[:, -1:], x, t[:1], description)
+        t, h = t[:-1], h[:, :-1]
+    elif abs(t[-1] + steps[0] - t[0] - period) > 1e-6:
+        raise InputError(
+            f"T runs from {t[0]:.6g} to {t[-1]:.6g} in steps of {steps[0]:.6g}: it must cover one "
+            f"period of 2π"
+        )
+    spectrum = np.fft.rfft(h, axis=1).T / len(t)
+    spectrum[1:] *= 2.0
+    if len(t) % 2 == 0:
+        spectrum = spectrum[:-1]
+    spectrum = spectrum * np.exp(-1j * t[0] * np.arange(len(spectrum)))[:, None]
+    size = np.abs(spectrum).max(axis=1)
+    spectrum = spectrum[: int(np.flatnonzero(size > _NEGLIGIBLE * size.max()).max()) + 1]
+    _require_smooth(len(spectrum), description)
+    return GapProfile(_Splined(x, spectrum), description)
+
+
+def _require_smooth(orders: int, description: str) -> None:
+    if orders > _MOST_ORDERS:
+        raise InputError(
+            f"the gap of {description} has {orders} harmonics in time; at most {_MOST_ORDERS} can "
+            f"be used: smooth its motion"
+        )
+
+
+def _check_periodic(
+    now: si.FloatArray, later: si.FloatArray, x: si.FloatArray, t: si.FloatArray, description: str
+) -> None:
+    if not (np.all(np.isfinite(now)) and np.all(np.isfinite(later))):
+        raise InputError(f"the gap of {description} has values that are not finite (NaN or inf)")
+    apart = np.abs(later - now)
+    if apart.max() > 1e-6 * np.abs(now).max():
+        i, j = np.unravel_index(int(np.argmax(apart)), apart.shape)
+        raise InputError(
+            f"the gap of {description} is not periodic in time: at X = {x[i]:.4g} it is "
+            f"{now[i, j]:.6g} at T = {t[j]:.4g} and {later[i, j]:.6g} a period of 2π later. Give "
+            f"a gap that repeats after 2π"
+        )

@@ -1,0 +1,100 @@
+"""How many cells and times a tolerance needs: first guess, and what to do when it was not enough.
+
+The guesses were fitted to measured errors. They only save time: what is returned is judged by
+the error estimate of the solve itself, and refined until that meets the tolerance.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.film.periodic.records import Resolution, Times
+
+CELLS = np.array([4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768])
+TIMES = np.array([5, 7, 9, 11, 13, 15, 19, 23, 27, 31, 39, 47, 63, 79, 95, 127, 159])
+CHECKS = np.array([7, 9, 13, 15, 19, 19, 23, 31, 31, 39, 47, 63, 79, 95, 127, 159, 191])
+"""Numbers of times, and the larger ones that check each of them on the coarsest grid."""
+
+
+@lru_cache(maxsize=64)
+def collocation_times(nt: int) -> Times:
+    """So many times of a period, with what is computed with them.
+
+    `nt` is odd: an even number leaves the highest harmonic without a derivative.
+    """
+    ntp = 8 * ((nt + 7) // 8)
+    D = np.zeros((nt, ntp))
+    for i in range(nt):
+        for j in range(nt):
+            if i != j:
+                D[i, j] = 0.5 * (-1.0) ** (i - j) / math.sin(math.pi * (i - j) / nt)
+    DT = np.zeros((nt, ntp))
+    DT[:, :nt] = D[:, :nt].T
+    mask = np.ones((nt, ntp))
+    mask[:, :nt] -= np.eye(nt)
+    return Times(nt, ntp, DT.ravel(), mask.ravel())
+
+
+def resolution_of(cells: int, times: int) -> Resolution:
+    """Cells of the finest grid, the times at an index into `TIMES`, and those that check them."""
+    return Resolution(
+        cells, collocation_times(int(TIMES[times])), collocation_times(int(CHECKS[times]))
+    )
+
+
+def first_guess(
+    squeeze_number: si.FloatArray,
+    excursion_ratio: si.FloatArray,
+    knudsen_number: si.FloatArray,
+    tolerance: float,
+    least_cells: int = 4,
+    least_times: int = 5,
+) -> tuple[si.IntArray, si.IntArray]:
+    """Indices into `CELLS` and `TIMES` that probably meet a relative tolerance on W − 1."""
+    sigma = squeeze_number / (1.0 + 6.0 * knudsen_number)
+    layer = np.sqrt(np.sqrt(1.0 + sigma / 60.0))
+    cells = 4.0 * (0.008 / tolerance) ** 0.25 * layer**0.6
+    a = np.log(np.maximum(sigma, 0.03))
+    q = np.sqrt(np.arctanh(excursion_ratio))
+    d = np.log(np.log10(1.0 / min(0.5 * tolerance, 0.01)))
+    times = np.exp(
+        0.7123
+        + 0.2144 * d
+        + 0.1161 * d * d
+        + a * (0.0328 - 0.0199 * d + a * (-0.0144 + 0.0014 * a))
+        + q * (1.6309 + 0.1814 * d - 0.4562 * q + a * (-0.2191 + 0.0251 * q + 0.007 * a))
+    )
+    # Four cells are too few to judge the edge layer by.
+    least = np.where(sigma > 30.0, max(8, least_cells), least_cells)
+    chosen_cells = np.searchsorted(CELLS, np.maximum(0.87 * cells, least))
+    chosen_times = np.searchsorted(TIMES, np.maximum(0.99 * times, least_times))
+    return (
+        np.minimum(chosen_cells, len(CELLS) - 1),
+        np.minimum(chosen_times, len(TIMES) - 1),
+    )
+
+
+def refined(
+    cells: si.IntArray,
+    times: si.IntArray,
+    space: si.FloatArray,
+    time: si.FloatArray,
+    allowed: si.FloatArray,
+) -> tuple[si.IntArray, si.IntArray]:
+    """The next indices for cases whose errors in space and time exceed what is allowed.
+
+    A case that gave no numbers at all (NaN) had too few times for a deep excursion.
+    """
+    lost = ~np.isfinite(space + time)
+    space_ratio = np.where(lost, 0.0, space / allowed)
+    time_ratio = np.where(lost, 10.0, time / allowed)
+    wanted = CELLS[cells] * np.maximum(space_ratio / 0.5, 1.0) ** 0.25
+    more_cells = np.searchsorted(CELLS, 0.95 * wanted)
+    more_cells = np.where(space_ratio > 0.5, np.maximum(more_cells, cells + 1), cells)
+    steps = np.where(time_ratio > 300.0, 3, np.where(time_ratio > 15.0, 2, 1))
+    more_times = np.where(time_ratio > 0.45, times + steps, times)
+    return np.minimum(more_cells, len(CELLS) - 1), np.minimum(more_times, len(TIMES) - 1)

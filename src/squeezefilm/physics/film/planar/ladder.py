@@ -1,0 +1,354 @@
+"""The ladder of planar grids a film is solved on, and what two rungs say about its error.
+
+Space is second order, so two rungs extrapolate to fourth (Richardson), and two extrapolants
+bound the error. Time converges geometrically; four more points on the coarsest rung give the
+correction for the harmonics left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import PLANAR_MEMORY, require_within
+from squeezefilm.physics.film.line_grid import refined_line
+from squeezefilm.physics.film.periodic.nested import steadied
+from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film, resampled
+from squeezefilm.physics.film.planar.cut import cut_ellipse_grid
+from squeezefilm.physics.film.planar.gap import PlanarGap, gap_values
+from squeezefilm.physics.film.planar.grid import (
+    PlanarGrid,
+    disc_grid,
+    ellipse_grid,
+    graded_line,
+    rectangle_grid,
+)
+
+PlanarShape = Literal["rectangle", "disc", "ellipse"]
+RUNGS = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
+_MOST_HARMONICS = 24
+_LEAST_TIMES = 9  # of the two counts that a climb begins with, the larger
+
+
+class Ladder:
+    """The grids of one shape, finer and finer, all images of one smooth map."""
+
+    def __init__(
+        self,
+        shape: PlanarShape,
+        aspect: float,
+        film: Film,
+        quarter: bool,
+        cells: tuple[int, int] | None,
+    ) -> None:
+        self.shape, self.aspect, self.film, self.quarter = shape, aspect, film, quarter
+        self._grids: dict[int, PlanarGrid] = {}
+        gap = film.gap
+        self.varied = not (
+            isinstance(gap, PlanarGap) and gap.wave_number == 0.0 and gap.ridge_height == 0.0
+        )
+        waves = 0.0
+        # Ridges across an ellipse: lines that follow them, cut at the boundary.
+        self.cut = False
+        if isinstance(gap, PlanarGap):
+            ridges = gap.ridge_wave_number if gap.ridge_height > 0.0 else 0.0
+            waves = max(2.0 * gap.wave_number, 1.5 * ridges) / (2 * np.pi)
+            self.cut = shape != "rectangle" and ridges > np.pi
+        if cells is not None:
+            si.require("cells", np.array(cells), at_least=2)
+            # Even, because the full ellipse joins opposite columns.
+            self._base = (cells[0] / 2, 2 * round(cells[1] / 4) or 1)
+        elif shape == "rectangle":
+            # `waves` periods over the whole length, three cells each and rung.
+            along = max(2, int(np.ceil(waves)))
+            self._base = (along, 2) if quarter else (2 * along, 4)
+        elif self.cut:
+            along = max(4, int(np.ceil(2 * waves)))
+            self._base = (along, 4) if quarter else (2 * along, 8)
+        else:
+            out = max(2, int(np.ceil(2 * waves)))
+            around = max(1, int(np.ceil(2 * waves)))
+            self._base = (out, around) if quarter else (out, 4 * around)
+        rows, columns = sorted((part * RUNGS[0] for part in self._base), reverse=True)
+        require_within(
+            PLANAR_MEMORY,
+            _memory(rows, columns, _LEAST_TIMES),
+            enough="take fewer waves, ridges or cells",
+        )
+        self.excursion = self._excursion()
+
+    def _excursion(self) -> float:
+        if isinstance(self.film.gap, PlanarGap):
+            return self.film.gap.excursion_ratio
+        grid = self.grid(RUNGS[0])
+        T = 2 * np.pi * np.arange(16) / 16
+        H = gap_values(self.film.gap, grid.X, grid.Y, T)
+        first = float(np.abs(np.fft.rfft(H, axis=1)[:, 1]).max() / 8)
+        if first < 1e-12:
+            raise InputError("the gap has no first harmonic in T, so nothing drives the film")
+        return first
+
+    def relative_excursion(self) -> float:
+        """The largest swing of the gap over its mean at the same place."""
+        grid = self.grid(RUNGS[0])
+        H = gap_values(self.film.gap, grid.X, grid.Y, 2 * np.pi * np.arange(16) / 16)
+        mean = H.mean(axis=1, keepdims=True)
+        return float((np.abs(H - mean) / mean).max())
+
+    def grid(self, rung: int) -> PlanarGrid:
+        """The grid of one rung, made once."""
+        if rung not in self._grids:
+            self._grids[rung] = self._make(rung)
+        return self._grids[rung]
+
+    def _make(self, rung: int) -> PlanarGrid:
+        counts = (round(self._base[0] * rung), round(self._base[1] * rung))
+        sigma = self.film.squeeze_number
+        # Under a gap that varies the pressure has shape inside too, and the edge must not take
+        # all the cells.
+        least = 0.15 if self.varied else 2e-3
+        if self.cut:
+            x = graded_line(counts[0], 1.0, sigma, mirror=not self.quarter, least=least)
+            x = refined_line(x, lambda X: self._mean_gap(X, 0.0 * X))
+            low = 0.0 if self.quarter else -self.aspect
+            y = np.linspace(low, self.aspect, 2 * counts[1] + 1)
+            return cut_ellipse_grid(x, y, self.aspect, quarter=self.quarter)
+        if self.shape == "disc":
+            return disc_grid(sigma, counts, quarter=self.quarter, least=least)
+        if self.shape == "ellipse":
+            return ellipse_grid(self.aspect, sigma, counts, quarter=self.quarter, least=least)
+        x = graded_line(counts[0], 0.5, sigma, mirror=not self.quarter, least=least)
+        x = refined_line(x, lambda X: self._mean_gap(X, 0.0 * X))
+        # Along a long side the share is one of the short side.
+        along = least / max(1.0, self.aspect)
+        y = graded_line(counts[1], self.aspect / 2, sigma, mirror=not self.quarter, least=along)
+        y = refined_line(y, lambda Y: self._mean_gap(0.0 * Y, Y))
+        return rectangle_grid(x, y, quarter=self.quarter)
+
+    def _mean_gap(self, X: si.FloatArray, Y: si.FloatArray) -> si.FloatArray:
+        T = 2 * np.pi * np.arange(4) / 4
+        return np.asarray(gap_values(self.film.gap, X, Y, T).mean(axis=1))
+
+
+@dataclass(frozen=True)
+class Extrapolated:
+    """What two or three rungs together say of the over-pressure and the harmonics of the force,
+    `amplitudes` (9,), and how far each may be off."""
+
+    amplitudes: si.ComplexArray
+    errors: si.FloatArray
+
+    @property
+    def over_pressure(self) -> float:
+        """W − 1."""
+        return float(self.amplitudes[0].real)
+
+    def lacking(self) -> float:
+        """The larger of the mean's error relative to it and that of the worst harmonic relative to
+        the largest."""
+        return float((self.errors / _norm(self.amplitudes)).max())
+
+
+def _norm(amplitudes: si.ComplexArray) -> si.FloatArray:
+    """What errors are relative to: the mean to itself, the harmonics to the largest of them."""
+    size = np.abs(amplitudes)
+    return np.concatenate([size[:1], np.full(len(size) - 1, size[1:].max())])
+
+
+@dataclass(frozen=True)
+class Climb:
+    """The end of a climb over the rungs: the best value and the state on the finest grid."""
+
+    best: Extrapolated
+    fine: Balance
+    iterations: int
+    reached: bool
+    status: str
+
+
+def _memory(rows: float, columns: float, count: int) -> float:
+    """Bytes of the eliminated rows: a dense block each."""
+    return rows * 8.0 * (columns * count) ** 2
+
+
+def climb_to(ladder: Ladder, tolerance: float) -> Climb:
+    """Climb until the over-pressure is known to `tolerance` of itself, or to the last rung."""
+    climber = _Climber(ladder, tolerance)
+    times = climber.in_time()
+    if times.enough:
+        return climber.in_space(times)
+    high, count = times.high, times.low.gas.shape[1]
+    status = f"stopped: {count // 2} harmonics in time are too few or Newton's method failed"
+    best = Extrapolated(high.amplitudes, np.abs(times.correction))
+    return Climb(best, high, climber.iterations, False, status)
+
+
+@dataclass(frozen=True)
+class _Times:
+    """The coarsest rung with some times and with four more, and the doubt (in over-pressure and
+    harmonics) that their difference leaves; whether that is `enough`."""
+
+    low: Balance
+    high: Balance
+    doubt: si.FloatArray
+    enough: bool
+
+    @property
+    def correction(self) -> si.ComplexArray:
+        """What the harmonics of the gas that are left out add."""
+        return self.high.amplitudes - self.low.amplitudes
+
+
+@dataclass
+class _Climber:
+    """A climb under way: how far Newton's method is driven, and the steps it took so far."""
+
+    ladder: Ladder
+    tolerance: float
+    accuracy: float = 1e-7
+    iterations: int = 0
+
+    def solved(self, rung: int, count: int, start: si.FloatArray | None) -> Balance:
+        """One rung at `count` times, from a start."""
+        grid = self.ladder.grid(rung)
+        state = _solve_or_continue(self.ladder.film, grid, count, start, self.accuracy)
+        self.iterations += state.iterations
+        return state
+
+    def in_time(self) -> _Times:
+        """Add times on the coarsest rung until four more change little enough."""
+        excursion = self.ladder.relative_excursion()
+        count = 2 * int(np.ceil(1.5 + 2.5 * excursion + 3.0 * excursion**6)) + 1
+        coarsest = self.ladder.grid(RUNGS[0])
+        require_within(
+            PLANAR_MEMORY,
+            _memory(coarsest.rows, coarsest.columns, count + 4),
+            enough="take fewer waves, ridges or cells",
+        )
+        low = self.solved(RUNGS[0], count, None)
+        if low.converged:
+            # Newton's error must stay well below what the extrapolation looks at.
+            least = 1e-3 * self.tolerance * abs(low.over_pressure)
+            self.accuracy = float(np.clip(least, 1e-13, 1e-7))
+            low = self.solved(RUNGS[0], count, low.gas)
+        before = np.zeros(len(low.amplitudes))
+        while True:
+            guess = resampled(low.gas, count + 4) if low.converged else None
+            high = self.solved(RUNGS[0], count + 4, guess)
+            correction = np.abs(high.amplitudes - low.amplitudes)
+            # Harmonics converge geometrically, but with changes of sign: one small step may be
+            # chance.
+            doubt = np.maximum(correction, 0.3 * before)
+            known = Extrapolated(high.amplitudes, doubt).lacking() <= 0.5 * self.tolerance
+            enough = high.converged and known
+            if enough or count + 4 > 2 * _MOST_HARMONICS:
+                return _Times(low, high, doubt, enough)
+            count, low, before = count + 4, high, correction
+
+    def in_space(self, times: _Times) -> Climb:
+        """Climb the rungs above the coarsest with the times that were enough there."""
+        tolerance, count = self.tolerance, times.low.gas.shape[1]
+        states = [times.low]
+        best = Extrapolated(times.high.amplitudes, np.full(len(times.doubt), np.inf))
+        for place, rung in enumerate(RUNGS[1:], start=1):
+            grid = self.ladder.grid(rung)
+            nodes = f"{grid.rows} × {grid.columns} nodes"
+            if _memory(grid.rows, grid.columns, count) > PLANAR_MEMORY.most:
+                known = f"known to {best.lacking():.2g} of the over-pressure and the force"
+                status = f"{known}; {tolerance:.2g} would take more memory than allowed"
+                return Climb(best, states[-1], self.iterations, False, status)
+            states.append(self.solved(rung, count, _moved(self.ladder.film, states[-1], grid)))
+            if not states[-1].converged:
+                status = f"stopped: Newton's method failed on {nodes}"
+                return Climb(best, states[-1], self.iterations, False, status)
+            if place < 2:
+                continue
+            space = _irregular if self.ladder.cut else _richardson
+            value, error = space([state.amplitudes for state in states])
+            value, error = value + times.correction, error + times.doubt + 1e-13
+            error[1:] = steadied(error, np.abs(value))[1:]
+            best = Extrapolated(value, error)
+            # Where lines are cut at the boundary the harmonics converge too slowly to be waited
+            # for: their errors are stated.
+            mean = float(error[0] / abs(value[0]))
+            if (mean if self.ladder.cut else best.lacking()) <= tolerance:
+                reached = f"{mean:.1g} of the over-pressure"
+                known = f"solved to {reached}, the force to {best.lacking():.1g},"
+                status = f"{known} on {nodes} at {count} times"
+                return Climb(best, states[-1], self.iterations, True, status)
+        status = f"known to {best.lacking():.2g} of the over-pressure and the force only"
+        return Climb(best, states[-1], self.iterations, False, status)
+
+
+def _richardson(rungs: list[si.ComplexArray]) -> tuple[si.ComplexArray, si.FloatArray]:
+    """Over-pressure and harmonics extrapolated from the last two rungs, and the errors in space."""
+
+    def extrapolated(place: int) -> si.ComplexArray:
+        gain = (RUNGS[place] / RUNGS[place - 1]) ** 2 - 1.0
+        return np.asarray(rungs[place] + (rungs[place] - rungs[place - 1]) / gain)
+
+    place = len(rungs) - 1
+    value, before = extrapolated(place), extrapolated(place - 1)
+    earlier = extrapolated(place - 2) if place > 2 else before
+    # Extrapolants of fourth order on grids 1.3 to 1.5 times finer differ by 0.5 to 4 times the
+    # error left; the other terms are for those that agree by chance.
+    trend = np.maximum(0.8 * np.abs(value - before), 0.2 * np.abs(before - earlier))
+    chance = 0.06 if place == 2 else 0.03
+    return value, np.asarray(trend + chance * np.abs(value - rungs[-1]))
+
+
+def _irregular(rungs: list[si.ComplexArray]) -> tuple[si.ComplexArray, si.FloatArray]:
+    """The last rung as it is: an error that jumps with the grid cannot be extrapolated."""
+    steps = [np.abs(rungs[-1] - rung) for rung in rungs[-3:-1]]
+    return rungs[-1], 1.3 * np.maximum(steps[1], 0.5 * steps[0])
+
+
+def _moved(film: Film, state: Balance, grid: PlanarGrid) -> si.FloatArray:
+    """The gas of `state` on another grid of the same map: P^{1/n} = m/H is smooth in space."""
+    count = state.gas.shape[1]
+    T = 2 * np.pi * np.arange(count) / count
+    old = state.grid
+    ratio = state.gas / gap_values(film.gap, old.X, old.Y, T)
+    field = ratio.reshape(old.rows, old.columns, count)
+    field = _stretched(_stretched(field, 0, grid.rows), 1, grid.columns)
+    return field.reshape(-1, count) * gap_values(film.gap, grid.X, grid.Y, T)
+
+
+def _stretched(field: si.FloatArray, axis: int, size: int) -> si.FloatArray:
+    have = field.shape[axis]
+    at = np.clip((np.arange(size) + 0.5) * have / size - 0.5, 0.0, have - 1.0)
+    left = np.minimum(at.astype(np.int64), max(have - 2, 0))
+    part = (at - left).reshape([-1 if a == axis else 1 for a in range(field.ndim)])
+    right = np.minimum(left + 1, have - 1)
+    return np.asarray(
+        (1.0 - part) * np.take(field, left, axis) + part * np.take(field, right, axis)
+    )
+
+
+def _solve_or_continue(
+    film: Film, grid: PlanarGrid, count: int, start: si.FloatArray | None, accuracy: float
+) -> Balance:
+    """Newton's method; where it fails, by way of smaller motions about the same mean gap."""
+    state = Balancer(film, grid, count).solve(start, accuracy)
+    if state.converged:
+        return state
+    gap = film.gap
+    T = 2 * np.pi * np.arange(16) / 16
+    spent, gas = state.iterations, None
+    for part in (0.25, 0.5, 0.7, 0.85, 0.95, 1.0):
+
+        def smaller(
+            X: si.FloatArray, Y: si.FloatArray, t: si.FloatArray, part: float = part
+        ) -> si.FloatArray:
+            mean = np.mean([gap(X, Y, np.full((1, 1), s)) for s in T], axis=0)
+            return np.asarray(mean + part * (gap(X, Y, t) - mean))
+
+        eased = replace(film, gap=smaller if part < 1.0 else gap)
+        state = Balancer(eased, grid, count).solve(gas, accuracy if part == 1.0 else 1e-3)
+        spent += state.iterations
+        gas = state.gas if state.converged else None
+    return replace(state, iterations=spent)

@@ -1,0 +1,232 @@
+"""What a driven free–free beam does: modal force, amplitude per volt, frequency response."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, OutOfRangeError
+from squeezefilm.core.materials import VACUUM_PERMITTIVITY
+from squeezefilm.physics.plate.beam.modes import BeamMode, BeamTheory, free_beam_mode
+from squeezefilm.physics.plate.beam.pieces import beam_pieces, pieced_beam_mode, stressed_span
+from squeezefilm.physics.plate.elements.again import SolvedAgain
+from squeezefilm.physics.plate.laminate import (
+    CrossSection,
+    Laminate,
+    moment_per_volt,
+    plate_laminate,
+    section_with,
+)
+from squeezefilm.physics.plate.layout import CeramicPatch, DiscPlate, RectangularPlate, turned
+
+
+@si.closed_form(positive="modal_mass frequency quality_factor")
+def resonant_amplitude_per_volt(
+    modal_force: si.NewtonPerVolt,
+    modal_mass: si.Kilogram,
+    frequency: si.Hertz,
+    quality_factor: si.Dimensionless,
+) -> si.MetrePerVolt:
+    """The amplitude per volt of a lightly damped mode at resonance: Q F / (ω² m), in m/V.
+
+    Exact for structural (hysteretic) damping 1/Q of a single mode.
+    """
+    return quality_factor * modal_force / ((2 * np.pi * frequency) ** 2 * modal_mass)
+
+
+DRIVEN: si.Dimensionless = 1e-3
+"""Share of what single ceramics do to a mode, one by one, below which a drive that has them all
+cancels and does not move the mode."""
+
+
+@dataclass(frozen=True, eq=False)
+class BeamResponse(SolvedAgain):
+    """A plate driven as a beam: its working mode, and how strongly the ceramics drive it.
+
+    `section` is that of the plate where it carries ceramic.
+    `force_per_width` is the force of one volt on the working mode `mode` (N/V per m of width).
+    `modes` are all that enter the superposition, found where they are asked for.
+    """
+
+    plate: RectangularPlate
+    section: Laminate
+    theory: BeamTheory
+    cross_section: CrossSection
+    mode: BeamMode
+    force_per_width: float
+    _again: Callable[[], BeamResponse] | None = field(repr=False, default=None)
+    _bulk: ClassVar[tuple[str, ...]] = ("mode",)
+
+    @property
+    def model(self) -> str:
+        """The model's name, for results and plots."""
+        return f"{self.theory}_beam_{self.cross_section}"
+
+    @property
+    def amplitude_per_volt(self) -> si.MetrePerVolt:
+        """Zero-to-peak amplitude at the largest interior lobe, per volt, at resonance (m/V)."""
+        return abs(
+            resonant_amplitude_per_volt(
+                self.force_per_width,
+                self.mode.modal_mass_per_width,
+                self.mode.frequency,
+                self.plate.quality_factor,
+            )
+        )
+
+    def require_driven(self) -> None:
+        """Raise `OutOfRangeError` where the ceramics' forces on the working mode cancel to less
+        than `DRIVEN` of their sum: what is left says nothing of how an amplitude changes."""
+        (parts,) = _forces(self.plate, self.theory, self.cross_section, (self.mode,))
+        if abs(self.force_per_width) < DRIVEN * np.sum(np.abs(parts)) or not np.any(parts):
+            raise OutOfRangeError(
+                f"the drive does not bend the plate in its mode with {self.plate.nodal_lines} "
+                f"nodal lines: what its ceramics do cancels to less than {si.percent(DRIVEN, 1)}; "
+                "turn the polarity of some of them, or choose another mode"
+            )
+
+    @property
+    def modes(self) -> tuple[BeamMode, ...]:
+        """The bending modes up to twice the working mode's frequency, or up to the cut-off."""
+        return _superposed(self.plate, self.cross_section, self.mode)
+
+    @si.checked_numbers
+    def amplitude_at(self, frequency: si.HertzArray, position: si.Metre) -> si.MetrePerVoltArray:
+        """|w| per volt (m/V) at one position over an array of frequencies, by superposition."""
+        return np.abs(self.transfer(frequency, np.array([position]))[:, 0])
+
+    @si.checked_numbers
+    def transfer(self, frequency: si.HertzArray, position: si.MetreArray) -> si.ComplexArray:
+        """Complex w per volt (m/V), shape (frequencies, positions), superposed over `modes`.
+
+        Structural damping 1/Q for every mode; the truncation keeps the bending modes below twice
+        the working mode's frequency (or the cut-off), so static parts off resonance are
+        underestimated.
+        """
+        si.require("frequency", frequency, si.Unit("Hz"), at_least=0, axes=1)
+        si.require("position", position, si.Unit("m"), axes=1)
+        omega2 = (2 * np.pi * frequency[:, None]) ** 2
+        total = np.zeros((frequency.size, np.size(position)), dtype=complex)
+        modes = self.modes
+        forces = _forces(self.plate, self.theory, self.cross_section, modes)
+        for mode, parts in zip(modes, forces, strict=True):
+            force = float(np.sum(parts))
+            own = (2 * np.pi * mode.frequency) ** 2
+            denominator = own * (1 + 1j / self.plate.quality_factor) - omega2
+            total += force / mode.modal_mass_per_width / denominator * mode.deflection_at(position)
+        return total
+
+
+def beam_response(
+    plate: RectangularPlate | DiscPlate,
+    theory: BeamTheory = "timoshenko",
+    cross_section: CrossSection = "plane_strain",
+) -> BeamResponse:
+    """The working mode of a plate seen as a free–free beam, and its drive by the ceramics.
+
+    Timoshenko's beam carries ceramic where the plate does; Euler–Bernoulli's, which is the
+    paper's, carries it everywhere. Valid for plates wide against their thickness in modes whose
+    nodal lines run across the whole width. Against three-dimensional elasticity the Timoshenko
+    frequency is within 1 % on the paper's plate and within 13 % on 95 random ones, half of them
+    covered in part; the amplitude is right to a factor of two on four fifths of those that are
+    driven, since coupling to modes along the width is not seen. Euler–Bernoulli's frequency is
+    12 % high on the paper's plate. A plate whose nodal lines cross its width is turned first.
+    Raises `OutOfRangeError` above the cut-off, `InputError` for a disc.
+    """
+    if isinstance(plate, DiscPlate):
+        raise InputError(
+            "a disc is no beam; squeezefilm plate solves it as a disc", quantity="type"
+        )
+    if plate.lines_across == "width":
+        plate = turned(plate)
+    return _driven(plate, theory, cross_section)
+
+
+# Asked of one plate by the check of what is plausible, and again by the chain.
+@functools.lru_cache(maxsize=8)
+def _driven(
+    plate: RectangularPlate, theory: BeamTheory, cross_section: CrossSection
+) -> BeamResponse:
+    section = plate_laminate(plate, cross_section)
+    working = _finder(plate, theory, cross_section)(plate.nodal_lines)
+    (forces,) = _forces(plate, theory, cross_section, (working,))
+    return BeamResponse(
+        plate,
+        section,
+        theory,
+        cross_section,
+        working,
+        float(np.sum(forces)),
+        functools.partial(beam_response, plate, theory, cross_section),
+    )
+
+
+def _finder(
+    plate: RectangularPlate, theory: BeamTheory, cross_section: CrossSection
+) -> Callable[[int], BeamMode]:
+    """What finds the mode of a number of nodal lines."""
+    if theory == "euler_bernoulli":
+        section = plate_laminate(plate, cross_section)
+        return functools.partial(free_beam_mode, section, plate.length, theory=theory)
+    return functools.partial(pieced_beam_mode, beam_pieces(plate, cross_section))
+
+
+@functools.lru_cache(maxsize=8)
+def _superposed(
+    plate: RectangularPlate, cross_section: CrossSection, working: BeamMode
+) -> tuple[BeamMode, ...]:
+    find = _finder(plate, working.theory, cross_section)
+    modes: list[BeamMode] = []
+    for lines in range(2, 2 * working.nodal_lines):
+        try:
+            mode = working if lines == working.nodal_lines else find(lines)
+        except OutOfRangeError:
+            break
+        if mode.frequency > 2 * working.frequency:
+            break
+        modes.append(mode)
+    return tuple(modes)
+
+
+def _forces(
+    plate: RectangularPlate,
+    theory: BeamTheory,
+    cross_section: CrossSection,
+    modes: Iterable[BeamMode],
+) -> Iterator[si.FloatArray]:
+    """The force of one volt in each ceramic on each mode (N/V per m of width)."""
+    # Work of the piezo moment on the section's rotation where each ceramic begins and ends to pull;
+    # a ceramic narrower than the plate drives in proportion to its width.
+    pushed = np.array(
+        [
+            _moment(plate, cross_section, one) * one.drive_sign * (one.width / plate.width)
+            for one in plate.patches
+        ]
+    )
+    if theory == "euler_bernoulli":
+        spans = [(one.x, one.x + one.length) for one in plate.patches]
+    else:
+        spans = [stressed_span(plate, one) for one in plate.patches]
+    begin, end = np.array(spans).T
+    for mode in modes:
+        yield pushed * (mode.rotation_at(end) - mode.rotation_at(begin))
+
+
+def _moment(
+    plate: RectangularPlate, cross_section: CrossSection, patch: CeramicPatch
+) -> si.NewtonPerVolt:
+    """The moment of one volt in a ceramic, of the section in its middle."""
+    middle = patch.x + patch.length / 2, patch.y + patch.width / 2
+    section = section_with(plate, cross_section, *plate.ceramics_at(*middle))
+    return moment_per_volt(plate, section, cross_section, patch.face)
+
+
+def patch_capacitance(plate: RectangularPlate) -> si.Farad:
+    """The capacitance of all ceramics in parallel (F): ε A / h_p, fringes neglected."""
+    permittivity = plate.ceramic.relative_permittivity * VACUUM_PERMITTIVITY
+    return permittivity * sum(p.length * p.width / p.thickness for p in plate.patches)

@@ -1,0 +1,273 @@
+"""A box model as a row of slices along x: its unknowns, its operators, its electrodes.
+
+Unknowns are ordered slice by slice (x node by x node). Operators are applied through the slice
+matrices, never assembled.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.plate.elements.box_model import BoxModel, held_components
+from squeezefilm.physics.plate.elements.cross_section import (
+    CrossSection,
+    Springs,
+    Weight,
+    code_parts,
+    cross_section,
+    potential_base,
+)
+from squeezefilm.physics.plate.elements.lobatto import line_matrices
+
+# Vectors that operators are applied to at once: of more, what lies between outgrows the caches.
+_TOGETHER = 32
+
+
+class Slabs:
+    """The discretised model: `codes` of the unknowns of each slice and the slice matrices."""
+
+    def __init__(self, model: BoxModel) -> None:
+        self.model = model
+        self._number()
+
+    @functools.cached_property
+    def sections(self) -> list[CrossSection]:
+        """The matrices of every slice."""
+        return self._sliced[0]
+
+    @functools.cached_property
+    def patterns(self) -> list[bytes]:
+        """What every slice is like, but for the numbers of its ceramics."""
+        return self._sliced[1]
+
+    @functools.cached_property
+    def _sliced(self) -> tuple[list[CrossSection], list[bytes]]:
+        model = self.model
+        patterns: list[bytes] = []
+        found: list[CrossSection] = []
+        sections: dict[bytes, CrossSection] = {}
+        # Slices that differ only in the numbers of their ceramics share their matrices.
+        shapes: dict[bytes, CrossSection] = {}
+        for e in range(model.x.elements):
+            exact, shape = _pattern(model, e)
+            if exact not in sections:
+                codes = None
+                if shape in shapes and len(model.electrodes) > 1:
+                    codes = _renumbered(model, shapes[shape], e)
+                sections[exact] = codes or cross_section(model, e)
+                shapes.setdefault(shape, sections[exact])
+            found.append(sections[exact])
+            patterns.append(shape)
+        return found, patterns
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Megabytes that are made anew in milliseconds, where anybody multiplies by them.
+        made_anew = ("sections", "patterns", "_sliced", "_alike")
+        return {name: one for name, one in vars(self).items() if name not in made_anew}
+
+    def _number(self) -> None:
+        x = self.model.x
+        count = x.nodes.size
+        parts: list[list[si.IntArray]] = [[] for _ in range(count)]
+        for e, section in enumerate(self.sections):
+            for a in range(x.orders[e] + 1):
+                parts[x.first_node[e] + a].append(section.codes)
+        self.codes: list[si.IntArray] = []
+        for some in parts:
+            self.codes.append(functools.reduce(np.union1d, some) if len(some) > 1 else some[0])
+        self.sizes = [codes.size for codes in self.codes]
+        self.offsets = [int(k) for k in np.concatenate([[0], np.cumsum(self.sizes)])]
+        self.unknowns = self.offsets[-1]
+        # Unknowns that the conditions on x− and x+ hold at zero stay in the count, so that cells
+        # at the ends of the plate are like any other.
+        self.held = np.zeros(self.unknowns, dtype=bool)
+        for n, condition in ((0, self.model.ends[0]), (count - 1, self.model.ends[1])):
+            component = self.parts[n][0]
+            at = slice(self.offsets[n], self.offsets[n + 1])
+            self.held[at] |= np.isin(component, held_components(condition, 0))
+
+    def places(self, element: int, local: int) -> si.IntArray:
+        """Where the unknowns of an element's section stand in the slice of its node `local`."""
+        codes = self.codes[self.model.x.first_node[element] + local]
+        mine = self.sections[element].codes
+        return np.arange(mine.size) if codes.size == mine.size else np.searchsorted(codes, mine)
+
+    @functools.cached_property
+    def components(self) -> si.IntArray:
+        """The component (0–2 displacement, 3 potential) of every unknown."""
+        return np.concatenate([part for part, _, _ in self.parts])
+
+    @functools.cached_property
+    def parts(self) -> list[tuple[si.IntArray, si.IntArray, si.IntArray]]:
+        """Component, y function and z function of every slice's unknowns."""
+        known: dict[int, tuple[si.IntArray, si.IntArray, si.IntArray]] = {}
+        return [known.setdefault(id(codes), code_parts(self.model, codes)) for codes in self.codes]
+
+    @functools.cached_property
+    def _element_places(self) -> list[list[si.IntArray]]:
+        x = self.model.x
+        return [
+            [self.offsets[x.first_node[e] + a] + self.places(e, a) for a in range(x.orders[e] + 1)]
+            for e in range(x.elements)
+        ]
+
+    @functools.cached_property
+    def electrode_columns(self) -> tuple[si.FloatArray, si.FloatArray]:
+        """G (unknowns × electrodes) and C (electrodes²): the force of one volt on the unknowns is
+        −G, and the charge on the electrodes is −(Gᵀ x + C V)."""
+        number = len(self.model.electrodes)
+        G, C = np.zeros((self.unknowns, number)), np.zeros((number, number))
+        for e, section in enumerate(self.sections):
+            if not section.electrodes:
+                continue
+            M, D, _ = self._lines(e)
+            columns = np.array(section.electrodes, dtype=np.int64)
+            for a in range(M.shape[0]):
+                start = self.offsets[self.model.x.first_node[e] + a]
+                part = M[a].sum() * section.g0 + D[a].sum() * section.g1
+                G[np.ix_(start + self.places(e, a), columns)] += part
+            C[np.ix_(columns, columns)] += M.sum() * section.c0
+        G[self.held] = 0
+        return G, C
+
+    def _lines(self, element: int) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
+        x = self.model.x
+        return line_matrices(x.edges[element + 1] - x.edges[element], x.orders[element])
+
+    def mass_times(self, U: si.FloatArray) -> si.FloatArray:
+        """M U for U of shape (unknowns, vectors); potentials have no mass."""
+        return self._apply(U, self.sections, mass=True)
+
+    def stiffness_times(
+        self, U: si.FloatArray, sections: list[CrossSection] | None = None
+    ) -> si.FloatArray:
+        """K U, or with other slice matrices (see `weighted_sections`)."""
+        return self._apply(U, sections or self.sections, mass=False)
+
+    def weighted_sections(self, weight: Weight, springs: Springs) -> list[CrossSection]:
+        """Slice matrices with scaled constants: for energy shares and losses."""
+        made: dict[int, CrossSection] = {}
+        out = []
+        for e, section in enumerate(self.sections):
+            if id(section) not in made:
+                made[id(section)] = cross_section(self.model, e, weight, springs=springs)
+            out.append(made[id(section)])
+        return out
+
+    def _apply(self, U: si.FloatArray, sections: list[CrossSection], mass: bool) -> si.FloatArray:
+        if U.shape[1] > _TOGETHER:
+            some = [U[:, k : k + _TOGETHER] for k in range(0, U.shape[1], _TOGETHER)]
+            return np.concatenate([self._apply(part, sections, mass) for part in some], axis=1)
+        U = np.where(self.held[:, None], 0, U)
+        out = np.zeros_like(U)
+        for elements, places, lines in self._alike:
+            # All elements that share a slice and an order at once.
+            part = self._group_times(lines, sections[elements[0]], U[places], mass)
+            for number in range(len(elements)):
+                for a in range(places.shape[1]):
+                    out[places[number, a]] += part[:, number, a]
+        out[self.held] = 0
+        return out
+
+    @functools.cached_property
+    def _alike(self) -> list[tuple[list[int], si.IntArray, tuple[si.FloatArray, ...]]]:
+        """Elements that share a slice and an order: which, the places of their unknowns (elements,
+        nodes, unknowns of the slice), and their integrals along x."""
+        groups: dict[tuple[int, int], list[int]] = {}
+        for e, section in enumerate(self.sections):
+            groups.setdefault((id(section), self.model.x.orders[e]), []).append(e)
+        found: list[tuple[list[int], si.IntArray, tuple[si.FloatArray, ...]]] = []
+        for elements in groups.values():
+            places = np.stack([np.stack(self._element_places[e]) for e in elements])
+            M, D, S = (np.stack(some) for some in zip(*map(self._lines, elements), strict=True))
+            found.append((elements, places, (M, D, S)))
+        return found
+
+    def _group_times(
+        self,
+        lines: tuple[si.FloatArray, ...],
+        section: CrossSection,
+        local: si.FloatArray,
+        mass: bool,
+    ) -> si.FloatArray:
+        """The mass or stiffness of elements of one slice and order times their own unknowns, which
+        come as (elements, nodes, unknowns of the slice, vectors) and go with the third first."""
+        M, D, S = lines
+        count, nodes, n, vectors = local.shape
+        flat = local.reshape(count, nodes, n * vectors)
+
+        def term(line: si.FloatArray, matrix: sparse.csr_array | sparse.csc_array) -> si.FloatArray:
+            along = (line @ flat).reshape(count * nodes, n, vectors).transpose(1, 0, 2)
+            return np.asarray(matrix @ along.reshape(n, -1))
+
+        if mass:
+            out = term(M, section.inertia)
+        else:
+            P2, P1, P0 = section.stiffnesses
+            out = term(S, P2)
+            out += term(D, P1)
+            out += term(D.transpose(0, 2, 1), P1.T)
+            out += term(M, P0)
+        return out.reshape(n, count, nodes, vectors)
+
+    def grid(self, vector: si.FloatArray) -> si.FloatArray:
+        """A vector's displacements: values at the x nodes, hierarchic coefficients along y and z;
+        shape (x nodes, y functions, z functions, 3), zero where empty."""
+        model = self.model
+        shape = (model.x.nodes.size, model.y.nodes.size, model.z.nodes.size, 3)
+        out = np.zeros(shape, dtype=vector.dtype)
+        for n, (component, iy, iz) in enumerate(self.parts):
+            moving = component < 3
+            part = vector[self.offsets[n] : self.offsets[n + 1]][moving]
+            out[n, iy[moving], iz[moving], component[moving]] = part
+        return out
+
+
+def relabelled(ceramic: si.IntArray) -> si.IntArray:
+    """Ceramic numbers replaced by their order of first appearance."""
+    seen = {n: k for k, n in enumerate(dict.fromkeys(ceramic[ceramic >= 0].tolist()))}
+    return np.array([seen.get(n, -1) for n in ceramic.ravel().tolist()]).reshape(ceramic.shape)
+
+
+def _pattern(model: BoxModel, e: int) -> tuple[bytes, bytes]:
+    springs = repr(
+        [f for f in model.foundations if f.x_elements[0] <= e < f.x_elements[1]]
+    ).encode()
+    planes = repr(
+        [
+            model.electrodes[n]
+            for n in dict.fromkeys(model.ceramic[e].ravel().tolist())
+            if 0 <= n < len(model.electrodes)
+        ]
+    ).encode()
+    medium = model.medium[e].tobytes()
+    exact = medium + model.ceramic[e].tobytes() + planes + springs
+    return exact, medium + relabelled(model.ceramic[e]).tobytes() + planes + springs
+
+
+def _renumbered(model: BoxModel, section: CrossSection, element: int) -> CrossSection | None:
+    """The slice of `element`, from one that differs only in the numbers of its ceramics.
+
+    None where the unknowns would change their order, so that it has to be assembled anew.
+    """
+    own = model.ceramic[element].ravel().tolist()
+    numbers = [n for n in dict.fromkeys(own) if n >= 0]
+    component, iy, iz = code_parts(model, section.codes)
+    electric = component == 3
+    base = potential_base(model)
+    ceramics = max(len(model.electrodes), 1)
+    old = (section.codes[electric] - base) % ceramics
+    # Ceramics in the order of their number, here and there, must be the same ones.
+    before, after = sorted(section.electrodes), sorted(numbers)
+    if len(before) != len(after):
+        return None
+    new = np.array(after, dtype=np.int64)[np.searchsorted(before, old)] if before else old
+    codes = section.codes.copy()
+    codes[electric] = base + (iy * model.z.nodes.size + iz)[electric] * ceramics + new
+    return dataclasses.replace(section, codes=codes, electrodes=tuple(after))

@@ -1,0 +1,217 @@
+"""What a ring or a disc is made of and where, in its (r, z) half section, and how it is driven."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+from scipy.sparse import csgraph
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import GeometryError, InputError
+from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
+from squeezefilm.physics.plate.layout import DiscPlate
+from squeezefilm.physics.plate.ring.materials import require_decoupled
+
+_M = si.Unit("m")
+# Half a nanometre: what two edges may differ by and still be the same edge.
+_SAME = 5e-10
+
+
+@si.checked_numbers
+@dataclass(frozen=True, eq=False)
+class RingLayer:
+    """One rectangle of the (r, z) section, revolved: radii and heights in metres.
+
+    A piezoelectric layer has electrodes on the whole of its lower and upper face, and is bonded,
+    earthed, at its upper face unless `driven_face` is "upper".
+    """
+
+    inner_radius: Annotated[si.Metre, si.AtLeast(0)]
+    outer_radius: si.Metre
+    bottom: si.Metre
+    top: si.Metre
+    solid: Medium
+    driven_face: Literal["lower", "upper"] = "lower"
+
+    def __post_init__(self) -> None:
+        si.require("outer_radius", self.outer_radius, _M, above=self.inner_radius)
+        si.require("top", self.top, _M, above=self.bottom)
+        require_decoupled(self.solid)
+
+    @property
+    def thickness(self) -> si.Metre:
+        """Top minus bottom."""
+        return self.top - self.bottom
+
+
+@si.checked_numbers
+@dataclass(frozen=True, eq=False)
+class AnnularSection:
+    """Layers that together make a ring or a disc, free everywhere.
+
+    `wave_diameter` is where wavelengths are measured: by default twice the mean radius of the
+    surface. Raises `GeometryError` for layers that overlap or do not hang together.
+    """
+
+    layers: tuple[RingLayer, ...]
+    wave_diameter: Annotated[si.Metre, si.Above(0)] | None = None
+
+    def __post_init__(self) -> None:
+        if not self.layers:
+            raise GeometryError("layers is empty; a ring needs at least one")
+        count = len(self.layers)
+        touching = np.eye(count, dtype=bool)
+        for i, j in itertools.combinations(range(count), 2):
+            a, b = self.layers[i], self.layers[j]
+            wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
+            high = min(a.top, b.top) - max(a.bottom, b.bottom)
+            if wide > _SAME and high > _SAME:
+                raise GeometryError(
+                    f"ring layers {i + 1} and {j + 1} overlap by "
+                    f"{si.format_quantity(wide, _M)} × {si.format_quantity(high, _M)}; move one of "
+                    "them"
+                )
+            touching[i, j] = min(wide, high) > -_SAME and max(wide, high) > _SAME
+        _, piece = csgraph.connected_components(touching, directed=False)
+        if np.any(piece != piece[0]):
+            loose = int(np.argmax(piece != piece[0]))
+            raise GeometryError(
+                f"ring layer {loose + 1} does not touch the others; let them share a face"
+            )
+
+    @property
+    def thickness(self) -> si.Metre:
+        """Overall height."""
+        return self.surface_height - min(layer.bottom for layer in self.layers)
+
+    @property
+    def mass(self) -> si.Kilogram:
+        """The mass of the whole body."""
+        return math.pi * sum(
+            a.solid.density * a.thickness * (a.outer_radius**2 - a.inner_radius**2)
+            for a in self.layers
+        )
+
+    @property
+    def shear_times(self) -> dict[str, si.Second]:
+        """How long shear takes through each layer (s), by the name of its medium; the thickest of
+        several of a name."""
+        times: dict[str, si.Second] = {}
+        for layer in self.layers:
+            solid = layer.solid
+            stiffness = max(solid.stiffness[3, 3], solid.stiffness[4, 4])
+            time = layer.thickness * math.sqrt(solid.density / stiffness)
+            times[solid.name] = max(time, times.get(solid.name, 0.0))
+        return times
+
+    @property
+    def surface_height(self) -> si.Metre:
+        """The z of the surface that is touched: the highest one."""
+        return max(layer.top for layer in self.layers)
+
+    @property
+    def surface_radii(self) -> tuple[si.Metre, si.Metre]:
+        """Inner and outer radius of the surface that is touched."""
+        at = [x for x in self.layers if abs(x.top - self.surface_height) <= _SAME]
+        return min(x.inner_radius for x in at), max(x.outer_radius for x in at)
+
+    @property
+    def mean_diameter(self) -> si.Metre:
+        """Where wavelengths are measured."""
+        return self.wave_diameter or sum(self.surface_radii)
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class SectorDrive:
+    """Which sectors of the ceramic ring one channel drives: (start, end, polarity) in radians.
+
+    Polarity is the direction of poling (+1 or −1) under one common electrode, or the sign of its
+    voltage. Raises `GeometryError` for sectors that overlap.
+    """
+
+    sectors: tuple[tuple[si.Radian, si.Radian, int], ...]
+
+    def __post_init__(self) -> None:
+        if not self.sectors:
+            raise GeometryError("sectors is empty; a channel needs at least one")
+        for start, end, polarity in self.sectors:
+            si.require("sector start", start, si.Unit("rad"))
+            si.require(
+                "sector end", end, si.Unit("rad"), above=start, at_most=start + 2 * math.pi + 1e-9
+            )
+            if polarity not in (1, -1):
+                raise InputError("polarity must be 1 or -1", quantity="polarity")
+        ordered = sorted(self.sectors)
+        for (_, end, _), (start, _, _) in itertools.pairwise(ordered):
+            if end > start + 1e-9:
+                raise GeometryError("sectors overlap; let each end where the next starts")
+        if ordered[-1][1] - ordered[0][0] > 2 * math.pi + 1e-9:
+            raise GeometryError("sectors overlap: together they go round more than once")
+
+    @property
+    def angle(self) -> si.Radian:
+        """The angle that the electrodes cover."""
+        return sum(end - start for start, end, _ in self.sectors)
+
+    @si.checked_numbers
+    def coefficient(self, harmonic: int) -> complex:
+        """∫ s(θ) exp(−i m θ) dθ of the polarity s; its size is what drives cos m(θ − θ0).
+
+        Alternate sectors all round give 4 for their own harmonic, one of full poling 2π for m = 0.
+        """
+        if harmonic == 0:
+            return complex(sum(sign * (end - start) for start, end, sign in self.sectors))
+        total = sum(
+            sign * (np.exp(-1j * harmonic * end) - np.exp(-1j * harmonic * start))
+            for start, end, sign in self.sectors
+        )
+        return complex(total * 1j / harmonic)
+
+
+@si.checked_numbers
+def alternate_sectors(
+    count: Annotated[int, si.AtLeast(1)],
+    width: Annotated[si.Radian, si.Above(0.0)],
+    start: si.Radian = 0.0,
+) -> SectorDrive:
+    """`count` neighbouring sectors of one width, of alternate poling: the channel of a motor.
+
+    A motor in B(0, m) has sectors of π/m; its one channel has fewer than 2m of them, since the
+    other channel and the gaps between the two take the rest.
+    """
+    return SectorDrive(
+        tuple(
+            (start + k * width, start + (k + 1) * width, 1 if k % 2 == 0 else -1)
+            for k in range(count)
+        )
+    )
+
+
+def full_drive() -> SectorDrive:
+    """One electrode all round: drives the axisymmetric modes of a disc."""
+    return SectorDrive(((0.0, 2 * math.pi, 1),))
+
+
+def bonded_disc(disc: DiscPlate) -> AnnularSection:
+    """The section of a disc display (T-PaD): a glass disc with a ceramic disc or ring below.
+
+    The bond is perfect, or a layer of glue. The loss of the whole assembly counts in every
+    material, unless the substrate has its own.
+    """
+    loss_factor = 1 / disc.quality_factor if disc.substrate.quality_factor is None else None
+    inner, outer = disc.ceramic_inner_diameter / 2, disc.ceramic_outer_diameter / 2
+    base, glue = disc.ceramic_thickness, disc.glue
+    piezo = piezoceramic_solid(disc.ceramic, loss_factor)
+    layers = [RingLayer(inner, outer, 0.0, base, piezo)]
+    if glue is not None:
+        top = base + glue.thickness
+        layers.append(RingLayer(inner, outer, base, top, isotropic_solid(glue, loss_factor)))
+        base = top
+    solid, half = isotropic_solid(disc.substrate, loss_factor), disc.inner_diameter / 2
+    layers.append(RingLayer(half, disc.diameter / 2, base, base + disc.thickness, solid))
+    return AnnularSection(tuple(layers), wave_diameter=disc.diameter)

@@ -1,0 +1,134 @@
+"""The first of two meshes: it finds the modes near a frequency or in a band and names them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import BAND_MODES, require_within
+from squeezefilm.physics.plate.elements.krylov import modes_below, modes_near
+from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.solid.electrode_circuits import inverse_with_open
+from squeezefilm.physics.plate.solid.layers import COARSE
+from squeezefilm.physics.plate.solid.mesh import plate_model
+from squeezefilm.physics.plate.solid.model import PlateModel
+from squeezefilm.physics.plate.solid.modes import Label, label_of, surface_shapes
+from squeezefilm.physics.plate.solid.symmetry import Symmetry
+
+
+@dataclass(frozen=True, eq=False)
+class CoarseModes:
+    """Modes of one class on the coarse mesh, with what is taken from it; the `factor` is let go
+    once they are refined."""
+
+    parity: Symmetry
+    solved: PlateModel
+    values: si.FloatArray
+    vectors: si.FloatArray
+    labels: list[Label | None]
+    factor: SlabFactor | None
+
+
+def class_fits(parity: Symmetry, label: Label) -> bool:
+    """Whether a mode with these nodal lines can belong to a class of symmetry."""
+    return all(
+        p is None or p == ("S" if lines % 2 == 0 else "A")
+        for p, lines in zip(parity, label, strict=True)
+    )
+
+
+def coarse_modes(
+    plate: RectangularPlate,
+    parity: Symmetry,
+    centre: float,
+    highest: float,
+    band: tuple[float, float] | None,
+    count: int,
+) -> CoarseModes:
+    """The modes of one class on the coarse mesh: the `count` nearest to `centre` (Hz), or all in a
+    band, their number checked by Sylvester's law where no electrode is open."""
+    solved = plate_model(plate, highest, COARSE, parity)
+    slabs = solved.slabs
+    shift = (2 * np.pi * centre * 1.0007) ** 2
+    factor = SlabFactor(slabs, shift)
+    expected: int | None = None
+    if band is not None:
+        # The coarse mesh is stiffer: look a little beyond the band, and choose later.
+        low, high = 0.98 * band[0], 1.03 * band[1]
+        limits = (2 * np.pi * low) ** 2, (2 * np.pi * high) ** 2
+        opened = any(p.electrode == "open" for p in plate.patches)
+        if not opened:
+            expected = modes_below(slabs, limits[1]) - (
+                modes_below(slabs, limits[0]) if low > 0 else 0
+            )
+            require_within(BAND_MODES, expected, "band", enough="ask for a narrower band")
+
+        def wanted(values: si.FloatArray) -> si.IntArray:
+            inside = np.flatnonzero((values > limits[0]) & (values < limits[1]))
+            # Not there yet: let the iteration go on by asking for what is not found.
+            if expected is not None and inside.size < expected:
+                return np.flatnonzero(values == np.inf)
+            return inside
+
+    else:
+
+        def wanted(values: si.FloatArray) -> si.IntArray:
+            positive = np.flatnonzero(values > (2 * np.pi * 1.0) ** 2)
+            near = positive[np.argsort(np.abs(np.sqrt(values[positive]) - 2 * np.pi * centre))]
+            return np.sort(near[:count])
+
+    if expected == 0:
+        values, vectors = np.zeros(0), np.zeros((slabs.unknowns, 0))
+    else:
+        start = np.random.default_rng(1).standard_normal((slabs.unknowns, 4))
+        start[(slabs.components == 3) | slabs.held] = 0
+        solve = inverse_with_open(solved, factor)
+        pairs = modes_near(slabs, solve, shift, wanted, start, tolerance=1e-6)
+        values, vectors = pairs.values, pairs.vectors
+    x, y, surface = surface_shapes(solved, vectors)
+    labels = [label_of(one, x, y) for one in surface]
+    return CoarseModes(parity, solved, values, vectors, labels, factor)
+
+
+def chosen_modes(
+    found: list[CoarseModes],
+    near: float | None,
+    band: tuple[float, float] | None,
+    mode: Label | None,
+    count: int,
+) -> list[si.IntArray]:
+    """The indices of the modes to refine, for each class."""
+    frequencies = [np.sqrt(one.values) / (2 * np.pi) for one in found]
+    if mode is not None:
+        out = []
+        for one in found:
+            hits = [i for i, label in enumerate(one.labels) if label == mode]
+            # Of several with these nodal lines those nearest to the guess: a finer mesh, which
+            # mixes neighbours otherwise, shows which of them has the lines.
+            hits.sort(key=lambda i: abs(np.sqrt(one.values[i]) / (2 * np.pi) - (near or 0.0)))
+            out.append(np.sort(np.array(hits[:3], dtype=np.int64)))
+        if not any(o.size for o in out):
+            seen = ", ".join(str(label) for one in found for label in one.labels if label)
+            raise InputError(
+                f"no mode {mode} was found near {near:.0f} Hz (there are {seen}); solve near "
+                "another frequency",
+                quantity="mode",
+            )
+        return out
+    if band is not None:
+        return [np.arange(f.size) for f in frequencies]
+    every = sorted(
+        (
+            (abs(f - (near or 0.0)), c, i)
+            for c, fs in enumerate(frequencies)
+            for i, f in enumerate(fs)
+        )
+    )[:count]
+    return [
+        np.array(sorted(i for _, k, i in every if k == c), dtype=np.int64)
+        for c in range(len(found))
+    ]

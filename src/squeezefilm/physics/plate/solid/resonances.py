@@ -1,0 +1,159 @@
+"""The driven modes that a reduced plate holds: frequency, shape, loss and amplitude per volt.
+
+The space was grown from the drive, so that what the drive cannot move is not among them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.linalg import eigh
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.blas_threads import one_blas_thread
+from squeezefilm.physics.plate.elements.nodal_lines import profiles
+from squeezefilm.physics.plate.solid.modes import Label, label_of, surface_shapes
+from squeezefilm.physics.plate.solid.reduced import ReducedClass
+from squeezefilm.physics.plate.solid.symmetry import Symmetry
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenMode:
+    """One mode that the drive can move, by itself.
+
+    `label` counts nodal lines across the length and across the width (None for motion in the
+    plane) on the shape's dominant product, whose share of the shape's square is `straightness`.
+    `parity` is the class of symmetry. Amplitudes are per volt on the drive at resonance, zero to
+    peak, of this mode alone: `alone_per_volt` at its antinode (see `antinode`).
+    `shape` is w on the upper face, (x, y) on the grid of `surface_shapes`, 1 at its largest.
+    """
+
+    frequency: si.Hertz
+    quality_factor: si.Dimensionless
+    label: Label | None
+    straightness: si.Dimensionless
+    parity: Symmetry
+    alone_per_volt: si.MetrePerVolt
+    shape: si.DimensionlessArray
+
+    @property
+    def name(self) -> str:
+        """The label as people write it, "(8,0)"."""
+        return label_name(self.label)
+
+    @property
+    def moving(self) -> Moving:
+        """What its neighbours are compared by, at its antinode."""
+        half = self.frequency / (2 * self.quality_factor)
+        return Moving(self.name, self.frequency, half, self.alone_per_volt)
+
+
+@si.checked_numbers
+def label_name(label: Label | None) -> str:
+    """Nodal lines across length and width as people write them, "(8,0)"."""
+    return "in plane" if label is None else f"({label[0]},{label[1]})"
+
+
+class Moving(NamedTuple):
+    """A mode by its name, frequency (Hz), half-bandwidth f/2Q (Hz) and amplitude per volt (m/V)."""
+
+    name: str
+    frequency: si.Hertz
+    half_bandwidth: si.Hertz
+    amplitude_per_volt: si.MetrePerVolt
+
+
+@dataclass(frozen=True)
+class Neighbour:
+    """The mode that adds most at another's resonance: its name and frequency, how far it lies from
+    the other in its own half-bandwidths f/2Q, and how much it adds over the other's amplitude."""
+
+    name: str
+    frequency: si.Hertz
+    distance: si.Dimensionless
+    share: si.Dimensionless
+
+
+def strongest_neighbour(own: Moving, others: Iterable[Moving]) -> Neighbour | None:
+    """The mode that adds most at a mode's resonance; None where there is no other, or nothing of
+    the mode itself to compare it with.
+
+    A mode of amplitude A' and half-bandwidth b' adds A'/√(1 + n²) at a distance of n b'.
+    """
+    found: Neighbour | None = None
+    if own.amplitude_per_volt == 0:
+        return None
+    for other in others:
+        distance = abs(other.frequency - own.frequency) / other.half_bandwidth
+        share = other.amplitude_per_volt / (1 + distance**2) ** 0.5 / own.amplitude_per_volt
+        if found is None or share > found.share:
+            found = Neighbour(other.name, other.frequency, distance, share)
+    return found
+
+
+def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[DrivenMode]:
+    """The modes of a reduced class in a band (Hz), ascending.
+
+    Electrodes that are driven or shorted count as shorted, open ones as open, shunted ones as
+    shorted. Amplitudes are Q F φ/ω² with Q from the materials' losses; valid where the reduced
+    space has converged, which is about the band it was made for.
+    """
+    with one_blas_thread():
+        opened = [number for number, resistance, _ in part.circuit if np.isinf(resistance)]
+        stiffness = part.stiffness
+        if opened:
+            pull = part.coupling[:, opened]
+            held = part.capacitance[np.ix_(opened, opened)]
+            stiffness = stiffness - pull @ np.linalg.solve(held, pull.T)
+        squares, turn = eigh(stiffness, part.mass)
+        inside = (squares > (2 * np.pi * band[0]) ** 2) & (squares < (2 * np.pi * band[1]) ** 2)
+        squares, turn = squares[inside], turn[:, inside]
+        if not squares.size:
+            return []
+        forces = turn.T @ (part.coupling @ part.drive)
+        losses = np.einsum("ij,ik,kj->j", turn, part.loss, turn) / squares
+        x, y, surface = surface_shapes(part.solved, part.basis @ turn)
+    found = []
+    for square, force, loss, top in zip(squares, forces, losses, surface, strict=True):
+        w = top[:, :, 2]
+        largest = float(np.max(np.abs(w)))
+        per_volt = float(abs(force) / (max(loss, 1e-30) * square))
+        label = label_of(top, x, y)
+        found.append(
+            DrivenMode(
+                frequency=float(np.sqrt(square) / (2 * np.pi)),
+                quality_factor=float(1 / max(loss, 1e-30)),
+                label=label,
+                straightness=profiles(w)[2],
+                parity=part.solved.parity,
+                alone_per_volt=per_volt * antinode(w, label),
+                shape=w / max(largest, 1e-300),
+            )
+        )
+    return found
+
+
+def antinode(w: si.FloatArray, label: Label | None = None) -> float:
+    """|w| at a mode's antinode, of w on an even grid (x, y) of the face.
+
+    Of a mode with nodal lines across one side only: the largest lobe of the middle line that
+    crosses them, between the outermost. Of any other: the highest point that is inside the face
+    and not below its neighbours; the highest of all where there is no such point.
+    """
+    size = np.abs(w)
+    if label is not None and min(label) == 0 and max(label) > 1:
+        line = w.T if label[0] else w
+        middle = (line[(len(line) - 1) // 2] + line[len(line) // 2]) / 2
+        turns = np.flatnonzero(np.signbit(middle[1:]) != np.signbit(middle[:-1]))
+        if turns.size > 1:
+            return float(np.max(np.abs(middle[turns[0] + 1 : turns[-1] + 1])))
+    if min(size.shape) < 3:
+        return float(np.max(size))
+    around = sliding_window_view(size, (3, 3)).max(axis=(2, 3))
+    inner = size[1:-1, 1:-1]
+    peaks = inner[inner == around]
+    return float(np.max(peaks)) if np.any(peaks > 0) else float(np.max(size))

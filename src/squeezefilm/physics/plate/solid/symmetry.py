@@ -1,0 +1,121 @@
+"""Mirror symmetry of a plate and of its drive: the classes S and A along each axis."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from typing import Literal
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
+
+Parity = Literal["S", "A"]
+Symmetry = tuple[Parity | None, Parity | None]
+"""A class of symmetry along x and along y; None where the plate is taken whole."""
+SNAP = 1e-9  # m; edges nearer than this are one
+
+
+def symmetric_axes(plate: RectangularPlate) -> tuple[bool, bool]:
+    """Whether geometry and supports are their own mirror image along x and along y."""
+    return tuple(mirror_map(plate, axis) is not None for axis in (0, 1))  # type: ignore[return-value]
+
+
+def mirror_map(plate: RectangularPlate, axis: int) -> list[int] | None:
+    """The patch that each patch becomes under reflection, or None if it becomes none."""
+    edges = ("left", "right") if axis == 0 else ("front", "back")
+    if (edges[0] in plate.clamped_edges) != (edges[1] in plate.clamped_edges):
+        return None
+    span = (plate.length, plate.width)[axis]
+
+    def place(part: CeramicPatch | FoamSupport, mirrored: bool) -> tuple[int, ...]:
+        start, extent = [part.x, part.y], [part.length, part.width, part.thickness]
+        if mirrored:
+            start[axis] = span - start[axis] - extent[axis]
+        return tuple(round(v / SNAP / 4) for v in (*start, *extent))
+
+    def alike(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
+        return all(abs(p - q) <= 1 for p, q in zip(a, b, strict=True))
+
+    out = []
+    for patch in plate.patches:
+        want = place(patch, True)
+        found = [
+            i
+            for i, other in enumerate(plate.patches)
+            if alike(place(other, False), want)
+            and (other.face, other.electrode, other.shunt_resistance)
+            == (patch.face, patch.electrode, patch.shunt_resistance)
+        ]
+        if not found:
+            return None
+        out.append(found[0])
+    springs = [(place(s, False), dataclasses.replace(s, x=0.0, y=0.0)) for s in plate.supports]
+    for s in plate.supports:
+        want, kind = place(s, True), dataclasses.replace(s, x=0.0, y=0.0)
+        if not any(alike(at, want) and other == kind for at, other in springs):
+            return None
+    return out
+
+
+def drive_signs(plate: RectangularPlate) -> si.FloatArray:
+    """The sign of each patch's potential under the drive; 0 where it is not driven."""
+    return np.array([float(patch.drive_sign) for patch in plate.patches])
+
+
+def only_stretches(plate: RectangularPlate) -> bool:
+    """Whether plate and drive are their own image in the plate's middle plane: every ceramic and
+    support has its like on the other face, with the same sign. Such a drive bends nothing."""
+    other_face = {"bottom": "top", "top": "bottom"}
+
+    def place(part: CeramicPatch | FoamSupport) -> tuple[int, ...]:
+        sizes = part.x, part.y, part.length, part.width, part.thickness
+        return tuple(round(size / SNAP / 4) for size in sizes)
+
+    def kind(part: CeramicPatch | FoamSupport) -> tuple[object, ...]:
+        if isinstance(part, FoamSupport):
+            return (part.stiffness_per_area, part.quality_factor)
+        return (part.drive_sign, part.electrode, part.shunt_resistance)
+
+    def mirrored(part: CeramicPatch | FoamSupport, other: CeramicPatch | FoamSupport) -> bool:
+        near = all(abs(a - b) <= 1 for a, b in zip(place(part), place(other), strict=True))
+        return near and other.face == other_face[part.face] and kind(part) == kind(other)
+
+    groups: tuple[tuple[CeramicPatch | FoamSupport, ...], ...] = (plate.patches, plate.supports)
+    return all(any(mirrored(part, other) for other in group) for group in groups for part in group)
+
+
+def drive_classes(plate: RectangularPlate) -> list[Symmetry]:
+    """The classes of symmetry that the drive excites: those on which its signs have a part, and the
+    first of all where nothing is driven."""
+    signs = drive_signs(plate)
+    every, excited = all_classes(plate), []
+    for parity in every:
+        part = signs
+        for axis in (0, 1):
+            mirror = mirror_map(plate, axis)
+            if mirror is not None:
+                part = part + (1 if parity[axis] == "S" else -1) * part[mirror]
+        if np.any(part != 0):
+            excited.append(parity)
+    return excited or every[:1]
+
+
+def all_classes(plate: RectangularPlate) -> list[Symmetry]:
+    """Every class of symmetry that the plate has: four, two or one."""
+    options: list[list[Parity | None]] = [
+        ["S", "A"] if axis else [None] for axis in symmetric_axes(plate)
+    ]
+    return list(itertools.product(options[0], options[1]))
+
+
+def told_of(parity: Symmetry) -> str:
+    """Which modes a class of symmetry holds, for those who are told how far a solve is."""
+    moves = {"S": "alike", "A": "opposite"}
+    said = [
+        f"{moves[own]} on both halves of the {side}"
+        for own, side in zip(parity, ("length", "width"), strict=True)
+        if own is not None
+    ]
+    return f"modes that move {' and '.join(said)}" if said else "all modes"

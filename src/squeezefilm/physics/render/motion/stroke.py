@@ -1,0 +1,182 @@
+"""Strokes: a finger moving to and fro over a straight line, at constant speed or softly."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Protocol
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.hard_limits import (
+    FINGER_SPEED,
+    MOTION_SAMPLES,
+    PASS_DURATION,
+    STROKE_LENGTH,
+    STROKE_START,
+)
+
+# Times made by dividing integers by a rate may pass the end by a rounding error.
+_ROUNDING = 1e-12
+
+
+class Trajectory(Protocol):
+    """A finger's motion along x: how long it lasts and where it is. `Stroke` is one."""
+
+    @property
+    def duration(self) -> si.Second:
+        """Time the motion takes (s)."""
+        ...
+
+    @si.checked_numbers
+    def position(self, t: si.SecondLike, /) -> si.MetreArray:
+        """Position at time t (m), 0 ≤ t ≤ duration, in the shape of `t`."""
+        ...
+
+
+class _Passes:
+    """Passes of one length along x, there and back."""
+
+    __slots__ = ()
+    length: si.Metre
+    passes: int
+    start: si.Metre
+    pass_duration: si.Second
+
+    @property
+    def duration(self) -> si.Second:
+        """Time the whole motion takes (s)."""
+        return self.passes * self.pass_duration
+
+    def _within(self, t: si.SecondLike) -> si.FloatArray:
+        latest = self.duration * (1 + _ROUNDING)
+        si.require("t", t, si.Unit("s"), at_least=0.0, at_most=latest)
+        return np.asarray(t, dtype=float)
+
+    def _placed(self, along: si.FloatArray, done: si.FloatArray) -> si.MetreArray:
+        """x (m) where a pass is done up to `along` (m), after whole passes `done`."""
+        return np.asarray(self.start + np.where(done % 2 == 0, along, self.length - along))
+
+
+@reads_text
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class Stroke(_Passes):
+    """A finger's motion along x: `passes` passes of `length` at constant `speed`, turning at once.
+
+    Fingers explore at 10 to 200 mm/s; 77 to 86 mm/s were measured (Smith, Gosselin & Houde 2002,
+    PHYSICS §5). The immediate turn is a simplification: a hand takes some 100 ms to reverse, in
+    which speed, and so the lag in mm, is lower than here.
+
+    Args:
+        speed: along the path (m/s); above 0, at most 5 m/s.
+        length: of one pass (m); above 0, at most 10 m.
+        passes: 1 is there, 2 there and back, and so on.
+        start: x where the first pass begins (m); it goes towards +x.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    speed: Annotated[si.MetrePerSecond, FINGER_SPEED]
+    length: Annotated[si.Metre, STROKE_LENGTH] = 0.04
+    passes: Annotated[int, si.AtLeast(1)] = 1
+    start: Annotated[si.Metre, STROKE_START] = 0.0
+
+    @property
+    def pass_duration(self) -> si.Second:  # type: ignore[override]
+        """Time one pass takes (s)."""
+        return self.length / self.speed
+
+    @si.checked_numbers
+    def position(self, t: si.SecondLike) -> si.MetreArray:
+        """Position x of the finger at time `t` since the stroke began (m), in the shape of `t`.
+
+        Raises:
+            InputError: a time before the stroke or after its end.
+        """
+        path, done = self._path(t)
+        along = np.clip(path - done * self.length, 0.0, self.length)
+        return self._placed(along, done)
+
+    @si.checked_numbers
+    def velocity(self, t: si.SecondLike) -> si.MetrePerSecondArray:
+        """Velocity along x at time `t` (m/s), in the shape of `t`: ±`speed`, negative on the way
+        back; at a turn that of the pass that begins, at the end that of the last.
+
+        Raises:
+            InputError: a time before the stroke or after its end.
+        """
+        _, done = self._path(t)
+        return np.asarray(np.where(done % 2 == 0, self.speed, -self.speed))
+
+    def _path(self, t: si.SecondLike) -> tuple[si.MetreArray, si.FloatArray]:
+        """The way gone (m) and the whole passes done by the time `t`."""
+        path = np.minimum(self._within(t), self.duration) * self.speed
+        return np.asarray(path), np.minimum(np.floor(path / self.length), self.passes - 1)
+
+    @si.checked_numbers
+    def sampled(
+        self, rate: Annotated[si.Hertz, si.Above(0.0)]
+    ) -> tuple[si.SecondArray, si.MetreArray]:
+        """Times 0, 1/rate, 2/rate … within the stroke (s), and the positions at them (m).
+
+        The last sample lies less than 1/rate before the stroke's end.
+
+        Raises:
+            InputError: a rate that is not above 0, too low for two samples, or so high that the
+                stroke would take more than 20 million samples.
+        """
+        steps = self.duration * rate * (1 + _ROUNDING)
+        if not 1 <= steps < MOTION_SAMPLES.most:
+            lowest = si.format_quantity(1 / self.duration, si.Unit("Hz"))
+            highest = si.format_quantity(MOTION_SAMPLES.most / self.duration, si.Unit("Hz"))
+            raise InputError(
+                f"rate = {si.format_quantity(rate, si.Unit('Hz'))} cannot be used for a stroke of "
+                f"{si.format_quantity(self.duration, si.Unit('s'))}: it must be at least {lowest} "
+                f"and below {highest}"
+            )
+        times = np.arange(math.floor(steps) + 1) / rate
+        return times, self.position(times)
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class MinimumJerkStroke(_Passes):
+    """A hand's motion along x: `passes` passes of `length`, each of least jerk, to and fro.
+
+    Passes speed up, slow down and turn softly. Reaching movements of a hand follow x =
+    L (10 s³ − 15 s⁴ + 6 s⁵), s = t/T, closely (T. Flash and N. Hogan 1985,
+    10.1523/JNEUROSCI.05-07-01688.1985). As a trajectory it is what an estimator that believes in
+    white jerk has to live with.
+
+    Args:
+        length: of one pass (m); above 0, at most 10 m.
+        pass_duration: time one pass takes (s); above 0.
+        passes: 1 is there, 2 there and back, and so on.
+        start: x where the first pass begins (m); it goes towards +x.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    length: Annotated[si.Metre, STROKE_LENGTH] = 0.04
+    pass_duration: Annotated[si.Second, PASS_DURATION] = 0.4
+    passes: Annotated[int, si.AtLeast(1)] = 2
+    start: Annotated[si.Metre, STROKE_START] = 0.0
+
+    @si.checked_numbers
+    def position(self, t: si.SecondLike) -> si.MetreArray:
+        """Position x of the finger at time `t` since the motion began (m), in the shape of `t`.
+
+        Raises:
+            InputError: a time before the motion or after its end.
+        """
+        passed = self._within(t) / self.pass_duration
+        done = np.minimum(np.floor(passed), self.passes - 1)
+        s = np.clip(passed - done, 0.0, 1.0)
+        along = self.length * s**3 * (10 + s * (6 * s - 15))
+        return self._placed(along, done)

@@ -1,0 +1,154 @@
+"""The standing wave under the finger: how much of its amplitude a contact meets, place by place.
+
+A plate in a standing wave |cos(πx/λ½)| vibrates at antinodes and rests at nodes, so a texture
+that asks for one amplitude is felt with a ripple of period λ½, half the wavelength. `wave_factor`
+predicts the share of the amplitude a contact meets; `WaveCompensation` gives it to the renderer,
+which divides by it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.texture.coordinate import FARTHEST, X_AXIS, Coordinate, FromPoint
+
+_MOST_FACTORS = 65_536
+
+
+@si.checked_numbers
+def wave_factor(
+    position: si.MetreLike,
+    half_wavelength: Annotated[si.Metre, si.Above(0.0), si.AtMost(FARTHEST)],
+    contact_length: Annotated[si.Metre, si.AtLeast(0.0), si.AtMost(FARTHEST)] = 0.0,
+) -> si.DimensionlessArray:
+    """Mean of |cos(πx/half_wavelength)| over a contact centred at `position` (1), in its shape.
+
+    `contact_length` (m) is the contact's extent along the wave; 0 for a point. Antinodes lie at
+    whole multiples of `half_wavelength` (m). The mean of amplitude, not of friction: it predicts
+    the friction of a contact as far as friction is linear in amplitude over it. From the integral
+    of |cos u|, which is 2n + sin(u − nπ) with n = ⌊u/π + ½⌋.
+
+    Raises:
+        InputError: a position that is not finite, a half wavelength not above 0, a negative
+            contact.
+    """
+    u = math.pi * np.asarray(position, dtype=float) / half_wavelength
+    half = 0.5 * math.pi * contact_length / half_wavelength
+    # Below this width the difference loses more to rounding than the point does to its width.
+    if half < 1e-5:
+        return np.asarray(np.abs(np.cos(u)))
+    return np.asarray((_area(u + half) - _area(u - half)) / (2.0 * half))
+
+
+def _area(u: si.FloatArray) -> si.FloatArray:
+    n = np.floor(u / math.pi + 0.5)
+    return np.asarray(2.0 * n + np.sin(u - n * math.pi))
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class WaveCompensation:
+    """By what share the wave is weaker place by place; a renderer divides amplitudes by it.
+
+    Build it with `over_contact` or `from_ripple`.
+
+    Args:
+        half_wavelength: the period (m); from 1 µm to 10 m.
+        factors: local amplitude over that at the strongest place (1), evenly spaced over one
+            period from coordinate 0; above 0, at most 1. The least is the greatest gain's inverse.
+        along: the coordinate across the nodal lines; no distance from a point.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    half_wavelength: Annotated[si.Metre, si.AtLeast(1e-06), si.AtMost(FARTHEST)]
+    factors: Annotated[tuple[si.Dimensionless, ...], si.Above(0.0), si.AtMost(1.0)]
+    along: Coordinate = X_AXIS
+
+    def __post_init__(self) -> None:
+        if not 2 <= len(self.factors) <= _MOST_FACTORS:
+            raise InputError(f"{len(self.factors)} factors cannot be used; give 2 to 65 536")
+        if isinstance(self.along, FromPoint):
+            raise InputError("a wave runs along a direction; give AlongX, AlongY, AlongDirection")
+
+    @classmethod
+    @si.checked_numbers
+    def over_contact(
+        cls,
+        half_wavelength: si.Metre,
+        contact_length: si.Metre,
+        *,
+        least: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.1,
+        along: Coordinate = X_AXIS,
+        count: Annotated[int, si.AtLeast(2), si.AtMost(_MOST_FACTORS)] = 256,
+    ) -> WaveCompensation:
+        """From `wave_factor`, divided by its largest; `least` bounds what is made up for.
+
+        Where the contact meets less than the share `least`, the ripple is made up for in part.
+
+        Raises:
+            InputError: a value outside its range.
+        """
+        places = np.arange(count) / count * half_wavelength
+        found = wave_factor(places, half_wavelength, contact_length)
+        factors = np.clip(found / np.max(found), least, 1.0)
+        return cls(half_wavelength, tuple(factors.tolist()), along)
+
+    @classmethod
+    @si.checked_numbers
+    def from_ripple(
+        cls,
+        position: si.MetreArray,
+        relative_friction: si.DimensionlessArray,
+        inverse: FrictionInverse,
+        half_wavelength: si.Metre,
+        *,
+        least: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.1,
+        along: Coordinate = X_AXIS,
+    ) -> WaveCompensation:
+        """From the friction of a pad that crosses the wave at one drive, computed or measured.
+
+        `position` (m) are evenly spaced places over one `half_wavelength` from 0 on, its end left
+        out; `relative_friction` (1) the friction there; `inverse` that of the pad where friction
+        falls most. The amplitude that explains the friction at each place, over the largest such,
+        is the factor. Exact where the place acts as a factor on the amplitude.
+
+        Raises:
+            InputError: places that are not such, or a friction the inverse does not reach.
+        """
+        places = np.asarray(position, dtype=float)
+        friction = np.asarray(relative_friction, dtype=float)
+        even = np.arange(places.size) / max(places.size, 1) * half_wavelength
+        if places.ndim != 1 or places.shape != friction.shape or places.size < 4:
+            raise InputError("position and relative_friction must be two lists of one length, ≥ 4")
+        if np.max(np.abs(places - even)) > 1e-6 * half_wavelength:
+            raise InputError(
+                "position must be evenly spaced from 0 over one half wavelength, its end left out"
+            )
+        amplitude = inverse.amplitude_for(friction)
+        largest = float(np.max(amplitude))
+        if largest == 0.0:
+            raise InputError("nothing vibrates at any of these places, so there is no ripple")
+        factors = np.clip(amplitude / largest, least, 1.0)
+        return cls(half_wavelength, tuple(factors.tolist()), along)
+
+    @si.checked_numbers
+    def factor(self, x: si.MetreLike, y: si.MetreLike = 0.0) -> si.DimensionlessArray:
+        """The factor at places (1), as the renderer reads it: linear between those of a period."""
+        where = self.along.at(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        count = len(self.factors)
+        u = where / self.half_wavelength
+        u = (u - np.floor(u)) * count
+        below = np.floor(u)
+        i = below.astype(int) % count
+        table = np.array(self.factors)
+        f = u - below
+        return np.asarray((1.0 - f) * table[i] + f * table[(i + 1) % count])

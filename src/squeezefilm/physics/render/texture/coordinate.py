@@ -1,0 +1,171 @@
+"""Along what a one-dimensional pattern runs: x, y, any direction, or the distance from a point."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import TEXTURE_LENGTH
+from squeezefilm.physics.render.opcodes import ALONG, RADIUS, Assembler
+
+METRE = si.Unit("m")
+FARTHEST: si.Metre = 10.0
+"""No display is ten metres long (m): a place beyond is a slip of unit."""
+
+Place = Annotated[si.Metre, si.AtLeast(-FARTHEST), si.AtMost(FARTHEST)]
+"""A place on a display, in annotations: at most 10 m from the origin."""
+
+FINEST: si.Metre = 1e-9
+"""No texture is finer than a nanometre (m): a width below is a slip of unit."""
+
+Length = Annotated[si.Metre, TEXTURE_LENGTH]
+"""A period or a width on a display, in annotations: from 1 nm to 0.5 m."""
+
+
+class Finger(NamedTuple):
+    """Place `x`, `y` (m), velocity `v` (m/s) and time `t` (s) of a finger: arrays of one shape."""
+
+    x: si.FloatArray
+    y: si.FloatArray
+    v: si.FloatArray
+    t: si.FloatArray
+
+
+class Coordinate:
+    """A length (m) read off the finger's place; the base of the family `AlongX`, `AlongY`,
+    `AlongDirection` and `FromPoint`."""
+
+    __slots__ = ()
+
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
+        """The coordinate (m) at places `x`, `y` (m), in their shape."""
+        raise NotImplementedError
+
+    def _lower(self, assembler: Assembler) -> None:
+        raise NotImplementedError
+
+
+class _Straight(Coordinate):
+    """The way along a line through the origin."""
+
+    __slots__ = ()
+
+    @property
+    def _direction(self) -> tuple[float, float]:
+        """Its components along x and y."""
+        raise NotImplementedError
+
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
+        """The way along the line (m)."""
+        p, q = self._direction
+        return np.asarray(p * x + q * y)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, *self._direction, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class AlongX(_Straight):
+    """The coordinate x."""
+
+    type: Literal["x"] = field(default="x", repr=False)
+    _direction = (1.0, 0.0)
+
+
+X_AXIS = AlongX()
+"""The coordinate that patterns run along unless they are told another."""
+
+
+@dataclass(frozen=True, slots=True)
+class AlongY(_Straight):
+    """The coordinate y."""
+
+    type: Literal["y"] = field(default="y", repr=False)
+    _direction = (0.0, 1.0)
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class AlongDirection(_Straight):
+    """x cos(angle) + y sin(angle): the way along a line at `angle` (rad) from x towards y.
+
+    Raises `InputError` for an angle that is not finite.
+    """
+
+    angle: si.Radian
+    type: Literal["direction"] = field(default="direction", repr=False)
+
+    @property
+    def _direction(self) -> tuple[float, float]:
+        return math.cos(self.angle), math.sin(self.angle)
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class FromPoint(Coordinate):
+    """The distance from the point (`x`, `y`), for rings and discs; never negative.
+
+    Raises `InputError` for a point that is not within ±10 m.
+    """
+
+    x: Place = 0.0
+    y: Place = 0.0
+    type: Literal["radius"] = field(default="radius", repr=False)
+
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
+        """The distance (m)."""
+        # Not hypot: a plain root is the same operation in every interpreter of a program.
+        return np.sqrt((x - self.x) ** 2 + (y - self.y) ** 2)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(RADIUS, self.x, self.y)
+
+
+def require_fade(value: si.Metre, at_most: si.Metre) -> None:
+    """Refuse a fade (m) that is neither 0 nor between a nanometre and `at_most`."""
+    if value != 0.0:
+        si.require("fade", value, METRE, at_least=FINEST, at_most=at_most)
+
+
+def require_coordinate(value: object) -> None:
+    """Refuse what is no `Coordinate`."""
+    if not isinstance(value, Coordinate):
+        raise InputError(
+            f"along = {value!r} is no coordinate; give AlongX(), AlongY(), AlongDirection(angle) "
+            "or FromPoint(x, y)",
+            quantity="along",
+        )
+
+
+_MOST_ARGUMENT = 1e12
+
+
+def finger_arguments(
+    x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike
+) -> Finger:
+    """Place, velocity and time of a finger as arrays of one shape.
+
+    Raises `InputError` for one that is not finite or beyond 1e12 in its SI unit, where a float no
+    longer tells the periods of a texture apart, or for shapes that do not broadcast.
+    """
+    # A NaN would compare false and silently become the low side of an edge.
+    for name, values, unit in (
+        ("position x", x, "m"),
+        ("position y", y, "m"),
+        ("velocity v", v, "m/s"),
+        ("time t", t, "s"),
+    ):
+        si.require(name, values, si.Unit(unit), at_least=-_MOST_ARGUMENT, at_most=_MOST_ARGUMENT)
+    arrays = [np.asarray(one, dtype=float) for one in (x, y, v, t)]
+    try:
+        return Finger(*np.broadcast_arrays(*arrays))
+    except ValueError as error:
+        shapes = ", ".join(str(one.shape) for one in arrays)
+        raise InputError(
+            f"x, y, v, t of shapes {shapes} do not broadcast; give equal shapes or scalars"
+        ) from error

@@ -1,0 +1,132 @@
+"""A pattern read off a grid of values with a scale: a picture, a scan, a map of the plane."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.hard_limits import PIXELS
+from squeezefilm.physics.render.opcodes import IMAGE, Assembler
+from squeezefilm.physics.render.texture.coordinate import Finger, Place
+from squeezefilm.physics.render.texture.pattern import Pattern, part
+
+LARGEST_PIXEL: si.Metre = 0.1
+MOST_PIXELS = int(PIXELS.most)
+"""Pixels one image may have."""
+
+OUTSIDE = ("hold", "repeat", "zero")
+"""What an image does beyond its frame, in the order of the opcode's operand."""
+
+
+Share = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
+"""A pixel's value, in annotations: from 0 to 1."""
+
+
+@part
+class Image(Pattern):
+    """Values from 0 to 1 on a grid of square pixels, bilinear between their centres.
+
+    The first row lies at the greatest y, as a picture is seen. The frame's lower left corner is
+    at (`left`, `bottom`); it is columns × `pixel` wide and rows × `pixel` high.
+
+    Args:
+        values: rows of values (1), each from 0 to 1; all rows of one length.
+        pixel: side of a pixel (m): there is no image without a scale. From 1 µm to 0.1 m.
+        left, bottom: the frame's corner (m), within ±10 m.
+        outside: "hold" goes on with the nearest edge, "repeat" tiles the plane, "zero" is 0.
+
+    Raises:
+        InputError: a value outside its range, rows of different lengths, or more than 1 048 576
+            pixels.
+    """
+
+    values: tuple[tuple[Share, ...], ...]
+    pixel: Annotated[si.Metre, si.AtLeast(1e-06), si.AtMost(LARGEST_PIXEL)]
+    left: Place = 0.0
+    bottom: Place = 0.0
+    outside: Literal["hold", "repeat", "zero"] = "hold"
+    type: Literal["image"] = field(default="image", repr=False)
+    _grid: si.FloatArray = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        grid = np.array(self.values, dtype=float)
+        if not grid.size:
+            raise InputError("an image needs at least one value", quantity="values")
+        _require_pixels(grid.size)
+        grid.setflags(write=False)
+        object.__setattr__(self, "_grid", grid)
+
+    @classmethod
+    @reads_text
+    def from_array(
+        cls,
+        values: si.DimensionlessArray,
+        pixel: si.Metre,
+        *,
+        left: si.Metre = 0.0,
+        bottom: si.Metre = 0.0,
+        outside: Literal["hold", "repeat", "zero"] = "hold",
+    ) -> Image:
+        """The image of an array of floats (rows, columns) from 0 to 1.
+
+        Raises:
+            InputError: an array that is not of floats (8-bit grey must be divided by 255), has
+                not two axes, or cannot be an image.
+        """
+        si.require("values", values)
+        array: Any = np.asarray(values)
+        if array.ndim != 2 or not np.issubdtype(array.dtype, np.floating):
+            raise InputError(
+                f"values of shape {array.shape} and type {array.dtype} are no image; give floats "
+                "from 0 to 1 of shape (rows, columns), 8-bit grey divided by 255",
+                quantity="values",
+            )
+        _require_pixels(array.size)
+        return cls(tuple(tuple(row) for row in array.tolist()), pixel, left, bottom, outside)
+
+    def _values(self, finger: Finger) -> si.FloatArray:
+        rows, columns = self._grid.shape
+        u = (finger.x - self.left) / self.pixel
+        w = (finger.y - self.bottom) / self.pixel
+        inside = (u >= 0.0) & (u <= columns) & (w >= 0.0) & (w <= rows)
+        if self.outside == "repeat":
+            u = u - columns * np.floor(u / columns)
+            w = w - rows * np.floor(w / rows)
+        i, i1, fu = _neighbours(u - 0.5, columns, self.outside == "repeat")
+        j, j1, fw = _neighbours(w - 0.5, rows, self.outside == "repeat")
+        grid, top = self._grid, rows - 1
+        low = (1.0 - fu) * grid[top - j, i] + fu * grid[top - j, i1]
+        high = (1.0 - fu) * grid[top - j1, i] + fu * grid[top - j1, i1]
+        found = (1.0 - fw) * low + fw * high
+        return np.where(inside, found, 0.0) if self.outside == "zero" else np.asarray(found)
+
+    def _lower(self, assembler: Assembler) -> None:
+        rows, columns = self._grid.shape
+        table = assembler.table(self._grid)
+        outside = OUTSIDE.index(self.outside)
+        assembler.emit(IMAGE, table, rows, columns, self.left, self.bottom, self.pixel, outside)
+
+
+def _require_pixels(count: int) -> None:
+    if count > MOST_PIXELS:
+        raise InputError(
+            f"an image of {count} pixels cannot be used: it may have at most {MOST_PIXELS}; make "
+            "its pixels larger",
+            quantity="values",
+        )
+
+
+def _neighbours(u: si.FloatArray, count: int, wraps: bool) -> tuple[Any, Any, si.FloatArray]:
+    """The two pixels around `u` pixels from the first centre, and how far between them."""
+    if not wraps:
+        u = np.clip(u, 0.0, count - 1.0)
+    cell = np.floor(u)
+    i = cell.astype(np.int64)
+    if wraps:
+        return i % count, (i + 1) % count, u - cell
+    return i, np.minimum(i + 1, count - 1), u - cell

@@ -1,0 +1,234 @@
+"""Patterns: dimensionless shapes between 0 and 1 over place, speed and time, and their algebra.
+
+A pattern alone says nothing about friction; `levels` gives it two ends with a quantity, and a
+texture takes it as a mask. Patterns compose: with a, b patterns,
+
+- ``a & b`` is the lesser, ``a | b`` the greater, ``a * b`` the product, ``~a`` is 1 − a;
+- `a.scaled_by_speed(reference_speed)` stretches a with the finger's speed.
+
+& and | form a lattice (commutative, associative, idempotent, absorbing, each distributive over
+the other), * is commutative and associative and distributes over both; ~ swaps & and | (De
+Morgan). There is no +: it would leave 0…1. Add textures, which have a quantity, instead.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar, Literal, TypeVar, dataclass_transform
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.from_text import reads_text
+from squeezefilm.physics.render.opcodes import (
+    COMPLEMENT,
+    ENTER_SCALE,
+    GREATEST,
+    LEAST,
+    LEAVE_SCALE,
+    MULTIPLY,
+    Assembler,
+)
+from squeezefilm.physics.render.texture.coordinate import Finger, finger_arguments
+
+MOST_PARTS = 64
+"""Parts that one sum, product, sequence or lattice operation may have."""
+
+
+_T = TypeVar("_T")
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(field,))
+def part(cls: type[_T]) -> type[_T]:
+    """A part of a texture: a frozen dataclass whose numbers are checked, and may be texts with
+    units."""
+    return reads_text(si.checked_numbers(dataclass(frozen=True, slots=True)(cls)))
+
+
+class Part:
+    """What has a value wherever a finger is: a pattern or a texture.
+
+    Called with the finger's place `x`, `y` (m), its velocity `v` along its path (m/s; negative on
+    the way back) and the time `t` (s), which broadcast; returns values in the broadcast shape.
+    Raises `InputError` for an argument that is not finite or shapes that do not broadcast.
+    """
+
+    __slots__ = ()
+
+    def __call__(
+        self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
+    ) -> si.FloatArray:
+        """The values at these places, velocities and times (m for an amplitude, else 1)."""
+        return np.array(self._values(finger_arguments(x, y, v, t)))
+
+    def _values(self, finger: Finger) -> si.FloatArray:
+        raise NotImplementedError
+
+    def _lower(self, assembler: Assembler) -> None:
+        raise NotImplementedError
+
+
+class Pattern(Part):
+    """A dimensionless shape, 0 to 1; the base of every generator and composite."""
+
+    __slots__ = ()
+
+    def __invert__(self) -> Pattern:
+        return self.pattern if isinstance(self, Complement) else Complement(self)
+
+    def __and__(self, other: Pattern) -> Least:
+        return Least(_parts(Least, self, other))
+
+    def __or__(self, other: Pattern) -> Greatest:
+        return Greatest(_parts(Greatest, self, other))
+
+    def __mul__(self, other: Pattern) -> Times:
+        # A texture on the right multiplies by this pattern itself.
+        return Times(_parts(Times, self, other)) if isinstance(other, Pattern) else NotImplemented
+
+    def __add__(self, other: object) -> Pattern:
+        raise InputError(
+            "patterns cannot be added: their sum would leave 0 to 1; take a | b for either and "
+            "a * b for both, or add textures, whose values have a quantity"
+        )
+
+    @si.checked_numbers
+    def scaled_by_speed(
+        self,
+        reference_speed: si.MetrePerSecond,
+        slowest: si.MetrePerSecond = 0.001,
+        fastest: si.MetrePerSecond = 1.0,
+    ) -> SpeedScaled:
+        """This pattern stretched by speed/`reference_speed`; see `SpeedScaled`."""
+        return SpeedScaled(self, reference_speed, slowest, fastest)
+
+
+def _parts(kind: type[_Joined], *operands: Pattern) -> tuple[Pattern, ...]:
+    """Operands with nested ones of the same kind flattened, so that brackets make no difference."""
+    found: list[Pattern] = []
+    for one in operands:
+        found += one.patterns if isinstance(one, kind) else [one]
+    return tuple(found)
+
+
+def require_pattern(name: str, value: object) -> None:
+    """Refuse what is no `Pattern`."""
+    if not isinstance(value, Pattern):
+        raise InputError(
+            f"{name} = {value!r} is no pattern; give a dimensionless one like SquareWave, Band or "
+            "Noise (a texture has a quantity of its own and can be no mask)",
+            quantity=name,
+        )
+
+
+@part
+class Complement(Pattern):
+    """1 − `pattern`: its ends exchanged."""
+
+    pattern: Pattern
+    type: Literal["complement"] = field(default="complement", repr=False)
+
+    def __post_init__(self) -> None:
+        require_pattern("pattern", self.pattern)
+
+    def _values(self, finger: Finger) -> si.FloatArray:
+        return 1.0 - self.pattern._values(finger)
+
+    def _lower(self, assembler: Assembler) -> None:
+        self.pattern._lower(assembler)
+        assembler.emit(COMPLEMENT)
+
+
+class _Joined:
+    """Any number of patterns joined by one operation, in which their order makes no difference."""
+
+    __slots__ = ()
+    patterns: tuple[Pattern, ...]
+    _operation: ClassVar[np.ufunc]
+    _opcode: ClassVar[int]
+
+    def __post_init__(self) -> None:
+        if not 1 <= len(self.patterns) <= MOST_PARTS:
+            raise InputError(
+                f"{len(self.patterns)} patterns cannot be joined; give 1 to {MOST_PARTS}",
+                quantity="patterns",
+            )
+        for one in self.patterns:
+            require_pattern("patterns", one)
+
+    def _values(self, finger: Finger) -> si.FloatArray:
+        parts = [one._values(finger) for one in self.patterns]
+        return np.asarray(self._operation.reduce(parts))
+
+    def _lower(self, assembler: Assembler) -> None:
+        for index, one in enumerate(self.patterns):
+            one._lower(assembler)
+            if index:
+                assembler.emit(self._opcode)
+
+
+@part
+class Least(_Joined, Pattern):
+    """The least of `patterns`: where masks overlap."""
+
+    patterns: tuple[Pattern, ...]
+    type: Literal["least"] = field(default="least", repr=False)
+    _operation, _opcode = np.minimum, LEAST
+
+
+@part
+class Greatest(_Joined, Pattern):
+    """The greatest of `patterns`: masks side by side."""
+
+    patterns: tuple[Pattern, ...]
+    type: Literal["greatest"] = field(default="greatest", repr=False)
+    _operation, _opcode = np.maximum, GREATEST
+
+
+@part
+class Times(_Joined, Pattern):
+    """The product of `patterns`: one fading another."""
+
+    patterns: tuple[Pattern, ...]
+    type: Literal["times"] = field(default="times", repr=False)
+    _operation, _opcode = np.multiply, MULTIPLY
+
+
+@part
+class SpeedScaled(Pattern):
+    """`pattern` stretched about the origin in proportion to the finger's speed.
+
+    At `reference_speed` (m/s) it is itself, at twice that its lengths are doubled: a grating then
+    passes under a finger of steady speed at a frequency that does not depend on that speed. The
+    factor is speed/reference_speed, held at its value for `slowest` below that speed and for
+    `fastest` above it. The pattern slides under a finger that speeds up, the more the farther
+    from the origin it is: this is a function of the present speed, with no memory.
+
+    Raises:
+        InputError: unless 1 µm/s ≤ slowest ≤ fastest ≤ 10 m/s, and for a reference speed
+            outside 1 µm/s to 10 m/s.
+    """
+
+    pattern: Pattern
+    reference_speed: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)]
+    slowest: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)] = 0.001
+    fastest: si.MetrePerSecond = 1.0
+    type: Literal["speed_scaled"] = field(default="speed_scaled", repr=False)
+
+    def __post_init__(self) -> None:
+        require_pattern("pattern", self.pattern)
+        unit = si.Unit("m/s")
+        si.require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
+
+    def _values(self, finger: Finger) -> si.FloatArray:
+        x, y, v, t = finger
+        low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed
+        factor = np.clip(np.abs(v) / self.reference_speed, low, high)
+        return self.pattern._values(Finger(x / factor, y / factor, v, t))
+
+    def _lower(self, assembler: Assembler) -> None:
+        low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed
+        assembler.emit(ENTER_SCALE, self.reference_speed, low, high)
+        self.pattern._lower(assembler)
+        assembler.emit(LEAVE_SCALE)

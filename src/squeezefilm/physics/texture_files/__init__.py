@@ -1,0 +1,1 @@
+"""Textures and motions in files: TOML, pictures, trajectories, MPEG haptics."""

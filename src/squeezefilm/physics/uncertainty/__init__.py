@@ -1,0 +1,1 @@
+"""What is not known of a display, drawn: its parameters, and intervals of a prediction."""

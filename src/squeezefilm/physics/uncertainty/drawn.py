@@ -1,0 +1,131 @@
+"""Many draws of a mixture, kept on disk.
+
+Whoever analyses a display again, with another texture or report, asks for the same draws again.
+"""
+
+from __future__ import annotations
+
+import functools
+import io
+import json
+import pickle
+from collections.abc import Callable
+from hashlib import blake2b
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.kept.store import Kept
+from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import to_json
+from squeezefilm.physics.chain.prediction import Prediction
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.uncertainty.draws import Mixture, Outcome, Refusals, Tally, as_drawn
+
+_Found = TypeVar("_Found")
+
+# So many messages take no time.
+_TOLD = 20
+
+# Fewer are drawn again sooner than found.
+_WORTH_KEEPING = 100
+
+
+class KeptDraws(Generic[_Found]):
+    """What comes of draws, kept on disk from one process to the next; `kind` names the folder, and
+    `of` is the type of what is kept."""
+
+    def __init__(self, kind: str, of: Any) -> None:
+        self._kept: Kept[_Found] = Kept(kind, of, large=True)
+
+    def found(
+        self,
+        mixture: Mixture,
+        points: si.DimensionlessArray,
+        more: object,
+        make: Callable[[], _Found],
+    ) -> _Found:
+        """What `make` makes of the draws at points of the unit cube, shape (n, inputs), and of
+        whatever `more` there is to it: found where it was made before."""
+        return self._kept.found(_asked(mixture, points, more), make)
+
+
+_KEPT: KeptDraws[tuple[si.FloatArray, Tally]] = KeptDraws("draws", tuple[si.FloatArray, Tally])
+
+
+def evaluate(
+    mixture: Mixture,
+    points: si.DimensionlessArray,
+    tell: SayProgress,
+    what: str = "friction of draw",
+) -> tuple[Outcome, Refusals]:
+    """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
+    where refused; and what was refused. `tell` is told some twenty times."""
+    found = mixture.known(points)
+    new = np.flatnonzero(np.isnan(found[:, 0]))
+    make = functools.partial(_drawn_now, mixture, points, new, tell, what)
+    worth_keeping = new.size >= _WORTH_KEEPING
+    made = _KEPT.found(mixture, points[new], None, make) if worth_keeping else make()
+    found[new], tally = made
+    mixture.learn(points[new], found[new])
+    return Outcome(*found.T), tally.found(len(points))
+
+
+def description_of(display: Display, prediction: Prediction, more: object = None) -> str:
+    """All that follows from a display at a prediction's working point is kept under: both with
+    every number in full, and whatever `more` it depends on."""
+    sources = sorted(display.provenance.items())
+    return json.dumps(to_json([display, sources, prediction.summary(), prediction.law.slip, more]))
+
+
+def _asked(mixture: Mixture, points: si.DimensionlessArray, more: object = None) -> str:
+    """A hash of all that draws come from: the display with its ranges and the working point, the
+    solved plate by the numbers that draws take of it; and of what `more` is made of them."""
+    p = mixture.prediction
+    mode, law = p.mode, p.law
+    numbers = (
+        mode.resonance_frequency,
+        mode.quality_factor,
+        mode.modal_mass,
+        mode.half_wavelength,
+        mode.amplitude_per_volt,
+        p.held_amplitude,
+        p.frequency,
+        p.voltage,
+        p.normal_force,
+        law.position,
+        law.speed,
+    )
+    place = None if law.place is None else (law.place.x, law.place.y, law.place.at_centre)
+    words = (mixture.model, p.surface.name, law.slip)
+    told = (mixture.display, mixture.inputs, numbers, place, words, *law.ridge_swings, points, more)
+    stream = io.BytesIO()
+    pickler = pickle.Pickler(stream, protocol=5)
+    # By values alone: which of them are one object differs between processes.
+    pickler.fast = True
+    pickler.dump(told)
+    return blake2b(stream.getvalue()).hexdigest()
+
+
+@as_drawn()
+def _drawn_now(
+    mixture: Mixture,
+    points: si.DimensionlessArray,
+    new: si.IntArray,
+    tell: SayProgress,
+    what: str,
+) -> tuple[si.FloatArray, Tally]:
+    """What comes of the points numbered `new`, shape (n, 3), and what was refused."""
+    found, tally = np.full((new.size, 3), np.nan), Tally()
+    every = max(new.size // _TOLD, 1)
+    draws = mixture.draws(points[new]) if new.size else iter(())
+    for number, (point, draw) in enumerate(zip(points[new], draws, strict=True)):
+        if number % every == 0:
+            tell(f"{what} {number + 1} of {len(points)}")
+        try:
+            found[number] = mixture.outcome(point, draw)
+        except SqueezefilmError as error:
+            tally.refuse(draw.heights, error)
+    return found, tally

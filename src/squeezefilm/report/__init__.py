@@ -1,1 +1,0 @@
-"""Figures, the HTML report and what the terminal shows of a result; nothing computes physics."""

@@ -1,0 +1,145 @@
+"""What a path would have felt like: its figure, and the words for the terminal."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.core.kit import style
+from squeezefilm.core.kit.numbers import M, shown
+from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.study.simulated.felt_paths import FeltPath
+
+_COLOURS = {"along x": style.BLUE, "along y": style.ORANGE}
+_PIXELS = 240
+
+
+@style.drawn
+def felt_path(found: FeltPath) -> Figure:
+    """The path over the surface, its runs by direction, and the evidence for rhythms in each."""
+    figure = style.new_figure(
+        f"{style.plain(found.stimulus.name, 24)} along this path: {_said(found)}",
+        f"SIMULATED by observer '{style.plain(found.observer.name)}'; {found.source}; force "
+        f"{found.finger.normal_force:.2g} N, {found.force_is}",
+        4.6,
+    )
+    left, right = figure.subplots(1, 2, width_ratios=[1.1, 1])
+    _over_surface(left, found)
+    highest = found.observer.detection_criterion
+    for name, one in found.directions.items():
+        evidence = one.percept.evidence
+        label = f"{name}: {one.runs} runs, {shown(one.way, M, 2)}"
+        right.plot(1e3 * evidence.period, evidence.rhythm, color=_COLOURS[name], label=label)
+        highest = max(highest, float(evidence.rhythm.max()))
+    right.axhline(found.observer.detection_criterion, **style.REFERENCE)
+    right.set(xscale="log", xlim=(0.25, 20), ylim=(0, 1.12 * highest))
+    right.set(xlabel="spatial period along the path (mm)", ylabel="evidence for a rhythm, d′")
+    right.set_xticks([0.4, 1, 2, 4, 10], ["0.4", "1", "2", "4", "10"])
+    right.minorticks_off()
+    right.set_title("dashed: below it nothing is felt")
+    right.legend(loc="upper left", frameon=False)
+    return figure
+
+
+def _over_surface(axes: Axes, found: FeltPath) -> None:
+    from squeezefilm.physics.perception.path_runs import straight_runs
+
+    x, y = (np.concatenate([getattr(path, one) for path in found.paths]) for one in ("x", "y"))
+    room = 0.1 * max(np.ptp(x), np.ptp(y)) + 1e-3
+    ends = x.min() - room, x.max() + room, y.min() - room, y.max() + room
+    u, w = np.linspace(*ends[:2], _PIXELS), np.linspace(*ends[2:], _PIXELS)
+    values = found.stimulus.surface()(u[None, :], w[:, None], 0.08, 0.0)
+    left, right, bottom, top = (1e3 * float(one) for one in ends)
+    axes.imshow(
+        values, extent=(left, right, bottom, top), origin="lower", cmap="Greys", alpha=0.35,
+        aspect="equal", interpolation="nearest",
+    )  # fmt: skip
+    for path in found.paths:
+        axes.plot(1e3 * path.x, 1e3 * path.y, color=style.METAL, lw=0.9)
+        for run in straight_runs(path):
+            rows = slice(run.begin, run.end + 1)
+            colour = _COLOURS["along x" if run.along_x else "along y"]
+            axes.plot(1e3 * path.x[rows], 1e3 * path.y[rows], color=colour, lw=1.6)
+    axes.set(xlabel="x (mm)", ylabel="y (mm)")
+    axes.set_title("blue: runs along x; orange: along y; dark: sticky")
+
+
+def _said(found: FeltPath) -> str:
+    """What is felt in either direction, in words."""
+    parts = []
+    for name, one in found.directions.items():
+        if one.clearest_d_prime > found.observer.detection_criterion:
+            period = shown(one.clearest_period, M, 3)
+            parts.append(f"{period} {name} (d′ = {one.clearest_d_prime:.2g})")
+        else:
+            parts.append(f"nothing {name}")
+    return ", ".join(parts)
+
+
+def show_felt(found: FeltPath) -> None:
+    """Print what a path would have felt like, what it tells apart, and what that rests on."""
+    went = found.explored
+    known = "" if math.isnan(went.coverage) else f", {100 * went.coverage:.0f} % of the face"
+    rows = [
+        ("Surface", found.stimulus.name, found.stimulus.kind),
+        ("Display", found.display, ""),
+        ("Path", f"{shown(went.path_length, M, 3)} in {went.touched:.3g} s", found.source),
+        (
+            "Explored",
+            f"{1e3 * went.mean_speed:.3g} mm/s in the mean",
+            f"{1e3 * went.peak_speed:.3g} mm/s at most, {went.passes} passes{known}",
+        ),
+        ("Force", f"{found.finger.normal_force:.3g} N", found.force_is),
+    ]
+    if found.answer or found.choice:
+        rows.append(("Answered", found.choice or "–", f"right: {found.answer or 'nothing'}"))
+    console = show_rows(f"SIMULATED: {_said(found)}", rows)
+    heading(console, "Evidence by direction")
+    head = ("", "Runs", "Clearest rhythm", "d′", "Next", "Swing asked", "Swing felt")
+    table(console, head, [_row(name, found) for name in found.directions], fixed=(0,))
+    heading(console, f"How far from each surface by {found.compared_by}")
+    away = [(one.name, _apart(one.apart)) for one in found.nearest]
+    table(console, ("Surface", "Standard deviations"), away, fixed=(0,))
+    for said in found.assumed:
+        console.print(f"  {said}", style="dim", highlight=False)
+
+
+def _apart(value: float) -> str:
+    return f"{value:.2f}" if math.isfinite(value) else "nothing felt"
+
+
+def _row(name: str, found: FeltPath) -> tuple[str, ...]:
+    one = found.directions[name]
+    rhythms = one.percept.candidates
+    more = [
+        f"{shown(float(period), M, 3)} ({d:.2f})"
+        for period, d in zip(rhythms.period[1:], rhythms.d_prime[1:], strict=True)
+        if math.isfinite(d)
+    ]
+    clear = "none" if math.isnan(one.clearest_period) else shown(one.clearest_period, M, 3)
+    return (
+        name,
+        f"{one.runs}",
+        clear,
+        f"{one.clearest_d_prime:.2f}",
+        ", ".join(more[:2]) or "–",
+        f"{one.asked_swing:.3f}",
+        f"{one.felt_swing:.3f}",
+    )
+
+
+def show_all(found: tuple[FeltPath, ...]) -> None:
+    """Print each surface's after another."""
+    for one in found:
+        show_felt(one)
+    plain_console().print(
+        "Nobody's percept was measured: this is what the observer's senses make of the path.",
+        highlight=False,
+    )

@@ -1,0 +1,276 @@
+"""Figures of an identification study: confusions, right answers, information, d′, similarities."""
+
+from __future__ import annotations
+
+import itertools
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squeezefilm.core.kit import style
+from squeezefilm.study.report.words import whose
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.choice_model import ChoiceModel
+    from squeezefilm.study.identification.confusion import ConfusionMatrix
+    from squeezefilm.study.identification.sensitivity import OrderedSensitivity
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
+
+_SIDE_BY_SIDE = 56
+"""Letters of all names together that fit below a panel."""
+
+
+def data_of(analysis: StudyAnalysis) -> str:
+    """The small print of every figure: whose answers, how many."""
+    people = analysis.participants
+    return (
+        f"{whose(style.plain(analysis.origin, 40))}, {style.plain(analysis.name, 40)}; "
+        f"{people} participant{'s' if people != 1 else ''}, {analysis.trials} trials"
+    )
+
+
+def named_ticks(axes: Axes, names: Sequence[str], longest: int = 14) -> None:
+    """Names below the ticks 0, 1, …, slanted where they are too long to stand side by side."""
+    shown = [style.plain(name, longest) for name in names]
+    axes.set_xticks(range(len(shown)), shown)
+    if sum(map(len, shown)) > _SIDE_BY_SIDE:
+        axes.tick_params(axis="x", labelrotation=20)
+
+
+@style.drawn
+def confusion(analysis: IdentificationAnalysis) -> Figure:
+    """The confusion matrix in the paper's layout: rows gratings, columns simulated periods."""
+    matrix = analysis.matrix
+    figure = style.new_figure(
+        f"{100 * analysis.proportion_correct:.3g} % of the answers are right; {_worst(matrix)}",
+        f"{data_of(analysis)}; per cent of each column, trials in brackets",
+        1.7 + 0.62 * len(matrix.answers),
+    )
+    _draw_confusion(figure.subplots(), matrix)
+    return figure
+
+
+def _draw_confusion(axes: Axes, matrix: ConfusionMatrix) -> None:
+    from matplotlib.colors import LinearSegmentedColormap
+    from matplotlib.patches import Rectangle
+
+    percent = matrix.percent
+    shades = LinearSegmentedColormap.from_list("share", [style.PAPER, style.PLUS, "#6fb0d8"])
+    axes.imshow(np.nan_to_num(percent), cmap=shades, vmin=0, vmax=100, aspect="auto")
+    for (i, j), value in np.ndenumerate(percent):
+        count = int(matrix.counts[i, j])
+        words = "–" if np.isnan(value) else f"{value:.0f} %\n({count})" if count else "·"
+        right = i == j and matrix.is_square
+        axes.text(j, i, words, ha="center", va="center", weight="bold" if right else "normal")
+        if right:
+            corner = j - 0.5, i - 0.5
+            axes.add_patch(Rectangle(corner, 1, 1, fill=False, edgecolor=style.MUTED, lw=1.2))
+    axes.set_xticks(range(len(matrix.stimuli)), [style.plain(name, 16) for name in matrix.stimuli])
+    axes.set_yticks(range(len(matrix.answers)), [style.plain(name, 16) for name in matrix.answers])
+    axes.set(xlabel="simulated", ylabel="answered")
+    style.bare(axes)
+
+
+def _worst(matrix: ConfusionMatrix) -> str:
+    """The most frequent confusion, in words."""
+    wrong = np.where(np.eye(len(matrix.answers), dtype=bool), -1.0, np.nan_to_num(matrix.percent))
+    i, j = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
+    if wrong[i, j] <= 0:
+        return "nothing is confused"
+    return (
+        f"{style.plain(matrix.stimuli[j], 16)} is most often taken for "
+        f"{style.plain(matrix.answers[i], 16)} ({wrong[i, j]:.0f} %)"
+    )
+
+
+@style.drawn
+def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
+    """Right answers by stimulus and over all, with intervals; the people themselves beside."""
+    bounds = analysis.interval
+    p = analysis.permutation_p
+    said = "better than" if p < 0.05 else "not shown to be better than"
+    figure = style.new_figure(
+        f"{100 * analysis.proportion_correct:.3g} % right "
+        f"({100 * bounds.low:.3g} to {100 * bounds.high:.3g} %), {said} unrelated answers "
+        f"(p {_p(p)})",
+        f"{data_of(analysis)}; by stimulus Wilson's {100 * bounds.level:g} % intervals over trials",
+        4.3,
+    )
+    left, right = figure.subplots(1, 2, width_ratios=[1.6, 1], sharey=True)
+    chance = 100 * analysis.matrix.chance
+    by = analysis.by_stimulus
+    style.estimates(left, ((100 * s.proportion_correct, 100 * s.low, 100 * s.high) for s in by))
+    named_ticks(left, [s.stimulus for s in by])
+    left.set(ylabel="right answers (%)", ylim=(0, 104), xlabel="stimulus")
+    scores = 100 * analysis.participant_correct
+    right.hist(scores, bins=_bins(analysis), orientation="horizontal", **style.BARS)
+    right.set(xlabel="participants")
+    ground = {"facecolor": style.PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
+    words: dict[str, Any] = {"rotation": 90, "ha": "center", "va": "top", "fontsize": 8.5}
+    for k, interval in enumerate(analysis.intervals):
+        x = (0.6 + 0.11 * k) * right.get_xlim()[1]
+        low, high = 100 * interval.low, 100 * interval.high
+        right.plot([x, x], [low, high], color=style.ORANGE, lw=2, zorder=4)
+        right.text(x, low - 2, interval.method, bbox=ground, **words)
+    for axes in (left, right):
+        axes.axhline(chance, **style.GUIDE)
+    said = f"guessing: {chance:.3g} %"
+    left.annotate(
+        said, (0, chance), (-8, 4), textcoords="offset points", fontsize=9, color=style.MUTED
+    )
+    left.set_title("each stimulus")
+    right.set_title("people, and the mean's intervals")
+    return figure
+
+
+def _bins(analysis: IdentificationAnalysis) -> list[float]:
+    """Bins that put every possible score of the people in the middle of one."""
+    most = int(analysis.counts.sum(axis=(1, 2)).max())
+    step = 100 / min(most, 20)
+    return [step * (k - 0.5) for k in range(min(most, 20) + 2)]
+
+
+def _p(p: float) -> str:
+    return "< 0.001" if p < 0.001 else f"= {p:.2g}"
+
+
+def _deviance(fit: OrderedSensitivity | ChoiceModel) -> str:
+    """How well a model fits, in words."""
+    freedom = f"{fit.degrees_of_freedom} degrees of freedom"
+    return f"G² = {fit.deviance:.1f} with {freedom} (p {_p(fit.p_value)})"
+
+
+@style.drawn
+def information(analysis: IdentificationAnalysis) -> Figure:
+    """Information transfer by every estimator, the recommended one marked, and where each fails."""
+    found = analysis.information
+    best = found.best
+    figure = style.new_figure(
+        f"Answers carry {best.estimate:.2f} bit of {found.greatest:.2f}: about "
+        f"{2 ** max(best.estimate, 0):.1f} stimuli told apart without error",
+        f"{data_of(analysis)}; {best.name} is the one to quote",
+        1.6 + 0.56 * len(found.estimates),
+    )
+    axes = figure.subplots()
+    rows = np.arange(len(found.estimates))[::-1]
+    for row, item in zip(rows, found.estimates, strict=True):
+        look = {**style.ESTIMATE, "ms": 8, "clip_on": False, "zorder": 4}
+        if item.key == found.recommended:
+            look |= {"marker": "D", "color": style.ORANGE}
+        if item.interval is not None:
+            axes.plot([item.interval.low, item.interval.high], [row, row], **style.INTERVAL)
+        if np.isfinite(item.estimate):
+            axes.plot([item.estimate], [row], **look)
+    axes.set_yticks(rows, [item.name for item in found.estimates])
+    for label, item in zip(axes.get_yticklabels(), found.estimates, strict=True):
+        label.set_fontweight("bold" if item.key == found.recommended else "normal")
+    lowest = min([0.0, *(i.estimate for i in found.estimates if np.isfinite(i.estimate))])
+    axes.set(xlabel="information transfer (bit)", xlim=(lowest, found.greatest))
+    small: dict[str, Any] = {"fontsize": 7.6, "color": style.MUTED, "va": "center"}
+    small["transform"] = axes.get_yaxis_transform()
+    for row, item in zip(rows, found.estimates, strict=True):
+        axes.text(1.02, row, textwrap.fill(item.fails, 62), **small)
+    axes.grid(visible=False, axis="y")
+    return figure
+
+
+@style.drawn
+def sensitivity(analysis: IdentificationAnalysis) -> Figure:
+    """Stimuli and criteria on the decision axis, and d′ of neighbours with intervals."""
+    fit = analysis.sensitivity
+    if fit is None:
+        return style.message_figure("No d′", _note(analysis, "d′"))
+    names = [style.plain(name, 14) for name in analysis.matrix.stimuli]
+    weakest = int(np.argmin(fit.d_prime))
+    added = "one trial per stimulus added (some never confused): d′ too low"
+    fitted = added if fit.corrected else _deviance(fit)
+    figure = style.new_figure(
+        f"Δ′ = {fit.total:.2f} from {names[0]} to {names[-1]}; "
+        f"{names[weakest]} and {names[weakest + 1]} lie closest, d′ = {fit.d_prime[weakest]:.2f}",
+        f"{data_of(analysis)}; equal-variance Thurstone model, {fitted}",
+        4.6,
+    )
+    top, below = figure.subplots(2, 1, height_ratios=[1.25, 1])
+    low, high = min(fit.positions.min(), fit.criteria.min()), fit.positions.max()
+    x = np.linspace(low - 2.6, max(high, fit.criteria.max()) + 2.6, 500)
+    for name, place in zip(names, fit.positions, strict=True):
+        curve = np.exp(-0.5 * (x - place) ** 2)
+        top.plot(x, curve, color=style.BLUE, lw=1.3)
+        top.text(place, 1.04, name, ha="center", va="bottom", fontsize=9.5)
+    for k, criterion in enumerate(fit.criteria):
+        named = "criteria" if k == 0 else None
+        top.axvline(criterion, color=style.ORANGE, lw=1.2, ls=(0, (4, 2)), label=named)
+    top.set(xlim=(x[0], x[-1]), ylim=(0, 1.3), xlabel="decision axis (standard deviations)")
+    top.set_yticks([])
+    top.spines["left"].set_visible(False)
+    top.legend(loc="upper right", frameon=False)
+    style.estimates(below, zip(fit.d_prime, fit.low, fit.high, strict=True))
+    below.axhline(0, **style.ZERO)
+    pairs = [f"{a} – {b}" for a, b in itertools.pairwise(names)]
+    below.set_xticks(range(len(pairs)), pairs)
+    below.set(ylabel="d′ of neighbours", xlim=(-0.5, len(pairs) - 0.5))
+    below.set_title(f"{100 * fit.level:g} % intervals: {fit.interval_method}")
+    return figure
+
+
+@style.drawn
+def similarities(analysis: IdentificationAnalysis) -> Figure:
+    """Similarities of the choice model, biases of answers, and the stimuli as points."""
+    fit, points = analysis.choice, analysis.choice_map
+    if fit is None or points is None:
+        return style.message_figure("No choice model", _note(analysis, "choice model"))
+    names = [style.plain(name, 12) for name in analysis.matrix.stimuli]
+    off = np.where(np.eye(len(names), dtype=bool), -1.0, fit.similarity)
+    i, j = sorted(int(v) for v in np.unravel_index(int(np.argmax(off)), off.shape))
+    added = f"{fit.pseudo_trials:g} trial per stimulus added"
+    figure = style.new_figure(
+        f"{names[i]} and {names[j]} are felt most alike (η = {off[i, j]:.2f}); "
+        f"{names[int(np.argmax(fit.bias))]} is the answer preferred",
+        f"{data_of(analysis)}; Luce–Shepard choice model"
+        f", {added if fit.pseudo_trials else _deviance(fit)}",
+        4.6,
+    )
+    grid = figure.add_gridspec(2, 2, width_ratios=[1.1, 1], height_ratios=[1, 1])
+    left, right = figure.add_subplot(grid[:, 0]), figure.add_subplot(grid[0, 1])
+    bars = figure.add_subplot(grid[1, 1])
+    _draw_similarity(left, fit.similarity, names)
+    second = points.points[:, 1] if points.points.shape[1] > 1 else np.zeros(len(names))
+    right.plot(points.points[:, 0], second, "-", color=style.METAL, lw=1.2)
+    right.plot(points.points[:, 0], second, **style.ESTIMATE)
+    for name, a, b in zip(names, points.points[:, 0], second, strict=True):
+        right.annotate(name, (a, b), (0, 7), textcoords="offset points", ha="center", fontsize=9)
+    right.set_title(f"distances −ln η as points ({100 * points.explained:.0f} % of them)")
+    right.set_aspect("equal", adjustable="datalim")
+    right.margins(0.18)
+    bars.bar(np.arange(len(names)), 100 * fit.bias, **style.BARS)
+    bars.axhline(100 / len(names), **style.GUIDE)
+    bars.set_xticks(np.arange(len(names)), names)
+    bars.set_ylabel("bias of answer (%)")
+    return figure
+
+
+def _draw_similarity(axes: Axes, similarity: np.ndarray, names: list[str]) -> None:
+    from matplotlib.colors import LinearSegmentedColormap
+
+    shades = LinearSegmentedColormap.from_list("alike", [style.PAPER, style.METAL])
+    below = np.tril(np.ones(similarity.shape, dtype=bool), -1)
+    shown = np.where(below, np.minimum(similarity, 1.0), np.nan)
+    axes.imshow(shown, cmap=shades, vmin=0, vmax=1, aspect="auto")
+    for i, j in np.argwhere(below):
+        axes.text(j, i, f"{similarity[i, j]:.2f}", ha="center", va="center")
+    axes.set_xticks(range(len(names) - 1), names[:-1])
+    axes.set_yticks(range(1, len(names)), names[1:])
+    axes.set(xlim=(-0.5, len(names) - 1.5), ylim=(len(names) - 0.5, 0.5))
+    style.bare(axes)
+    axes.set_title("similarity η (1: not told apart)")
+
+
+def _note(analysis: IdentificationAnalysis, start: str) -> str:
+    return next((note for note in analysis.notes if note.startswith(start)), "It was not computed.")

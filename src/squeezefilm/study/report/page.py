@@ -1,0 +1,320 @@
+"""`write_study`: numbers, figures and a page of a study's analysis on one display."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.core.kit.numbers import printable
+from squeezefilm.core.kit.page_style import (
+    FigureOf,
+    Titled,
+    as_html,
+    bullets,
+    drawn_figures,
+    links,
+    page,
+    picture_sections,
+    section,
+    stamped,
+    text_table,
+)
+from squeezefilm.study.report import figures as draw
+from squeezefilm.study.report import task_figures
+from squeezefilm.study.report import time_figures as times
+from squeezefilm.study.report.pictures import pictures, png_files
+from squeezefilm.study.report.words import (
+    PERSON_HEAD,
+    SCREENING_HEAD,
+    condition_head,
+    condition_rows,
+    exploration_head,
+    exploration_rows,
+    key_rows,
+    person_rows,
+    read_first,
+    screening_rows,
+    whose,
+)
+from squeezefilm.study.tasks.findings import TaskAnalysis
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
+
+
+_TIMES = FigureOf(
+    "times", "Response times", times.response_times, has=lambda one: one.response_times
+)
+_EXPLORATION = FigureOf(
+    "exploration", "Exploration", times.exploration, has=lambda one: one.exploration
+)
+FIGURES = (
+    FigureOf("confusion", "Confusion matrix", draw.confusion),
+    FigureOf("correct", "Right answers", draw.proportion_correct),
+    FigureOf("information", "Information transfer", draw.information),
+    FigureOf("sensitivity", "Sensitivity along the stimuli", draw.sensitivity),
+    FigureOf("similarities", "Similarities and biases", draw.similarities, file="similarity"),
+    _TIMES,
+    _EXPLORATION,
+)
+"""The figures of an identification study."""
+
+TASK_FIGURES = (
+    FigureOf("answers", "What was answered", task_figures.answers),
+    FigureOf("persons", "Each person", task_figures.persons, has=lambda one: one.persons),
+    FigureOf(
+        "sensitivity",
+        "Sensitivity",
+        task_figures.sensitivity,
+        has=lambda one: [c for c in one.conditions if c.d_prime is not None],
+    ),
+    _TIMES,
+    _EXPLORATION,
+)
+"""The figures of two-interval, same-different and magnitude studies."""
+
+
+def write_study(
+    analysis: StudyAnalysis,
+    folder: Path,
+    *,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write numbers, figures and the page of a study's display into `folder`; the path of
+    index.html.
+
+    All is made in memory before the first file is written.
+
+    Raises:
+        InputError: a folder that cannot be written to.
+    """
+    tell = progress or (lambda _: None)
+    folder = require_folder(folder)
+    tell("figures")
+    found = pictures(drawing, _figures_of(analysis), analysis, "study-")
+    files = png_files(found)
+    summary = analysis.summary()
+    files[_numbers_file(analysis)] = json_text(summary)
+    files["index.html"] = study_page(analysis, found, summary["provenance"])
+    tell("writing the report")
+    write_folder(folder, files)
+    return folder / "index.html"
+
+
+def write_overview(
+    analyses: Mapping[str, StudyAnalysis],
+    folder: Path,
+    progress: Callable[[str], None] | None = None,
+    more: str = "",
+) -> Path:
+    """Write a page per display, each in its own folder, and one to read first above them, with
+    `more` sections (HTML) below."""
+    folder = require_folder(folder)
+    for display, one in analyses.items():
+        write_study(one, folder / _folder_of(display), progress=progress)
+    sections, name = "", ""
+    for display, one in analyses.items():
+        name = printable(one.name).removesuffix(f", {display}")
+        place = escape(_folder_of(display))
+        link = f'<p><a href="{place}/index.html">All numbers and figures</a></p>'
+        sections += section(escape(printable(display)), bullets(read_first(one)) + link)
+    origin = next(iter(analyses.values())).origin
+    text = page(
+        escape(f"{name}: what to read first"),
+        escape(name),
+        f"<b>{escape(printable(whose(origin)))}</b>, analysed by squeezefilm",
+        sections + more,
+        "What to read first, by display.",
+    )
+    write_folder(folder, {"index.html": text})
+    return folder / "index.html"
+
+
+def _folder_of(display: str) -> str:
+    """A name for a display's folder: of a file its name alone, wherever it lies."""
+    return Path(display).stem if display.endswith(".toml") else display
+
+
+def study_figures(analysis: StudyAnalysis) -> dict[str, tuple[str, Figure]]:
+    """The figures by key: heading and drawing. What was not measured has none."""
+    return drawn_figures(_figures_of(analysis), analysis)
+
+
+def drawing(analysis: StudyAnalysis, key: str) -> Figure:
+    """The figure of a study's analysis of that key."""
+    return next(one for one in _figures_of(analysis) if one.key == key).draw(analysis)
+
+
+def _figures_of(analysis: StudyAnalysis) -> tuple[FigureOf, ...]:
+    return TASK_FIGURES if isinstance(analysis, TaskAnalysis) else FIGURES
+
+
+def _numbers_file(analysis: StudyAnalysis) -> str:
+    return "analysis.json" if isinstance(analysis, TaskAnalysis) else "identification.json"
+
+
+def study_page(
+    analysis: StudyAnalysis,
+    figures: Mapping[str, tuple[str, Titled]],
+    provenance: dict[str, Any],
+) -> str:
+    """The page as text; `figures` lie beside it, by the names of their files."""
+    title = escape(printable(analysis.name))
+    head = ("Quantity", "Value", "Remark")
+    numbers = text_table(whose(analysis.origin), head, key_rows(analysis))
+    details = _task if isinstance(analysis, TaskAnalysis) else _identification
+    sections = (
+        section("Read first", bullets(read_first(analysis)))
+        + section("Numbers", numbers)
+        + picture_sections(figures)
+        + details(analysis)
+        + _screening(analysis)
+        + _worked(analysis)
+        + section("What could not be computed, or needs care", bullets(analysis.notes, "Nothing."))
+    )
+    kind = "identification study" if not isinstance(analysis, TaskAnalysis) else analysis.task
+    return page(
+        f"{title}: {kind}",
+        title,
+        f"<b>{escape(printable(whose(analysis.origin)))}</b>, analysed by squeezefilm",
+        sections,
+        f"{stamped(provenance, 'SHA-256 of the answers')} ·\n"
+        f"seed of the resampling {escape(str(provenance['seed']))}.\n"
+        f"All numbers: {links([_numbers_file(analysis)])}.",
+    )
+
+
+def _task(analysis: Any) -> str:
+    found = ""
+    if analysis.conditions:
+        caption = "Answers by stimulus; intervals as the numbers say"
+        found += section(
+            "Stimuli in numbers",
+            text_table(caption, condition_head(analysis), condition_rows(analysis)),
+        )
+    caption = f"{analysis.measure[:1].upper()}{analysis.measure[1:]} of each person"
+    found += section("People in numbers", text_table(caption, PERSON_HEAD, person_rows(analysis)))
+    if analysis.assumed:
+        found += section("What the simulated answers assume", bullets(analysis.assumed))
+    return found
+
+
+def _identification(analysis: Any) -> str:
+    return (
+        section("Confusions in numbers", _confusion(analysis))
+        + section("Information transfer by every estimator", _information(analysis))
+        + (section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
+    )
+
+
+def _screening(analysis: StudyAnalysis) -> str:
+    """Everybody judged by the design's rule."""
+    if analysis.screening is None:
+        return ""
+    caption = (
+        "z is near a standard normal deviate for somebody who guesses, and below 0 for answers "
+        "that are mixed up"
+    )
+    rows = screening_rows(analysis.screening)
+    return section("Who does the task", text_table(caption, SCREENING_HEAD, rows))
+
+
+def _worked(analysis: StudyAnalysis) -> str:
+    """How people explored, who attended, and the methods section."""
+    found = ""
+    if head := exploration_head(analysis):
+        caption = "Means over people by stimulus; in brackets the t interval over people"
+        found += section(
+            "Exploration in numbers", text_table(caption, head, exploration_rows(analysis))
+        )
+    if analysis.course is not None and analysis.course.attention:
+        rows = [
+            (one.person, f"{one.right} of {one.asked}", f"{one.p_value:.2g}", _judged(one.attended))
+            for one in analysis.course.attention
+        ]
+        caption = "Catch trials; p of no more right answers from a person who gets 95 % right"
+        head = ("Participant", "Right", "p", "Judged")
+        found += section("Attention", text_table(caption, head, rows))
+    if analysis.methods:
+        found += section("Methods, for a paper", f"<p>{as_html(analysis.methods)}</p>")
+    return found
+
+
+def _judged(attended: bool) -> str:
+    return "attended" if attended else "doubtful"
+
+
+def _confusion(analysis: IdentificationAnalysis) -> str:
+    matrix, posterior = analysis.matrix, analysis.posterior
+    rows = [
+        [answer, *(_cell(analysis, i, j) for j in range(len(matrix.stimuli)))]
+        for i, answer in enumerate(matrix.answers)
+    ]
+    return text_table(
+        f"Per cent of each column; in brackets trials, and the {100 * posterior.level:g} % "
+        f"interval of the Dirichlet posterior (prior {posterior.prior:g}, trials taken as "
+        "independent)",
+        ("Answered \\ simulated", *matrix.stimuli),
+        rows,
+    )
+
+
+def _cell(analysis: IdentificationAnalysis, i: int, j: int) -> str:
+    count = int(analysis.matrix.counts[i, j])
+    percent = analysis.matrix.percent[i, j]
+    low, high = 100 * analysis.posterior.low[i, j], 100 * analysis.posterior.high[i, j]
+    share = "–" if percent != percent else f"{percent:.0f} %"
+    return f"{share} ({count}; {low:.0f} to {high:.0f})"
+
+
+def _information(analysis: IdentificationAnalysis) -> str:
+    rows = [
+        (
+            item.name + (" (to quote)" if item.key == analysis.information.recommended else ""),
+            f"{item.estimate:.3f}" if item.estimate == item.estimate else "none",
+            "–"
+            if item.interval is None
+            else f"{item.interval.low:.3f} to {item.interval.high:.3f}",
+            item.fails,
+        )
+        for item in analysis.information.estimates
+    ]
+    return text_table(
+        "The pooled matrix; intervals over participants",
+        ("Estimator", "Transfer (bit)", "Interval (bit)", "Where it fails"),
+        rows,
+    )
+
+
+def _mixed(analysis: IdentificationAnalysis) -> str:
+    fit = analysis.mixed
+    assert fit is not None
+    rows = [
+        (
+            name,
+            f"{100 * one:.0f} %",
+            f"{odds:.2f} ± {error:.2f}",
+            "none (always or never right)" if mean != mean else f"{100 * mean:.0f} %",
+        )
+        for name, one, odds, error, mean in zip(
+            fit.names,
+            fit.proportion_correct,
+            fit.log_odds,
+            fit.log_odds_error,
+            fit.average_proportion_correct,
+            strict=True,
+        )
+    ]
+    spread = f"{fit.participant_spread:.2f}"
+    bounds = f"{fit.participant_spread_low:.2f} to {fit.participant_spread_high:.2f}"
+    return text_table(
+        f"{fit.model}. Participants spread by {spread} in log-odds ({bounds})",
+        ("Stimulus", "A typical person", "Log-odds", "Mean over people"),
+        rows,
+    )

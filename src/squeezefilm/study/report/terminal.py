@@ -1,0 +1,238 @@
+"""What the terminal shows of a study, and how it asks a participant."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.kit.numbers import M, shown
+from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
+
+if TYPE_CHECKING:
+    from squeezefilm.core.quantities import Second
+    from squeezefilm.physics.perception.stimuli import Grating, Stimulus
+    from squeezefilm.study.conduct.run import Acknowledgement, Presentation
+    from squeezefilm.study.design.plan import StudyPlan
+    from squeezefilm.study.record.deletion import Deletion
+    from squeezefilm.study.record.merge import Merge
+    from squeezefilm.study.record.store import StudyStore
+
+
+def _balanced(people: int) -> str:
+    if people == 1:
+        return "balanced within each participant"
+    return f"balanced over every {people} participants"
+
+
+def show_plan(plan: StudyPlan) -> None:
+    """Print a plan: what is presented, how often, how long it takes, what is assumed."""
+    design = plan.design
+    minutes = plan.duration / 60
+    everyone = f"for {plan.participants} participants"
+    phases = ", ".join(f"{count} {name}" for name, count in plan.phases.items())
+    rows = [
+        ("Task", design.task, design.spoken_question),
+        ("Displays", ", ".join(design.displays), ""),
+        ("Trials", f"{len(plan.schedules[0])} per participant", phases),
+        ("Time", f"{minutes:.0f} min per participant", f"{design.trial_duration:g} s a trial"),
+        ("In all", f"{minutes * plan.participants / 60:.1f} h", everyone),
+        ("Exploring", design.exploring, _EXPLORING[design.exploring]),
+        ("Order", design.order, _balanced(plan.balanced_participants)),
+        ("Seed", str(plan.seed), f"design {design.sha256[:12]}"),
+    ]
+    console = show_rows(f"{design.name}: {design.title}", rows)
+    heading(console, "Presented")
+    table(
+        console,
+        (*_GRATING, "Surface", "Friction", "Right answer"),
+        [
+            (
+                *_grating(one),
+                one.kind,
+                "its own" if one.texture else f"{one.low:g} to {one.high:g}",
+                "" if design.two_surfaces else design.answer_to(one) or "none",
+            )
+            for one in design.stimuli
+        ],
+    )
+    if design.alternatives:
+        heading(console, "Compared with")
+        table(
+            console,
+            (*_GRATING, "Ridge", "Material"),
+            [
+                (*_grating(one), shown(one.ridge_height, M, 3), one.material)
+                for one in design.alternatives
+            ],
+        )
+    heading(console, "First trials of the first participants")
+    for number, schedule in enumerate(plan.schedules[:4]):
+        names = [" / ".join(t.stimuli) or t.adaptive for t in schedule if t.phase == "main"][:8]
+        console.print(f"{number:3d}  {schedule[0].display}: {', '.join(names)}, …")
+    if plan.assumed:
+        heading(console, "Assumed")
+        console.print(", ".join(plan.assumed))
+    if design.note:
+        console.print(f"\n{design.note}")
+
+
+_EXPLORING = {"strokes": "to and fro along x", "free": "over the whole face, in two dimensions"}
+_GRATING = ("Name", "Period", "Groove", "Length means")
+
+
+def _grating(one: Stimulus | Grating) -> tuple[str, str, str, str]:
+    """What a virtual and a real grating both have, as `_GRATING` heads it; a shape has none."""
+    if one.period != one.period:
+        return one.name, "–", "–", "–"
+    period, crossed = shown(one.period, M, 3), getattr(one, "second_period", math.nan)
+    if crossed == crossed:
+        period += f" by {shown(crossed, M, 3)}"
+    return one.name, period, shown(one.groove_width, M, 3), one.period_means or "–"
+
+
+def show_boards(head: tuple[str, ...], rows: list[tuple[str, ...]], says: Iterable[str]) -> None:
+    """Print a study's boards, and what it calls their lengths."""
+    console = plain_console()
+    heading(console, "Boards to be made")
+    table(console, head, rows)
+    for one in says:
+        console.print(one, highlight=False)
+
+
+def show_status(store: StudyStore) -> None:
+    """Print who is enrolled and how far they are."""
+    console, study = plain_console(), store.study
+    heading(console, f"{study['name']}: {store.path}")
+    table(
+        console,
+        ("Participant", "Number", "Answered", "Planned", "Set aside"),
+        [
+            (
+                one["uuid"],
+                *(str(one[key]) for key in ("number", "answered", "planned", "set_aside")),
+            )
+            for one in store.participants()
+        ],
+    )
+
+
+def show_deletion(done: Deletion, pseudonym: str) -> None:
+    """Print what was deleted, that nothing of them is left, and what was not touched."""
+    print(
+        f"{pseudonym}: {done.answers} answers, {done.traces} traces and {done.sittings} sittings "
+        f"deleted; {done.backups} backups and {done.exports} exports gone through; nothing found "
+        f"in {done.searched} files"
+        if done.enrolled
+        else f"{pseudonym} was not enrolled; nothing found in {done.searched} files"
+    )
+    if done.left:
+        print(f"left as they are, being no files of this program: {', '.join(done.left)}")
+
+
+def show_merge(done: Merge, other: str) -> None:
+    """Print what a merge added, and doubled numbers."""
+    print(
+        f"{other}: {done.added['participant']} participants and {done.added['response']} answers "
+        f"added, {done.present['response']} answers were there, {done.traces} traces copied"
+    )
+    if done.doubled_numbers:
+        numbers = ", ".join(str(one) for one in done.doubled_numbers)
+        print(
+            f"doubled participants' numbers: {numbers}; they had the same orders, which costs "
+            "balance; give stations different --station of --stations next time"
+        )
+
+
+class TerminalExaminer:
+    """Asks at the terminal: a key and Enter. `read` and `write` are for tests."""
+
+    def __init__(
+        self,
+        question: str,
+        *,
+        modulus: float = 0.0,
+        read: Callable[[str], str] = input,
+        write: Callable[[str], None] = print,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._question, self._modulus = question, modulus
+        self._reads, self._write, self._sleep = read, write, sleep
+
+    def _read(self, prompt: str) -> str:
+        """One line. The end of the input stops the session as Ctrl-C does."""
+        try:
+            return self._reads(prompt)
+        except EOFError as error:
+            raise KeyboardInterrupt from error
+
+    def rest(self, duration: Second) -> None:
+        """Wait (s), then for Enter."""
+        self._write(f"\nBreak: {duration:.0f} s. Leave the surface.")
+        self._sleep(duration)
+        self._read("Press Enter to go on. ")
+
+    def placed(self) -> None:
+        """Return at Enter, when a surface that is put there by hand is in place."""
+        self._read("\nFingers off. Press Enter when the surface is in place. ")
+
+    def feel(self, presentation: Presentation, place: int) -> None:
+        """Say what to feel; return at Enter."""
+        surface = presentation.surfaces[place]
+        several = len(presentation.surfaces) > 1
+        what = f"surface {place + 1} of 2" if several else f"'{surface.name}'"
+        self._read(f"\n[{presentation.remaining} left] Feel {what}, then press Enter. ")
+
+    def ask(self, presentation: Presentation) -> str | float:
+        """The answer, asked for again until it is one of those offered."""
+        trial = presentation.trial
+        practice = " (practice)" if trial.phase == "practice" else ""
+        self._write(f"\n[{presentation.remaining} left]{practice} {self._question}")
+        if not trial.alternatives:
+            if self._modulus:
+                self._write(f"The reference is {self._modulus:g}.")
+            return self._number()
+        for place, name in enumerate(trial.alternatives, 1):
+            self._write(f"  {place}  {name}")
+        while True:
+            key = self._read("> ").strip()
+            if key in trial.alternatives:
+                return key
+            if key.isascii() and key.isdigit() and 1 <= int(key) <= len(trial.alternatives):
+                return trial.alternatives[int(key) - 1]
+            self._write(f"Answer with a number from 1 to {len(trial.alternatives)}.")
+
+    def acknowledge(self, presentation: Presentation, told: Acknowledgement) -> None:
+        """Say what was right, in practice only, and what comes again."""
+        for said in (told.spoiled and f"It comes again later: {told.spoiled}", told.practice):
+            if said:
+                self._write(f"{said}.")
+        if presentation.trial.feedback and told.right_answer:
+            word = "Right" if told.correct else f"It was '{told.right_answer}'"
+            self._write(f"{word}.")
+
+    def _number(self) -> float:
+        while True:
+            try:
+                value = float(self._read("> ").strip().replace(",", "."))
+            except ValueError:
+                value = math.nan
+            if math.isfinite(value) and value > 0:
+                return value
+            self._write("Answer with a number above 0.")
+
+
+def ask_acknowledgement(statement: str, read: Callable[[str], str] = input) -> bool:
+    """Show the exposure to airborne ultrasound and ask whether it is acknowledged.
+
+    Raises `InputError` where nobody can be asked.
+    """
+    print(f"\n{statement}\nPeople and animals nearby are exposed too; children may hear it.")
+    try:
+        return read("Type 'yes' to acknowledge it: ").strip().lower() == "yes"
+    except EOFError as error:
+        raise InputError(
+            "nobody is there to acknowledge the exposure; give acknowledge_ultrasound"
+        ) from error

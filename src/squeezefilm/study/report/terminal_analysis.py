@@ -1,0 +1,202 @@
+"""What the terminal shows of an analysed study, and of simulated participants."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from squeezefilm.core.kit.numbers import printable
+from squeezefilm.core.kit.terminal import heading, plain_console, table
+from squeezefilm.study.report.simulated_page import (
+    LEGEND,
+    REASONS,
+    confusion_rows,
+    reason_rows,
+    remarks,
+)
+from squeezefilm.study.report.words import (
+    PERSON_HEAD,
+    SCREENING_HEAD,
+    condition_head,
+    condition_rows,
+    key_rows,
+    person_rows,
+    read_first,
+    screening_rows,
+    whose,
+)
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.simulated.answers import SimulatedAnswers
+    from squeezefilm.study.simulated.participants import SimulatedStudy
+    from squeezefilm.study.simulated.planned_power import PlannedPower
+    from squeezefilm.study.simulated.planned_precision import PlannedPrecision
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
+
+_SHOWN_PEOPLE = 24
+"""Of more people the terminal shows the population only."""
+
+
+def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
+    """Print what to read first of each display, its answers and its main numbers."""
+    from squeezefilm.study.tasks.findings import TaskAnalysis
+
+    console = plain_console()
+    for display, one in analyses.items():
+        heading(console, f"{display}: {whose(one.origin)}")
+        for sentence in read_first(one):
+            console.print(sentence, highlight=False)
+        if isinstance(one, TaskAnalysis):
+            if one.conditions:
+                table(console, condition_head(one), condition_rows(one), fixed=(0,))
+            if len(one.persons) <= _SHOWN_PEOPLE:
+                table(console, PERSON_HEAD, person_rows(one), fixed=(0,))
+        else:
+            _show_confusion(console, one)
+        if one.screening is not None and one.screening.named:
+            rows = screening_rows(one.screening, named=True)
+            table(console, SCREENING_HEAD, rows, fixed=(0, 1))
+        table(console, ("", "", ""), key_rows(one), fixed=(0,))
+        for note in one.notes:
+            console.print(f"  {note}", style="dim", highlight=False)
+
+
+def _show_confusion(console: Console, one: IdentificationAnalysis) -> None:
+    matrix = one.matrix
+    percent = matrix.percent
+    table(
+        console,
+        ("answered", *matrix.stimuli),
+        [
+            (answer, *(f"{percent[i, j]:.0f} %" for j in range(len(matrix.stimuli))))
+            for i, answer in enumerate(matrix.answers)
+        ],
+        fixed=(0,),
+    )
+
+
+def show_power(found: PlannedPower) -> None:
+    """Print how many people tell two stimuli, or displays, apart, by simulation."""
+    console, curve = plain_console(), found.curve
+    where, sides, own = f" on {found.display}", "One-sided", "score"
+    if not found.display:
+        where, sides, own = f" by {found.design}", "Two-sided", f"difference of {found.measure}"
+    heading(console, f"{found.first} against {found.second}{where}, SIMULATED")
+    table(
+        console,
+        ("people", "studies that find it", "95 % bounds of the simulation"),
+        [
+            (f"{n}", f"{100 * power:.0f} %", f"{100 * low:.0f} to {100 * high:.0f} %")
+            for n, power, low, high in zip(
+                curve.participants, curve.power, curve.low, curve.high, strict=True
+            )
+        ],
+        fixed=(0,),
+    )
+    if curve.needed is None:
+        console.print(f"{curve.participants[-1]} people do not reach {100 * curve.target:.0f} %.")
+    else:
+        console.print(f"{curve.needed} people reach {100 * curve.target:.0f} % power.")
+    console.print(
+        f"{sides} test over people at {curve.alpha:g}; the pool's own {own} is "
+        f"{found.difference:.3g} (0 for nothing); {curve.studies} studies a size, of "
+        f"simulated participants '{found.observer}': what they assume, this assumes. "
+        f"Finger: {printable(found.finger)}.",
+        highlight=False,
+    )
+
+
+def show_precision(found: PlannedPrecision) -> None:
+    """Print how many people make an answer precise, and what stopping early does."""
+    console = plain_console()
+    wanted = f"± {100 * found.precision:g} %"
+    if found.measure != "Weber fraction":
+        wanted = f"± {found.precision:g}"
+    heading(console, f"{found.measure} of {found.design} on {found.display}, SIMULATED")
+    table(
+        console,
+        ("people", f"studies within {wanted}", "95 % bounds", "intervals that hold the value"),
+        [
+            (
+                f"{n}",
+                f"{100 * share:.0f} %",
+                f"{100 * low:.0f} to {100 * high:.0f} %",
+                f"{100 * held:.0f} %",
+            )
+            for n, share, low, high, held in zip(
+                found.participants, found.reached, found.low, found.high, found.held, strict=True
+            )
+        ],
+        fixed=(0,),
+    )
+    if found.needed is None:
+        most = found.participants[-1]
+        console.print(f"{most} people do not give it in {100 * found.target:.0f} % of the studies.")
+    else:
+        console.print(
+            f"{found.needed} people give it in {100 * found.target:.0f} % of the studies."
+        )
+    # Beyond what so many studies scatter.
+    scatter = 2 * (0.95 * 0.05 / found.studies) ** 0.5
+    short = found.participants[found.held < 0.95 - scatter]
+    if short.size:
+        normal = "normal in the logarithm" if found.measure == "Weber fraction" else "normal"
+        console.print(
+            f"With {', '.join(map(str, short))} people the interval holds the value less often "
+            f"than the 95 % that it promises: it takes people's values to be {normal}, which those "
+            "of these people are not.",
+            highlight=False,
+        )
+    one = found.sequential
+    console.print(
+        f"A study that adds people until its interval is that narrow stops at {one.mean:.3g} in "
+        f"the mean ({one.low:.0f} to {one.high:.0f}); its interval then holds the value in "
+        f"{100 * one.held:.1f} % of the studies ({100 * one.held_low:.1f} to "
+        f"{100 * one.held_high:.1f} %), where 95 % are promised. {100 * one.unfinished:.0f} % give "
+        f"up at {one.most} people.",
+        highlight=False,
+    )
+    console.print(
+        f"{found.studies} studies a size, of simulated participants '{found.observer}', whose own "
+        f"value is {found.truth:.3g}: what they assume, this assumes. "
+        f"Finger: {printable(found.finger)}.",
+        highlight=False,
+    )
+
+
+def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
+    """Print each display's answers and the model's reasons, or what their analysis says."""
+    from squeezefilm.study.simulated.answers import SimulatedAnswers
+
+    console = plain_console()
+    finger = f"Finger: {printable(study.tables.whose_finger)}."
+    if isinstance(study, SimulatedAnswers):
+        from squeezefilm.study.simulated.assumptions import assumed
+
+        show_analyses(study.analyses)
+        console.print("SIMULATED: nobody answered. Assumed beyond the observer's file:")
+        for said in assumed(study.answers.design):
+            console.print(f"  {said}", highlight=False)
+        for display, rows in ((d, reason_rows(study, i)) for i, d in enumerate(study.analyses)):
+            heading(console, f"{display}: what the model sees of each stimulus")
+            table(console, REASONS, rows)
+        console.print(finger, highlight=False)
+        console.print(LEGEND)
+        return
+    for index, name in enumerate(study.tables.design.displays):
+        heading(
+            console,
+            f"{name}, SIMULATED: {100 * study.proportion_correct(index):.1f} % right, "
+            f"{study.participants} simulated participants, seed {study.seed}",
+        )
+        head, rows = confusion_rows(study, index)
+        table(console, head, rows)
+        console.print("Per cent of each column; rows are what was answered, columns simulated.")
+        table(console, REASONS, reason_rows(study, index))
+    console.print(finger, highlight=False)
+    console.print(LEGEND)
+    for said in remarks(study.tables.design):
+        console.print(said, highlight=False)

@@ -1,0 +1,179 @@
+"""Figures of a study beside its confusions: response times, exploration, power, thresholds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.core.kit import style
+from squeezefilm.study.report.figures import data_of, named_ticks
+from squeezefilm.study.report.words import key_words
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from squeezefilm.study.identification.power import PowerCurve
+    from squeezefilm.study.psychometric.fit import PsychometricFit
+    from squeezefilm.study.simulated.planned_precision import PlannedPrecision
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
+
+
+_ACROSS = 4
+"""Quantities of exploration side by side."""
+
+
+@style.drawn
+def response_times(analysis: StudyAnalysis) -> Figure:
+    """Response times by stimulus, and the ex-Gaussian of all."""
+    found = analysis.response_times
+    if not found:
+        return style.message_figure("No response times", "No response time was given.")
+    slow = max(found, key=lambda item: item.geometric_mean)
+    quick = min(found, key=lambda item: item.geometric_mean)
+    title = f"{style.plain(slow.name, 16)} takes {slow.geometric_mean:.2g} s"
+    if len(found) > 1:
+        title = (
+            f"{style.plain(slow.name, 16)} takes longest, {slow.geometric_mean:.2g} s; "
+            f"{style.plain(quick.name, 16)} shortest, {quick.geometric_mean:.2g} s"
+        )
+    figure = style.new_figure(
+        title,
+        f"{data_of(analysis)}; geometric means over people with {100 * slow.level:g} % t intervals",
+        4.0,
+    )
+    left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
+    style.estimates(left, ((item.geometric_mean, item.low, item.high) for item in found))
+    named_ticks(left, [item.name for item in found])
+    left.set(ylabel="response time (s)", xlabel="stimulus")
+    left.set_ylim(0, None)
+    left.set_title("each stimulus")
+    fit = analysis.ex_gaussian
+    if fit is None:
+        right.set_axis_off()
+        right.text(0, 0.5, "no ex-Gaussian: too few times", transform=right.transAxes)
+        return figure
+    from squeezefilm.study.identification.response_times import ex_gaussian_density
+
+    end = fit.mean + 3 * fit.spread + 5 * fit.tail
+    t = np.linspace(0, end, 400)
+    right.plot(t, ex_gaussian_density(t, fit), color=style.BLUE)
+    right.fill_between(t, 0, ex_gaussian_density(t, fit), color=style.BAND)
+    right.axvline(fit.mean + fit.tail, color=style.ORANGE, lw=1.2, ls=(0, (4, 2)))
+    right.set(xlabel="response time (s)", ylabel="density (1/s)", xlim=(0, end), ylim=(0, None))
+    right.set_title(f"all: μ {fit.mean:.2g} s, σ {fit.spread:.2g} s, τ {fit.tail:.2g} s")
+    return figure
+
+
+@style.drawn
+def exploration(analysis: StudyAnalysis) -> Figure:
+    """Each quantity of exploration by stimulus, means over people with intervals."""
+    found = {key: rows for key, rows in analysis.exploration.items() if rows}
+    if not found:
+        return style.message_figure("No exploration", "No trace of a finger was given.")
+    level = next(iter(found.values()))[0].level
+    figure = style.new_figure(
+        "How people explored, by stimulus",
+        f"{data_of(analysis)}; means over people with {100 * level:g} % t intervals",
+        3.9 * -(-len(found) // _ACROSS),
+    )
+    down, across = -(-len(found) // _ACROSS), min(len(found), _ACROSS)
+    panels = figure.subplots(down, across, squeeze=False).ravel()
+    for axes in panels[len(found) :]:
+        axes.set_axis_off()
+    for axes, (key, rows) in zip(panels, found.items(), strict=False):
+        style.estimates(axes, ((item.mean, item.low, item.high) for item in rows))
+        names = [style.plain(item.name, 13) for item in rows]
+        axes.set_xticks(range(len(rows)), names, rotation=30, ha="right")
+        axes.set_ylim(0, 1.08 * axes.get_ylim()[1])
+        axes.set_title(style.plain(key_words(key)))
+    return figure
+
+
+@style.drawn
+def power(curve: PowerCurve) -> Figure:
+    """Power against the number of people, with the error of the simulation."""
+    needed, surely = curve.needed, curve.needed_surely
+    said = f"{needed} people reach {100 * curve.target:g} % power"
+    if needed is None:
+        most = int(curve.participants[-1])
+        said = f"{most} people do not reach {100 * curve.target:g} % power"
+    elif surely is not None and surely != needed:
+        said += f"; {surely} do beyond the simulation's error"
+    figure = style.new_figure(
+        said,
+        f"simulated studies, {curve.studies} per size; one-sided test at α = {curve.alpha:g}; bars "
+        "are 95 % Clopper–Pearson bounds of the simulation",
+        4.0,
+    )
+    axes = figure.subplots()
+    axes.plot(curve.participants, 100 * curve.power, color=style.BLUE, lw=1.3)
+    for n, low, high in zip(curve.participants, curve.low, curve.high, strict=True):
+        axes.plot([n, n], [100 * low, 100 * high], **style.INTERVAL)
+    axes.plot(curve.participants, 100 * curve.power, **style.ESTIMATE)
+    axes.axhline(100 * curve.target, color=style.ORANGE, lw=1.1, ls=(0, (4, 2)))
+    if needed is not None:
+        axes.axvline(needed, color=style.ORANGE, lw=1.1, ls=(0, (1.4, 1.2)))
+    axes.set(xlabel="participants", ylabel="studies that find it (%)")
+    axes.set(xlim=(0, None), ylim=(0, 103))
+    return figure
+
+
+@style.drawn
+def precision(found: PlannedPrecision) -> Figure:
+    """Share of studies that are precise enough against the number of people."""
+    wanted = f"± {100 * found.precision:g} %" if found.measure == "Weber fraction" else ""
+    wanted = wanted or f"± {found.precision:g}"
+    said = f"{found.needed} people give the {found.measure} within {wanted}"
+    if found.needed is None:
+        said = f"{int(found.participants[-1])} people do not give the {found.measure} to {wanted}"
+    figure = style.new_figure(
+        f"{said} in {100 * found.target:g} % of studies",
+        f"simulated studies, {found.studies} per size; bars are 95 % Clopper–Pearson bounds of the "
+        "simulation; dashed: intervals that hold the value of all people (95 % are promised)",
+        4.0,
+    )
+    axes = figure.subplots()
+    axes.plot(found.participants, 100 * found.reached, color=style.BLUE, lw=1.3)
+    for n, low, high in zip(found.participants, found.low, found.high, strict=True):
+        axes.plot([n, n], [100 * low, 100 * high], **style.INTERVAL)
+    axes.plot(found.participants, 100 * found.reached, **style.ESTIMATE)
+    axes.plot(found.participants, 100 * found.held, color=style.ORANGE, ls=(0, (4, 2)), lw=1.1)
+    axes.axhline(95, **style.GUIDE)
+    axes.set(xlabel="participants", ylabel="studies (%)", xlim=(0, None), ylim=(0, 103))
+    return figure
+
+
+@style.drawn
+def psychometric_function(fit: PsychometricFit) -> Figure:
+    """Share of positive answers against intensity; the area of a point is its number of trials."""
+    function, log = fit.function, fit.function.axis == "log"
+    low, high = fit.posterior_interval["threshold"]
+    title = (
+        f"The threshold is {function.threshold:.3g}, with {100 * fit.level:g} % between "
+        f"{low:.3g} and {high:.3g}"
+    )
+    if fit.falls:
+        title = "The answers fall with intensity: this rising function does not describe them"
+    made = (
+        f"{function.shape} function, guess rate {function.guess_rate:.2g}, lapse rate "
+        f"{function.lapse_rate:.2g}; {int(fit.trials.sum())} trials; credible interval"
+    )
+    figure = style.new_figure(title, "; ".join([made, *fit.notes]), 4.4)
+    axes = figure.subplots()
+    first, last = float(fit.intensity[0]), float(fit.intensity[-1])
+    room = 0.0 if log else 0.04 * (last - first)
+    ends = first - room, last + room
+    x = np.geomspace(*ends, 201) if log else np.linspace(*ends, 201)
+    axes.plot(x, 100 * np.asarray(function(x)), color=style.BLUE)
+    share = 100 * fit.positive / fit.trials
+    area = 20 + 180 * fit.trials / fit.trials.max()
+    axes.scatter(fit.intensity, share, s=area, color=style.MUTED, edgecolor=style.PAPER, zorder=3)
+    middle = 100 * float(np.asarray(function(function.threshold)))
+    axes.plot([low, high], [middle, middle], color=style.ORANGE, lw=2.4, zorder=4)
+    style.mark(axes, function.threshold, middle, 7, color=style.ORANGE)
+    axes.set(xlabel="intensity", ylabel="positive answers (%)", ylim=(-2, 103))
+    if log:
+        axes.set_xscale("log")
+        style.plain_log(axes.xaxis)
+    return figure

@@ -1,0 +1,407 @@
+"""An analysed study in words: what to read first, and the main numbers, for page and terminal."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit.numbers import shown
+
+if TYPE_CHECKING:
+    from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.course import Course
+    from squeezefilm.study.identification.proportions import Interval
+    from squeezefilm.study.identification.response_times import ExGaussian
+    from squeezefilm.study.identification.screening import Screening
+    from squeezefilm.study.psychometric.estimate import Estimate
+    from squeezefilm.study.tasks.analyze import StudyAnalysis
+    from squeezefilm.study.tasks.findings import PersonEstimate, TaskAnalysis
+
+Rows = list[tuple[str, str, str]]
+_SURE = 0.05
+
+
+def read_first(analysis: StudyAnalysis) -> list[str]:
+    """What somebody with a minute should know, in sentences."""
+    from squeezefilm.study.tasks.findings import TaskAnalysis
+
+    people = f"{analysis.participants} {_people(analysis)}"
+    said = [f"{people} answered {analysis.trials} main trials."]
+    if isinstance(analysis, TaskAnalysis):
+        said += _task_first(analysis)
+    else:
+        said += _identification_first(analysis)
+    if analysis.screening is not None:
+        said += _screening_first(analysis.screening)
+    if analysis.course is not None:
+        said += _course_first(analysis.course)
+    if analysis.notes:
+        count = len(analysis.notes)
+        said.append(
+            f"{count} {'remark stands' if count == 1 else 'remarks stand'} at the end: read "
+            f"{'it' if count == 1 else 'them'} before quoting anything."
+        )
+    return said
+
+
+def _people(analysis: StudyAnalysis) -> str:
+    kind = "simulated participant" if "simulated" in analysis.origin else "participant"
+    return kind if analysis.participants == 1 else f"{kind}s"
+
+
+def _identification_first(analysis: IdentificationAnalysis) -> list[str]:
+    interval, best = analysis.interval, analysis.information.best
+    low, high = 100 * interval.low, 100 * interval.high
+    chance = 100 * analysis.matrix.chance
+    above = "above" if interval.low > analysis.matrix.chance else "not surely above"
+    return [
+        f"{100 * analysis.proportion_correct:.3g} % of the answers are right ({low:.3g} to "
+        f"{high:.3g} % at {100 * interval.level:g} %), which is {above} guessing ({chance:.3g} %).",
+        f"The answers carry {best.estimate:.2g} of {analysis.information.greatest:.3g} bit about "
+        "the stimulus.",
+    ]
+
+
+def _task_first(analysis: TaskAnalysis) -> list[str]:
+    if analysis.pooled is None:
+        return [f"No {analysis.measure} could be computed."]
+    found = analysis.pooled
+    if analysis.measure == "sensitivity d′":
+        meaning = f"People tell the surfaces from the reference with d′ = {estimate_words(found)}."
+    elif analysis.measure == "exponent":
+        meaning = (
+            f"Numbers grow with {_JUDGED[analysis.judged]} to the power of {estimate_words(found)}."
+        )
+    else:
+        meaning = (
+            f"A typical person tells a difference of {estimate_words(found, 100, ' %')} in "
+            f"{_JUDGED[analysis.judged]} in 75 % of two intervals: the Weber fraction."
+        )
+    said = [meaning]
+    if analysis.spread is not None:
+        spread = analysis.spread
+        what = "exponents" if analysis.measure == "exponent" else "logarithms of it"
+        said.append(
+            f"People differ: their {what} spread by {spread.value:.2g} ({spread.low:.2g} to "
+            f"{spread.high:.2g})."
+        )
+    return said
+
+
+_JUDGED = {
+    "spatial_period": "spatial period",
+    "friction_depth": "friction change",
+    "ridge_share": "ridge share",
+    "orientation": "orientation",
+}
+
+
+def _screening_first(screening: Screening) -> list[str]:
+    """Who does not do the task, and what the main number is without them."""
+    said = [screening.said] if screening.said else []
+    named = screening.named
+    if not named:
+        return said
+    names = ", ".join(one.person for one in named)
+    count = f"{len(named)} of {len(screening.people)} people"
+    verbs = ("does", "is") if len(named) == 1 else ("do", "are")
+    done = "left out" if screening.left_out else "kept, as the design's rule only marks"
+    return [*said, f"{count} {verbs[0]} not do the task ({names}), and {verbs[1]} {done}."]
+
+
+SCREENING_HEAD = ("Participant", "z", "Judged")
+"""Of `screening_rows`."""
+
+
+def screening_rows(screening: Screening, named: bool = False) -> list[tuple[str, ...]]:
+    """Everybody, judged; or those only who do not do the task."""
+    return [
+        (
+            one.person,
+            f"{one.follows:.1f}",
+            "; ".join(one.reasons) or "; ".join(("does the task", *one.doubts)),
+        )
+        for one in (screening.named if named else screening.people)
+    ]
+
+
+def result_rows(analysis: StudyAnalysis) -> Rows:
+    """The main number with and without the people who do not do the task; none where all do."""
+    screening = analysis.screening
+    if screening is None or not screening.named:
+        return []
+    measure = getattr(analysis, "measure", "proportion correct")
+    parts = measure in ("Weber fraction", "proportion correct")
+    scale, unit = (100.0, " %") if parts else (1.0, "")
+    return [
+        (f"{measure[:1].upper()}{measure[1:]}: {name}", *_value_and_interval(one, scale, unit))
+        for name, one in screening.results.items()
+    ]
+
+
+def _value_and_interval(found: Estimate, scale: float, unit: str) -> tuple[str, str]:
+    low, high = scale * found.low, scale * found.high
+    between = f"{low:.3g} to {high:.3g}{unit}" if not math.isnan(low) else "no interval"
+    value = f"{scale * found.value:.3g}{unit}"
+    return value, f"{between} ({found.method}, {100 * found.level:g} %)"
+
+
+def _course_first(course: Course) -> list[str]:
+    said = []
+    for one in course.drift:
+        if one.p_value < _SURE:
+            word = "rises" if one.change > 0 else "falls"
+            said.append(
+                f"The {one.quantity} {word} by {abs(one.change):.2g} over the session "
+                f"(p = {one.p_value:.1g}): people learned, or tired."
+            )
+    if course.attention:
+        missed = sum(not one.attended for one in course.attention)
+        said.append(
+            f"{missed} of {len(course.attention)} people missed more catch trials than one who "
+            "attends."
+            if missed
+            else "Everybody's catch trials are those of people who attend."
+        )
+    return said
+
+
+def estimate_words(found: Estimate, scale: float = 1.0, unit: str = "") -> str:
+    """Like "0.12 (0.1 to 0.15 at 95 %)"."""
+    value = f"{scale * found.value:.3g}{unit}"
+    if math.isnan(found.low):
+        return f"{value} (no interval)"
+    low, high = scale * found.low, scale * found.high
+    return f"{value} ({low:.3g} to {high:.3g}{unit} at {100 * found.level:g} %)"
+
+
+def key_rows(analysis: StudyAnalysis) -> Rows:
+    """The main numbers: what, value, remark."""
+    from squeezefilm.study.tasks.findings import TaskAnalysis
+
+    rows = [("Participants", f"{analysis.participants}", f"{analysis.trials} main trials")]
+    if isinstance(analysis, TaskAnalysis):
+        rows += _task_rows(analysis)
+    else:
+        rows += _identification_rows(analysis)
+    if analysis.ex_gaussian is not None:
+        rows.append(_time_row(analysis.ex_gaussian))
+    return rows + result_rows(analysis) + course_rows(analysis.course)
+
+
+def _time_row(fit: ExGaussian) -> tuple[str, str, str]:
+    texts = [shown(value, si.Unit("s"), 3) for value in (fit.mean, fit.spread, fit.tail)]
+    return "Response time μ, σ, τ", ", ".join(texts), "ex-Gaussian, all trials"
+
+
+def course_rows(course: Course | None) -> Rows:
+    """Drift and attention, as `key_rows` has rows."""
+    if course is None:
+        return []
+    rows = []
+    for one in course.drift:
+        value = f"{one.change:+.2g}"
+        said = "one person: no interval"
+        if not math.isnan(one.low):
+            said = f"{one.low:+.2g} to {one.high:+.2g}, p = {one.p_value:.2g} (t over people)"
+        rows.append((f"Drift of the {one.quantity}", value, said))
+    if course.attention:
+        right = sum(one.right for one in course.attention)
+        asked = sum(one.asked for one in course.attention)
+        missed = [one.person for one in course.attention if not one.attended]
+        rows.append(
+            (
+                "Catch trials right",
+                f"{right} of {asked}",
+                f"doubtful: {', '.join(missed) or 'nobody'}",
+            )
+        )
+    return rows
+
+
+def _task_rows(analysis: TaskAnalysis) -> Rows:
+    percent = analysis.measure == "Weber fraction"
+    scale, unit = (100.0, " %") if percent else (1.0, "")
+    rows = []
+    for name, found in (
+        (analysis.measure.capitalize(), analysis.pooled),
+        *analysis.more.items(),
+    ):
+        if found is None:
+            continue
+        s, u = (scale, unit) if name.lower() == analysis.measure.lower() else _scale_of(name)
+        rows.append((name[0].upper() + name[1:], *_value_and_interval(found, s, u)))
+    if analysis.spread is not None:
+        spread = analysis.spread
+        what = "ln(Weber fraction)" if percent else "the exponent"
+        rows.append(
+            (
+                f"Spread of {what} over people",
+                f"{spread.value:.2g}",
+                f"{spread.low:.2g} to {spread.high:.2g} "
+                f"({spread.method}, {100 * spread.level:g} %)",
+            )
+        )
+    return rows
+
+
+def _scale_of(name: str) -> tuple[float, str]:
+    """Shares and differences in parts are shown in per cent, other numbers as they are."""
+    parts = ("bias", "point", "reversals", "false alarms")
+    return (100.0, " %") if name.startswith(parts) else (1.0, "")
+
+
+def between(interval: Interval | None, scale: float = 1.0, unit: str = "") -> str:
+    """Both ends, the method and the level; a dash for none."""
+    if interval is None:
+        return "–"
+    low, high = scale * interval.low, scale * interval.high
+    return f"{low:.3g} to {high:.3g}{unit} ({interval.method}, {100 * interval.level:g} %)"
+
+
+def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
+    best, fit = analysis.information.best, analysis.sensitivity
+    posterior = analysis.posterior.proportion_correct
+    rows = [
+        *(
+            (
+                "Proportion correct",
+                f"{100 * analysis.proportion_correct:.3g} %",
+                between(interval, 100, " %"),
+            )
+            for interval in (*analysis.intervals, posterior)
+            if interval is not None
+        ),
+        ("Guessing", f"{100 * analysis.matrix.chance:.3g} %", ""),
+        ("p against guessing", f"{analysis.chance_p:.2g}", "exact binomial, one-sided"),
+        (
+            "p against unrelated answers",
+            f"{analysis.permutation_p:.2g}",
+            "permutation within participants, one-sided",
+        ),
+        (
+            "Information transfer",
+            f"{best.estimate:.3g} bit of {analysis.information.greatest:.3g}",
+            f"{best.name}; {between(best.interval)}",
+        ),
+    ]
+    if fit is not None:
+        rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", "equal-variance Thurstone model"))
+        rows += [
+            (
+                f"d′ {one} – {other}",
+                f"{d:.2f}",
+                f"{low:.2f} to {high:.2f} ({fit.interval_method}, {100 * fit.level:g} %)",
+            )
+            for one, other, d, low, high in zip(
+                analysis.matrix.stimuli[:-1],
+                analysis.matrix.stimuli[1:],
+                fit.d_prime,
+                fit.low,
+                fit.high,
+                strict=True,
+            )
+        ]
+    return rows
+
+
+def whose(origin: str) -> str:
+    """Whose answers: "simulated answers", "measured answers", "answers of people"."""
+    is_noun = any(word in origin for word in ("people", "participants", "nobody"))
+    return f"answers of {origin}" if is_noun else f"{origin} answers"
+
+
+def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
+    """Of `condition_rows`: what is counted depends on the task."""
+    counted = {
+        "two-interval": "Right" if analysis.is_adaptive else "Has more",
+        "same-different": "Different",
+        "magnitude-estimation": "Number",
+    }[analysis.task]
+    return ("Stimulus", "Value", "Trials", "People", counted, "d′")
+
+
+def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
+    """Each comparison or stimulus: its answers with their interval, and d′."""
+    in_parts = analysis.is_adaptive and analysis.task == "two-interval"
+    units = {} if in_parts else {"spatial_period": "m", "orientation": "rad"}
+    unit = si.Unit(units.get(analysis.judged, "1"))
+    rows: list[tuple[str, ...]] = []
+    for one in analysis.conditions:
+        answers = one.magnitude or one.share
+        scale, said = (1.0, "") if one.magnitude is not None else (100.0, " %")
+        rows.append(
+            (
+                one.name,
+                "–" if math.isnan(one.value) else shown(one.value, unit, 3),
+                f"{one.trials}",
+                f"{one.participants}",
+                "–" if answers is None else estimate_words(answers, scale, said),
+                "–" if one.d_prime is None else estimate_words(one.d_prime),
+            )
+        )
+    return rows
+
+
+PERSON_HEAD = ("Participant", "Estimate", "Interval", "Trials", "Remark")
+"""Of `person_rows`."""
+
+
+def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
+    """Each person's Weber fraction, exponent or d′."""
+    scale, unit = (100.0, " %") if analysis.measure == "Weber fraction" else (1.0, "")
+    return [
+        (
+            one.person,
+            f"{scale * one.estimate.value:.3g}{unit}",
+            f"{scale * one.estimate.low:.3g} to {scale * one.estimate.high:.3g}{unit}",
+            f"{one.trials}",
+            _person_remark(one, scale, unit),
+        )
+        for one in analysis.persons
+    ]
+
+
+def _person_remark(person: PersonEstimate, scale: float, unit: str) -> str:
+    said = ["not bounded by the answers alone"] if person.unbounded else []
+    if (again := person.asked_again) is not None:
+        low, high = scale * again.low, scale * again.high
+        said.append(
+            f"by simulated reruns: {scale * again.value:.3g} ({low:.3g} to {high:.3g}){unit}"
+        )
+    return "; ".join(said)
+
+
+def exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:
+    """Of `exploration_rows`; empty where no path was kept."""
+    known = [key for key, rows in analysis.exploration.items() if rows]
+    return ("Stimulus", *map(key_words, known)) if known else ()
+
+
+def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
+    """How people explored each stimulus: means over people with their intervals."""
+    known = [rows for rows in analysis.exploration.values() if rows]
+    names = list(dict.fromkeys(one.name for rows in known for one in rows))
+    found = []
+    for name in names:
+        cells = []
+        for rows in known:
+            mine = [one for one in rows if one.name == name]
+            if not mine:
+                cells.append("–")
+                continue
+            one = mine[0]
+            bounds = "" if math.isnan(one.low) else f" ({one.low:.3g} to {one.high:.3g})"
+            cells.append(f"{one.mean:.3g}{bounds}")
+        found.append((name, *cells))
+    return found
+
+
+def key_words(key: str) -> str:
+    """A key with its unit as a person reads it: mean_speed_m_per_s → mean speed (m/s)."""
+    for unit in ("m/s", "mm/s", "m", "mm", "N", "s"):
+        suffix = "_" + unit.replace("/", "_per_")
+        if key.endswith(suffix):
+            return f"{key.removesuffix(suffix).replace('_', ' ')} ({unit})"
+    return key.replace("_", " ")

@@ -1,0 +1,66 @@
+"""What `analyze` says of a skin-stretch array is what its room computes."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from tests.shared import shared
+
+from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis, analyze_skin_stretch
+from squeezefilm.actuators.described import load_actuator
+from squeezefilm.actuators.report.dispatch import analyze_actuator
+from squeezefilm.core.errors import OutOfRangeError
+
+DESCRIBED = load_actuator("biet2008-skin-stretch")
+
+
+@pytest.fixture(scope="module")
+def found() -> SkinStretchAnalysis:
+    found = shared(DESCRIBED.name, lambda: analyze_actuator(DESCRIBED.name)).found
+    assert isinstance(found, SkinStretchAnalysis)
+    return found
+
+
+@pytest.mark.slow
+def test_load_line_and_skin_meet_where_both_say(found: SkinStretchAnalysis) -> None:
+    tip, stiffness = found.tip, found.skin.stiffness
+    assert tip.force == pytest.approx(stiffness * tip.deflection)
+    share = tip.deflection / found.free_deflection
+    assert tip.force == pytest.approx(found.blocked_force * (1 - share))
+    assert abs(found.motion[0]) == pytest.approx(tip.deflection, rel=1e-4)
+
+
+@pytest.mark.slow
+def test_the_wave_moves_with_the_finger(found: SkinStretchAnalysis) -> None:
+    """A quarter of a period later the strain is what it was a quarter of a wave further on."""
+    wave = found.wave
+    frames = wave.times.size
+    assert wave.strain.shape[0] == frames == wave.displacements.shape[0]
+    np.testing.assert_allclose(
+        wave.strain[frames // 2], -wave.strain[0], atol=1e-4 * np.abs(wave.strain).max()
+    )
+    np.testing.assert_allclose(wave.displacements[0], wave.pull.displacements, rtol=1e-9)
+    assert np.count_nonzero(wave.slips[0]) == wave.pull.slipping
+    assert np.array_equal(wave.slips[0], wave.slips[frames // 2])
+
+
+@pytest.mark.slow
+def test_what_slips_is_warned_of_and_json_has_units(found: SkinStretchAnalysis) -> None:
+    assert any(str(found.wave.pull.slipping) in text for text in found.warnings)
+    told = json.loads(json.dumps(found.summary(), allow_nan=False))
+    assert told["deflection_on_skin_m"] == found.tip.deflection
+    assert told["lines"]["direct"] == 61
+
+
+@pytest.mark.slow
+def test_a_stiffer_tissue_moves_less(found: SkinStretchAnalysis) -> None:
+    one = next(e for e in found.effects if e.path == "skin_stretch.tissue.thickness")
+    low, high = one.answers["deflection_on_skin_m"]
+    assert low < found.tip.deflection < high
+
+
+def test_a_voltage_that_undoes_the_poling_is_refused() -> None:
+    with pytest.raises(OutOfRangeError, match="poling"):
+        analyze_skin_stretch(DESCRIBED, voltage=400.0)

@@ -1,0 +1,60 @@
+"""Figures of a motor: the graph has every element and quantity, the curves their ends."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from tests.unit import drawn
+from tests.unit.actuators.test_motor import WORKING, motor
+
+from squeezefilm.actuators.motor.causal import averaged_graph, causal_graph
+from squeezefilm.actuators.motor.closed_loop import TrackedForce
+from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
+from squeezefilm.actuators.motor.in_time import simulate
+from squeezefilm.actuators.motor.plane import simulate_plane
+from squeezefilm.actuators.report.motor_figures import (
+    causal_figure,
+    foot_figure,
+    force_step_figure,
+    map_figure,
+    plane_figure,
+    speed_force_figure,
+)
+
+
+def words(figure: Figure) -> str:
+    return " ".join(drawn.words(one.get_text()) for one in figure.findobj(Text))
+
+
+def test_the_graph_draws_every_element_and_what_goes_between() -> None:
+    for graph in (averaged_graph(motor()), causal_graph(motor())):
+        said = words(causal_figure(graph))
+        for one in graph.elements:
+            assert one.name in said
+        for name in graph.sources:
+            assert name in said
+
+
+def test_curves_map_and_foot_are_drawn() -> None:
+    curve = speed_force_curve(motor(), WORKING, 4)
+    found = motor_map(motor(), np.array([5.0, 60.0]), np.array([0.5e-6, 2e-6]))
+    assert "no-load speed (mm/s)" in words(map_figure((found, 20.0, 1e-6)))
+    feet = motor().feet
+    moved = simulate(motor(), WORKING, periods=20, traced=2)
+    assert "across it (µm)" in words(foot_figure((moved, feet.across[0], feet.along[0])))
+    assert f"Stalls at {curve[0].force:.3g} N" in words(
+        speed_force_figure((curve, np.array([[0.0, 1.0]])))
+    )
+
+
+def test_a_step_of_force_says_how_near_it_ends() -> None:
+    time = np.linspace(1e-3, 4e-3, 4)
+    wanted, force = np.array([1.0, 1.0, 2.0, 2.0]), np.array([0.5, 1.0, 1.5, 1.96])
+    tracked = TrackedForce(time, wanted, force, 1e-6 * force, 10 * force, 0)
+    assert "ends 2 % from the force" in words(force_step_figure(tracked))
+
+
+def test_the_way_in_the_plane_is_drawn() -> None:
+    moved = simulate_plane(motor(), WORKING, periods=20, steps=32, traced=20)
+    said = words(plane_figure(moved))
+    assert "sideways (µm)" in said
+    assert f"ends at {1e3 * moved.final_velocity[0]:.3g} mm/s along" in said

@@ -1,0 +1,126 @@
+"""Pages of actuators: everything is in its folder, nothing from elsewhere, a texture that moves."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from PIL import Image
+from tests.shared import shared
+
+from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis
+from squeezefilm.actuators.described import is_actuator
+from squeezefilm.actuators.report import motor, skin_stretch, skin_stretch_figures
+from squeezefilm.actuators.report.dispatch import AnalyzedActuator, analyze_actuator
+from squeezefilm.actuators.report.page import assumed_words
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.errors import ConfigError
+from squeezefilm.core.kit import style
+
+NAMES = ("biet2008-motor", "biet2008-skin-stretch")
+KINDS = {
+    "biet2008-motor": motor.write_motor,
+    "biet2008-skin-stretch": skin_stretch.write_skin_stretch,
+}
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def analyzed(request: pytest.FixtureRequest) -> AnalyzedActuator:
+    return shared(request.param, lambda: analyze_actuator(request.param))
+
+
+@pytest.mark.slow
+def test_all_that_a_page_shows_lies_beside_it(analyzed: AnalyzedActuator, tmp_path: Path) -> None:
+    assert analyzed.write is KINDS[analyzed.found.described.name]
+    page = analyzed.write(analyzed.found, tmp_path / "out")
+    said = page.read_text(encoding="utf-8")
+    pictures = re.findall(r'<img src="([^"]+)" alt="([^"]+)"', said)
+    assert len(pictures) >= 4
+    if isinstance(analyzed.found, SkinStretchAnalysis):
+        with Image.open(page.parent / "wave.png") as moving:
+            assert moving.info["duration"] == skin_stretch_figures._FRAME_MS
+            assert getattr(moving, "n_frames", 1) == analyzed.found.wave.times.size
+    for name, _ in pictures:
+        assert (page.parent / name).stat().st_size > 5000
+    assert "http" not in said.replace("http-equiv", "")
+    assert "What each assumed value does" in said
+    told = json.loads((page.parent / "result.json").read_text(encoding="utf-8"))
+    assert told["stamp"]["squeezefilm_version"]
+    assert told["actuator"] == analyzed.found.described.name
+
+
+@pytest.mark.slow
+def test_no_text_lies_on_another_or_is_cut_off(
+    analyzed: AnalyzedActuator, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    drawn: dict[str, Figure] = {}
+
+    def keep(found: object, folder: Path, *, figures: dict[str, Any], **more: object) -> Path:
+        drawn.update({name: figure for name, (_, figure) in figures.items()})
+        return folder
+
+    for room in (motor, skin_stretch):
+        monkeypatch.setattr(room, "write_page", keep)
+    # It has no text of its own, and takes as long as all else.
+    monkeypatch.setattr(skin_stretch_figures, "wave_animation", lambda _: b"")
+    analyzed.write(analyzed.found, tmp_path)
+    assert len(drawn) >= 3
+    for name, figure in drawn.items():
+        boxes: dict[str, Any] = {}
+        with style.rc():
+            figure.draw_without_rendering()
+        # Ticks beyond an axis's ends are there and not drawn.
+        ticks = {
+            id(label)
+            for axes in figure.axes
+            for axis in (axes.xaxis, axes.yaxis)
+            for label in axis.get_ticklabels(which="both")
+        }
+        for text in figure.findobj(Text):
+            if text.get_visible() and text.get_text().strip() and id(text) not in ticks:
+                box = text.get_window_extent()
+                boxes[f"{text.get_text()} {box.x0:.0f} {box.y0:.0f}"] = box
+        for one, other in itertools.combinations(boxes, 2):
+            assert not boxes[one].overlaps(boxes[other]), (name, one, other)
+        for text, box in boxes.items():
+            assert figure.bbox.x0 <= box.x0 + 1, (name, text)
+            assert box.x1 <= figure.bbox.x1 + 1, (name, text)
+
+
+@pytest.mark.slow
+def test_the_terminal_says_what_is_assumed(
+    analyzed: AnalyzedActuator, capsys: pytest.CaptureFixture[str]
+) -> None:
+    analyzed.show(analyzed.found)
+    said = " ".join(capsys.readouterr().out.split())
+    assert "values with a source are assumed" in said
+    assert analyzed.found.described.name in said
+
+
+def test_how_many_are_assumed() -> None:
+    known = {"a": Provenance("x", "assumed"), "b": Provenance("y", "measured")}
+    assert assumed_words(known).startswith("1 of 2 values")
+
+
+def test_an_actuator_is_told_by_its_table(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text('name = "a"\n[motor]\nslider_mass = "1 g"\n', encoding="utf-8")
+    assert is_actuator(file)
+    file.write_text('name = "a"\n[actuator]\n# [motor]\n', encoding="utf-8")
+    assert not is_actuator(file)
+    assert all(is_actuator(name) for name in NAMES)
+    assert not is_actuator("biet2008-plate")
+    assert not is_actuator(tmp_path / "absent.toml")
+
+
+def test_a_file_that_is_wrong_is_refused_with_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text('name = "a"\ntitle = "b"\n[motor]\nslider_mass = "1 V"\n', encoding="utf-8")
+    with pytest.raises(ConfigError, match="line 4"):
+        analyze_actuator(file)

@@ -1,0 +1,51 @@
+"""Where a friction is meant and its range over the active area, as rows of a table."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+from squeezefilm.design.analysis.area_odds import judged_area
+from squeezefilm.design.analysis.report.area_figures import active_area as figure_of
+from squeezefilm.design.analysis.report.point_rows import place_rows
+from squeezefilm.physics.chain.active_area import active_area, percent
+from squeezefilm.physics.chain.pad_place import place_words
+from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import load_display
+
+STATOR = load_display("biet2008-stator")
+POINT = predict(STATOR)
+AREA = active_area(STATOR, POINT)
+
+
+def test_rows_and_figure_say_the_range_and_its_places() -> None:
+    assert AREA is not None
+    assert AREA.best_place is not None
+    assert AREA.worst_place is not None
+    judged = judged_area(STATOR, POINT, samples=0)
+    first, second = place_rows(POINT, judged)
+    assert first[1] == place_words(POINT.place)
+    assert first[2] == POINT.place_said.replace(f"{first[1]}, ", "")
+    assert second[1] == f"{AREA.best:.2f} to {AREA.worst:.2f}"
+    assert place_words(AREA.worst_place) in second[2]
+    assert f"{percent(AREA.share_below(0.7))} below 0.70" in second[2]
+    drawn = figure_of(_analysis(judged))
+    assert f"{AREA.best:.2f} to {AREA.worst:.2f}" in drawn.get_suptitle()
+
+
+def test_without_an_area_nothing_is_known_and_the_figure_says_why() -> None:
+    assert place_rows(POINT, None)[1][1] == "not known"
+    assert "No map" in figure_of(_analysis(None)).get_suptitle()
+
+
+def test_a_model_without_ridges_of_their_own_says_why() -> None:
+    p = predict(STATOR, model="paper2008")
+    judged = judged_area(STATOR, p, samples=32)
+    assert judged is not None
+    assert judged.odds is None
+    assert "paper2008" in place_rows(p, judged)[1][2]
+    assert "root mean square" in figure_of(_analysis(judged)).get_suptitle()
+
+
+def _analysis(judged: Any) -> Any:
+    return SimpleNamespace(display=STATOR, prediction=POINT, active_area=judged)

@@ -1,0 +1,152 @@
+"""The rows that one decides from, of an analysis that nothing computed."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from tests.unit.made_results import WARM
+
+from squeezefilm.design.analysis.other_models import MeasuredBeside
+from squeezefilm.design.analysis.report.point_rows import heat_rows
+from squeezefilm.design.analysis.report.rows import (
+    decision_rows,
+    unsaid_warnings,
+    vibration_rows,
+    with_measured,
+    working_point,
+)
+
+
+def point(**changes: Any) -> Any:
+    mode = SimpleNamespace(
+        resonance_frequency=30e3, frequency_error=0.058, label="(8,0)", quality_factor=60.0,
+        amplitude_per_volt=100e-9, solid=None,
+    )  # fmt: skip
+    parts: dict[str, Any] = {
+        "mode": mode, "voltage": 20.0, "frequency": 30e3, "vibration_amplitude": 1.5e-6,
+        "touch": SimpleNamespace(free_amplitude=2e-6, kept=0.75, mode="loaded"),
+        "relative_friction": 0.312, "normal_force": 0.5, "speed": 0.08, "heat": WARM,
+        "surface": SimpleNamespace(name="polished", roughness=0.6e-6),
+        "warnings": ("said already", "not yet"),
+        "place": (0.03, 0.02), "place_said": "at the antinode, x 30 mm, y 20 mm",
+        "law": SimpleNamespace(place=None),
+    }  # fmt: skip
+    return SimpleNamespace(**{**parts, **changes})
+
+
+def analysis(**changes: Any) -> Any:
+    table = SimpleNamespace(
+        speeds=np.array([0.05, 0.1, 0.2]), finest_period=np.array([1e-4, 2e-4, 4e-4]), kept=0.9,
+        fundamental_at_limit=0.68,
+    )  # fmt: skip
+    parts: dict[str, Any] = {
+        "prediction": point(), "fidelity": table, "envelope_time_constant": 1e-3,
+        "envelope_bandwidth": 160.0, "ears": None, "felt": None,
+        "active_area": None, "drive_electronics": None, "measured": (),
+        "own_curve": SimpleNamespace(amplitude_for_criterion=0.7e-6),
+        "uncertainty": SimpleNamespace(level=0.9, interval=(0.04, 0.786), median=0.37),
+        "rivals": {"paper2008": 0.7, "levitation-2016": 0.0},
+        "verdict": (SimpleNamespace(text="said already"),),
+    }  # fmt: skip
+    return SimpleNamespace(**{**parts, **changes})
+
+
+def test_what_was_measured_stands_beside_what_is_computed() -> None:
+    swing = MeasuredBeside("Amplitude, free", 1e-6, 1.5e-6, "m", 15.0, "a laser")
+    unsure = MeasuredBeside("Quality factor", 80.0, 60.0, "1", None, "")
+    rows = [("Amplitude, free", "3 µm", "made"), ("Quality factor", "60", ""), ("Mass", "1 kg", "")]
+    assert with_measured(rows, [swing, unsure], 15.0) == [
+        ("Amplitude, free", "3 µm", "+50 % on measured 1 µm (a laser); made"),
+        ("Quality factor", "60", "−25 % on measured 80 (source not stated)"),
+        ("Mass", "1 kg", ""),
+    ]
+    (other,) = with_measured(rows[:1], [swing], 30.0)
+    assert other[2].startswith("+50 % on measured 1 µm at 15 V (")
+    vibration = decision_rows(analysis(measured=(swing,)))[0].rows
+    assert any("on measured 1 µm" in remark for _, _, remark in vibration)
+
+
+def test_key_numbers_go_by_subject_in_the_order_of_the_chain() -> None:
+    groups = decision_rows(analysis())
+    assert [one.heading for one in groups] == [
+        "Vibration", "Friction", "Textures", "Electrical load", "Heat", "Sound",
+    ]  # fmt: skip
+    said = {label: (text, remark) for one in groups for label, text, remark in one.rows}
+    assert said["Relative friction µ′/µ"] == ("0.31", "0.04–0.79 (90 % interval, median 0.37)")
+    assert said["Rival models give µ′/µ"] == (
+        "0.00–0.70",
+        "interval 0.75 wide, without them",
+    )
+    assert said["Surface roughness"] == ("0.6 µm", "polished; finger 0.5 N at 80 mm/s")
+    assert said["Amplitude for µ′/µ = 0.7"][0] == "0.7 µm"
+    assert said["Finest grating at 100 mm/s"] == (
+        "0.2 mm",
+        "90 % of its swing, 68 % of its wave kept",
+    )
+    assert said["Temperature rise"][0] == "+73.5 K"
+    assert said["Sound"][0] == "not known"
+    still = decision_rows(analysis(prediction=point(voltage=None), fidelity=None))
+    assert [one.heading for one in still] == ["Vibration", "Friction", "Textures"]
+
+
+def test_the_free_amplitude_is_told_from_that_under_the_finger() -> None:
+    rows = {label: (text, remark) for label, text, remark in vibration_rows(point())}
+    assert rows["Resonance frequency"] == ("30 kHz", "(8,0), solved to ± 0.058 Hz")
+    assert rows["Drive"] == ("20 V", "peak, at 30 kHz, the resonance")
+    # 100 nm/V × 20 V: the product is the number it stands beside.
+    assert rows["Amplitude, free"] == ("2 µm", "100 nm/V × 20 V, at antinodes")
+    assert rows["Amplitude, finger on"] == ("1.5 µm", "at antinodes; the finger leaves 75 %")
+    assert "Amplitude under the finger" not in rows
+    beside = {a: (b, c) for a, b, c in vibration_rows(point(frequency=31e3))}
+    assert beside["Drive"][1] == "peak, at 31 kHz, beside the resonance"
+    assert "×" not in beside["Amplitude, free"][1]
+    given = {a: (b, c) for a, b, c in vibration_rows(point(voltage=None))}
+    assert given["Drive"] == ("none", "amplitude given, at 30 kHz, the resonance")
+    touch = SimpleNamespace(free_amplitude=2e-6, kept=1.0, mode=None)
+    unknown = vibration_rows(point(touch=touch))[-1]
+    assert unknown[2] == (
+        "at antinodes; the finger is taken to change nothing: no modal mass is known"
+    )
+
+
+def rows_of(made: Any) -> dict[str, tuple[str, str]]:
+    return {row[0]: row[1:] for one in decision_rows(made) for row in one.rows}
+
+
+def test_what_the_amplifier_has_to_give_and_which_can() -> None:
+    kinds = [SimpleNamespace(part=part, suffices=part == "B") for part in "ABC"]
+    load = SimpleNamespace(
+        current=0.3, apparent_power=1.5, real_power=1.2, amplifiers=kinds, assumed=""
+    )
+    said = rows_of(analysis(drive_electronics=load))
+    assert said["Current"] == ("300 mA", "zero-to-peak, without a finger")
+    load.assumed = "its ceramic"
+    assert rows_of(analysis(drive_electronics=load))["Current"][1].endswith("of an assumed ceramic")
+    assert said["Apparent power"] == ("1.5 VA", "1.2 W of it real")
+    assert said["Amplifiers that can"] == ("1 of 3", "B can; A and C cannot")
+    assert rows_of(analysis())["Current"][0] == "not known"
+
+
+def test_the_level_at_an_ear_stands_beside_its_limits() -> None:
+    limits = [SimpleNamespace(guidance=SimpleNamespace(level_dB=level)) for level in (100, 110)]
+    ears = SimpleNamespace(distance=0.5, level_dB=123.6, low_dB=115.0, high_dB=132.0, limits=limits)
+    said = rows_of(analysis(ears=ears))["Sound at 0.5 m"]
+    assert said == ("124 dB", "115 to 132 dB, loudest direction; guidance 100 dB and 110 dB")
+    ears.limits = []
+    assert rows_of(analysis(ears=ears))["Sound at 0.5 m"][1].endswith("no guidance")
+
+
+def test_a_plate_whose_power_is_not_known_says_so() -> None:
+    assert heat_rows(None)[0][1] == "not known"
+    assert len(heat_rows(WARM)) == 5
+
+
+def test_what_the_verdict_says_is_not_warned_of_again() -> None:
+    assert unsaid_warnings(analysis()) == ["not yet"]
+
+
+def test_the_working_point_is_said_by_what_drives_and_who_touches() -> None:
+    assert working_point(point()) == "at 20 V and 30 kHz, finger of 0.5 N at 80 mm/s on polished"
+    assert working_point(point(voltage=None)).startswith("at 1.5 µm and 30 kHz, finger of ")

@@ -1,0 +1,95 @@
+"""The figures of a search: what they mark is where the numbers are, and nothing is outside."""
+
+import numpy as np
+import pytest
+from tests.unit.design.search.report.made_search import made_search
+from tests.unit.drawn import labelled, words
+
+from squeezefilm.core.kit.style import png
+from squeezefilm.design.search.criteria import CRITERIA
+from squeezefilm.design.search.found import DesignSearch
+from squeezefilm.design.search.report import figures
+
+KINDS = {
+    "three objectives": {"shapes": 2, "objectives": 3, "screened": 300, "solved": 50},
+    "empty front": {"limits": {"most_temperature_rise": 20.5}},
+    "nothing": {"screened": 0, "solved": 0, "stopped": True},
+    "few": {"screened": 12, "solved": 3},
+}
+
+
+@pytest.fixture(scope="module")
+def found() -> DesignSearch:
+    return made_search()
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(kind, marks=pytest.mark.slow if kind in ("three objectives", "few") else ())
+        for kind in KINDS
+    ],
+)
+def test_every_figure_of_every_search_can_be_drawn(kind: str) -> None:
+    one = made_search(**KINDS[kind])  # type: ignore[arg-type]
+    for item in figures.FIGURES:
+        assert png(item.draw(one), 40).startswith(b"\x89PNG"), item.key
+
+
+def test_the_front_is_marked_where_it_is_and_lies_within(found: DesignSearch) -> None:
+    figure = figures.front(found)
+    whole, near, _ = figure.axes
+    for axes in (whole, near):
+        marks = {
+            str(one.get_gid()).split("-")[1]: one.get_offsets()[0]
+            for one in axes.collections
+            if str(one.get_gid()).startswith(figures.MARKED)
+        }
+        assert set(marks) == {one.name for one in found.front}
+        for member, row in zip(found.front, found.objectives, strict=True):
+            x, y = marks[member.name]
+            assert x == pytest.approx(row[0])
+            assert y == pytest.approx(1e6 * row[1])
+            assert axes.get_xlim()[0] < x < axes.get_xlim()[1]
+            assert axes.get_ylim()[0] < y < axes.get_ylim()[1]
+        square = labelled(axes)["biet2008-plate, to compare"]
+        assert square.get_xdata()[0] == pytest.approx(0.62)
+        chosen = labelled(axes)["the plate to build"]
+        assert chosen.get_xdata()[0] == pytest.approx(marks[found.chosen_name][0])
+
+
+def test_three_objectives_are_drawn_in_pairs() -> None:
+    found = made_search(**KINDS["three objectives"])  # type: ignore[arg-type]
+    names = [axes.get_xlabel() + axes.get_ylabel() for axes in figures.front(found).axes[:3]]
+    assert len(set(names)) == 3
+    assert sum("mass" in one for one in names) == 2
+
+
+def test_bars_are_as_long_as_limits_are_broken(found: DesignSearch) -> None:
+    axes = figures.limits(found).axes[0]
+    widths = [bar.get_width() for bar in axes.patches]
+    reasons = found.limits[::-1]
+    assert widths == [one.broken for one in reasons] + [one.alone for one in reasons]
+    labels = [text.get_text() for text in axes.get_yticklabels()]
+    assert labels == [CRITERIA[one.key].limit_said(one.limit) for one in reasons]
+
+
+def test_screened_and_solved_numbers_are_set_against_each_other(found: DesignSearch) -> None:
+    figure = figures.screening(found)
+    assert "Spearman's ρ" in words(figure.get_suptitle())
+    points = figure.axes[0].lines[0]
+    before = {one.design: one.numbers.get("relative_friction") for one in found.screened}
+    assert np.asarray(points.get_xdata()) == pytest.approx([before[o.design] for o in found.solved])
+    few = made_search(screened=20, solved=3)
+    assert "Fewer than ten" in words(figures.screening(few).get_suptitle())
+
+
+def test_a_panel_for_each_thing_that_could_be_chosen(found: DesignSearch) -> None:
+    free = [one.name.replace("_", " ") for one in found.requirements.spaces[0].free]
+    titles = [axes.get_title(loc="left") for axes in figures.settings(found).axes]
+    assert [one.partition(" (")[0] for one in titles if one] == free
+
+
+def test_a_large_cloud_is_thinned() -> None:
+    many = made_search(screened=6, solved=1).screened * 1000
+    assert len(figures._thinned(many)) <= 1500

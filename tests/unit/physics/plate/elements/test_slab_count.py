@@ -1,0 +1,95 @@
+"""What is counted of a model before it is made: its unknowns exactly, its memory nearly."""
+
+from __future__ import annotations
+
+import dataclasses
+import tracemalloc
+
+import numpy as np
+import pytest
+from tests.verification.random_plates import random_plate
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import SOLID_MEMORY
+from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.elements import slab_count as counting
+from squeezefilm.physics.plate.elements.krylov import modes_near
+from squeezefilm.physics.plate.elements.slab_count import slab_count
+from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
+from squeezefilm.physics.plate.solid.layers import COARSE, FINE, NORMAL, Resolution
+from squeezefilm.physics.plate.solid.mesh import plate_model
+from squeezefilm.physics.plate.solid.symmetry import all_classes
+
+GLASS = ElasticMaterial("soda-lime glass", 72e9, 0.22, 2480)
+CERAMIC = Piezoceramic("P1-91", 67.9e9, 0.2897, 23e9, 7700, -247e-12, 1900, 60)
+# Sheet glass with four small ceramics along each short edge, as in friction displays.
+PLACES = [(x, y) for x in (0.0, 88e-3) for y in (2e-3, 17.5e-3, 33.5e-3, 49e-3)]
+SHEET = RectangularPlate(
+    length=93e-3,
+    width=65e-3,
+    thickness=0.9e-3,
+    nodal_lines=12,
+    quality_factor=60,
+    substrate=GLASS,
+    ceramic=CERAMIC,
+    patches=tuple(CeramicPatch(x, y, 5e-3, 14e-3, 0.5e-3) for x, y in PLACES),
+    glue=GlueLayer(20e-6, 3e9),
+)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_count_of_every_slice_is_that_of_the_assembled_model(seed: int) -> None:
+    plate = random_plate(seed)
+    for parity in all_classes(plate):
+        solved = plate_model(plate, 30e3, COARSE, parity)
+        count = slab_count(solved.model)
+        np.testing.assert_array_equal(count.slices, solved.slabs.sizes)
+        assert count.unknowns == solved.slabs.unknowns
+        inside = [s.codes.size for s in solved.slabs.sections]
+        np.testing.assert_array_equal(count.elements, inside)
+
+
+def test_glass_with_small_ceramics_fits_into_four_gigabytes() -> None:
+    for parity in all_classes(SHEET):
+        count = slab_count(plate_model(SHEET, 37.7e3, FINE, parity).model)
+        assert count.memory < 4e9
+        assert 100_000 < count.unknowns < 150_000
+
+
+def test_a_model_that_memory_does_not_hold_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    lower = dataclasses.replace(SOLID_MEMORY, most=1e8)
+    monkeypatch.setattr(counting, "SOLID_MEMORY", lower)
+    with pytest.raises(InputError, match=r"slices of up to \d+ unknowns are too many"):
+        plate_model(SHEET, 37.7e3, NORMAL, ("S", "S"))
+
+
+def _peak(plate: RectangularPlate, frequency: float, resolution: Resolution) -> float:
+    """The counted memory over the peak of what a mesh's factors and ten modes take."""
+    solved = plate_model(plate, 1.15 * frequency, resolution, all_classes(plate)[0])
+    shift = (2 * np.pi * frequency) ** 2
+    tracemalloc.start()
+    slabs = solved.slabs
+    start = np.random.default_rng(1).standard_normal((slabs.unknowns, 4))
+    start[(slabs.components == 3) | slabs.held] = 0
+    solve = SlabFactor(slabs, shift).solve
+    modes_near(
+        slabs,
+        solve,
+        shift,
+        lambda values: np.argsort(np.abs(values - shift))[:10],
+        start,
+        tolerance=1e-6,
+    )
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return slab_count(solved.model).memory / peak
+
+
+@pytest.mark.slow
+def test_the_counted_memory_is_what_a_solve_takes() -> None:
+    metal = load_display("biet2008-plate").actuator
+    assert isinstance(metal, RectangularPlate)
+    assert 0.7 < _peak(metal, 33.6e3, FINE) < 1.4
+    assert 0.7 < _peak(SHEET, 32.8e3, NORMAL) < 1.4

@@ -1,0 +1,246 @@
+"""Sound of small sources: areas, sums, levels over all directions, and the guidance's bands."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.plate.exposure import GUIDANCE, exposure_guidance
+from squeezefilm.physics.plate.sound import (
+    REFERENCE_PRESSURE,
+    RadiatingSurface,
+    pressure_level,
+    rectangular_surface,
+    ring_surface,
+    smooth_surface,
+    sound_field,
+    sound_pressure,
+)
+
+F = 30e3
+WAVE = 343.2 / F
+
+
+def points(places: list[tuple[float, float]], velocity: list[complex]) -> RadiatingSurface:
+    """Small pistons of 1 mm² each."""
+    return RadiatingSurface(
+        F, np.array(places), np.full(len(places), 1e-6), np.array(velocity, dtype=complex)
+    )
+
+
+@pytest.mark.parametrize(
+    ("frequency", "audience", "level"),
+    [
+        (17.7e3, "public", None),
+        (17.8e3, "public", 70.0),
+        (22.3e3, "public", 70.0),
+        (22.4e3, "public", 100.0),
+        (111e3, "public", 100.0),
+        (112e3, "public", None),
+        (17.7e3, "occupational", None),
+        (22.3e3, "occupational", 75.0),
+        (22.4e3, "occupational", 110.0),
+        (55e3, "occupational", 110.0),
+        (56e3, "occupational", None),
+    ],
+)
+def test_a_tone_is_compared_with_the_band_that_it_lies_in(
+    frequency: float, audience: str, level: float | None
+) -> None:
+    found = exposure_guidance(frequency, audience)  # type: ignore[arg-type]
+    assert (None if found is None else found.level_dB) == level
+
+
+def test_bands_are_third_octaves_that_meet_and_name_their_source() -> None:
+    public = [one for one in GUIDANCE if one.audience == "public"]
+    assert public[0].high == public[1].low
+    assert all(one.source and one.evidence and one.low < one.high for one in GUIDANCE)
+
+
+def test_a_rectangles_weights_make_the_area_and_its_middle_is_the_origin() -> None:
+    x, y = np.array([5e-3, 6e-3, 8e-3]), np.array([-1e-3, 0.0, 1e-3, 2e-3])
+    moving = x[:, None] + 1j * y
+    found = rectangular_surface(x, y, moving, F)
+    assert found.position.shape == (12, 2)
+    assert found.area.sum() == pytest.approx(9e-6)
+    # The trapezoidal rule is exact for what is linear in each direction.
+    assert found.velocity @ found.area == pytest.approx(9e-6 * (6.5e-3 + 0.5e-3j))
+    assert found.position.min(axis=0) == pytest.approx([-1.5e-3, -1.5e-3])
+    assert found.position.max(axis=0) == pytest.approx([1.5e-3, 1.5e-3])
+    assert found.extent == pytest.approx(1.5e-3 * math.sqrt(2))
+    assert found.velocity[1] == moving[0, 1]
+
+
+@pytest.mark.parametrize("inner", [0.0, 2e-3])
+def test_a_rings_weights_make_its_area_and_its_harmonics_cancel(inner: float) -> None:
+    radius = np.array([inner, 2.5e-3, 3.5e-3, 5e-3])
+    # ∫ r · r dr dθ over the ring, for a velocity that is linear in r.
+    found = ring_surface(radius, radius, 0, F)
+    assert found.area.sum() == pytest.approx(math.pi * (25e-6 - inner**2))
+    assert (found.velocity @ found.area).real == pytest.approx(
+        2 * math.pi / 3 * (125e-9 - inner**3)
+    )
+    for harmonic in (1, 3, 5):
+        wavy = ring_surface(radius, np.ones(4), harmonic, F)
+        assert abs(wavy.velocity @ wavy.area) < 1e-18
+        angle = np.arctan2(wavy.position[:, 1], wavy.position[:, 0])
+        away = np.hypot(*wavy.position.T) > 0
+        assert wavy.velocity[away].real == pytest.approx(np.cos(harmonic * angle[away]), abs=1e-9)
+    assert found.extent == pytest.approx(5e-3)
+
+
+def test_a_ring_has_points_enough_around_for_its_waves_and_its_harmonic() -> None:
+    small = ring_surface(np.array([1e-3, 2e-3]), np.ones(2), 0, F)
+    assert small.area.size == 2 * 32
+    wavy = ring_surface(np.array([1e-3, 2e-3]), np.ones(2), 9, F)
+    assert wavy.area.size == 2 * 72
+    # 2π · 40 mm are 21.97 waves of 11.44 mm.
+    radius = np.linspace(38e-3, 40e-3, 2)
+    assert ring_surface(radius, np.ones(2), 0, F).area.size == 2 * 8 * 22
+
+
+def test_pressure_is_the_sum_of_what_each_point_sends() -> None:
+    places = [(0.0, 0.0), (4e-3, -1e-3), (-3e-3, 2e-3)]
+    velocity = [0.3, -0.2j, 0.1 + 0.4j]
+    field = np.array([[[0.1, 0.0, 0.2], [0.0, -0.05, 0.3]]])
+    expected = np.zeros((1, 2), dtype=complex)
+    for i in range(2):
+        for (x, y), v in zip(places, velocity, strict=True):
+            far = math.dist((x, y, 0.0), field[0, i])
+            wave = np.exp(-2j * math.pi * far / 0.01)
+            expected[0, i] += 1j * F * 1.3 * v * 1e-6 * wave / far
+    found = sound_pressure(points(places, velocity), field, density=1.3, sound_speed=0.01 * F)
+    assert found.shape == (1, 2)
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_what_no_sound_can_be_computed_of_is_refused() -> None:
+    one = points([(0.0, 0.0)], [1.0])
+    with pytest.raises(InputError, match="last axis must be x, y and z"):
+        sound_pressure(one, np.zeros((3, 2)))
+    with pytest.raises(InputError, match="height of the point"):
+        sound_pressure(one, np.array([0.1, 0.0, -1e-9]))
+    with pytest.raises(InputError, match="distance"):
+        sound_pressure(one, np.zeros(3))
+    with pytest.raises(InputError, match="name at least one") as caught:
+        sound_field(one, ())
+    assert caught.value.quantity == "distances"
+    with pytest.raises(InputError, match="absorption"):
+        sound_field(one, absorption_dB_per_m=-0.1)
+    line = np.array([0.0, 1e-3])
+    for x, y, name in (
+        (line[::-1], line, "x"),
+        (line, np.array([1e-3, 1e-3]), "y"),
+        (np.zeros(1), line, "x"),
+    ):
+        with pytest.raises(InputError, match=f"{name} must be two or more rising") as caught:
+            rectangular_surface(x, y, np.ones((x.size, y.size)), F)
+        assert caught.value.quantity == name
+    for radius, velocity in (
+        (np.array([1e-3]), np.ones(1)),
+        (np.array([1e-3, 1e-3]), np.ones(2)),
+        (np.array([1e-3, 2e-3]), np.ones(3)),
+    ):
+        with pytest.raises(InputError, match="two or more rising radii"):
+            ring_surface(radius, velocity, 0, F)
+
+
+def test_steps_may_be_a_quarter_of_the_wave_and_no_more() -> None:
+    for share, fine in ((0.999, True), (1.001, False)):
+        line = np.array([0.0, share * WAVE / 4])
+        if fine:
+            rectangular_surface(line, line, np.ones((2, 2)), F)
+            ring_surface(line, np.ones(2), 0, F)
+        else:
+            for make in (
+                lambda: rectangular_surface(line, line, np.ones((2, 2)), F),  # noqa: B023
+                lambda: ring_surface(line, np.ones(2), 0, F),  # noqa: B023
+            ):
+                with pytest.raises(InputError, match="a quarter of the wave"):
+                    make()
+
+
+def test_levels_are_of_the_effective_pressure_and_silence_has_one() -> None:
+    level = pressure_level(np.array([math.sqrt(2) * REFERENCE_PRESSURE, 0.0]))
+    assert level[0] == pytest.approx(0.0, abs=1e-9)
+    assert np.isfinite(level[1])
+    assert level[1] < -400
+
+
+def test_two_points_in_step_beam_upward_and_in_turn_along_the_line_between_them() -> None:
+    # Half a wave apart: in phase they add straight up, and in opposite phase along x.
+    places = [(-WAVE / 4, 0.0), (WAVE / 4, 0.0)]
+    up = sound_field(points(places, [1.0, 1.0]), (1.0, 2.0))
+    assert up.polar == pytest.approx((0.0, 0.0), abs=2e-3)
+    along = sound_field(points(places, [1.0, -1.0]), (2.0,), audience="occupational")
+    assert along.polar[0] == pytest.approx(math.pi / 2, abs=1e-3)
+    assert math.sin(along.azimuth[0]) == pytest.approx(0.0, abs=1e-2)
+    for field in (up, along):
+        single = 20 * math.log10(1.204 * F * 1e-6 / 2.0 / math.sqrt(2) / 20e-6)
+        assert field.sound_pressure_level_dB[-1] == pytest.approx(single + 6.0206, abs=0.01)
+        # |p|² = 2 p0² (1 ± cos(π sin θ cos φ)): over the half sphere its mean is 1 ± sinc(π) = 1.
+        far = (1.204 * F * 1e-6) ** 2 / (2 * 1.204 * 343.2)
+        assert field.radiated_power == pytest.approx(2 * far * 2 * math.pi, rel=1e-6)
+        assert field.directivity_dB == pytest.approx(10 * math.log10(4), abs=0.01)
+    # 6 dB from 1 m to 2 m.
+    assert np.diff(up.sound_pressure_level_dB)[0] == pytest.approx(-6.0206, abs=0.01)
+    assert up.guidance is GUIDANCE[1]
+    assert along.guidance is GUIDANCE[3]
+    assert along.above_guidance_dB == pytest.approx((along.sound_pressure_level_dB[0] - 110,))
+    assert dataclasses.replace(up, guidance=None).above_guidance_dB is None
+
+
+def test_the_grid_of_directions_is_of_two_and_a_half_by_ten_degrees_or_finer() -> None:
+    small = sound_field(points([(0.0, 1e-4)], [1.0]), (0.5,))
+    assert small.polar_angles == pytest.approx(np.radians(np.arange(0, 90.1, 2.5)))
+    assert small.azimuths == pytest.approx(np.radians(np.arange(0, 360, 10)))
+    assert small.levels_dB.shape == (1, 37, 36)
+    # 20 waves from the middle: a lobe of 1/40 rad, and 252 directions around, 126 up.
+    wide = sound_field(points([(20 * WAVE, 0.0), (0.0, 0.0)], [1.0, 1.0]), (2.0,))
+    assert wide.azimuths.size == math.ceil(2 * math.pi * 40)
+    assert wide.polar_angles.size == wide.azimuths.size // 2 + 1
+
+
+def test_the_air_takes_decibels_by_the_metre_and_the_power_not() -> None:
+    one = points([(0.0, 1e-4)], [1.0])
+    clear = sound_field(one, (0.5, 2.0), density=1.1, sound_speed=340.0)
+    dim = sound_field(one, (0.5, 2.0), density=1.1, sound_speed=340.0, absorption_dB_per_m=1.5)
+    lost = np.subtract(clear.sound_pressure_level_dB, dim.sound_pressure_level_dB)
+    assert lost == pytest.approx([0.75, 3.0])
+    assert dim.radiated_power == clear.radiated_power
+    # A point in a baffle: I = (ρ f Q)²/(2 ρ c R²) everywhere above.
+    assert clear.radiated_power == pytest.approx(
+        2 * math.pi * (1.1 * F * 1e-6) ** 2 / (2 * 1.1 * 340.0), rel=1e-6
+    )
+
+
+def test_what_does_not_move_radiates_nothing() -> None:
+    still = sound_field(points([(0.0, 1e-3)], [0.0]), (0.5,))
+    assert still.radiated_power == 0.0
+    assert still.directivity_dB == 0.0
+
+
+def test_few_points_of_a_smooth_surface_do_what_many_of_a_grid_do() -> None:
+    """Of a free plate's flexural wave along x, whose shape is known everywhere."""
+    sides, wave = (0.11, 0.03), 0.018
+
+    def velocity(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        along = np.cos(2 * np.pi * x / wave + 0.4) + np.exp(-2 * np.pi * x / wave)
+        return along[:, None] * (1 + 0.1j - 4 * (y / sides[1] - 0.5) ** 2)
+
+    few = smooth_surface(sides, velocity, F, min(wave, WAVE))
+    x, y = (np.linspace(0, side, round(side / 2e-4) + 1) for side in sides)
+    many = rectangular_surface(x, y, velocity(x, y), F)
+    assert few.area.sum() == pytest.approx(math.prod(sides), rel=1e-12)
+    assert few.area.size < many.area.size / 50
+    up = np.linspace(0.0, math.pi / 2, 40)
+    for distance in (0.1, 0.5):
+        places = distance * np.stack([np.sin(up), np.zeros(40), np.cos(up)], axis=-1)
+        here, there = sound_pressure(few, places), sound_pressure(many, places)
+        assert np.abs(here - there).max() < 2e-3 * np.abs(there).max()
+    with pytest.raises(InputError, match="for these lines"):
+        smooth_surface(sides, lambda x, y: velocity(x, y).T, F, wave)

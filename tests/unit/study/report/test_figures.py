@@ -1,0 +1,298 @@
+"""Figures of an identification study: every number in its cell, every interval at its place."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from tests.unit.drawn import words
+
+from squeezefilm.core.kit.style import BLUE, MUTED, ORANGE
+from squeezefilm.study.report.figures import (
+    confusion,
+    data_of,
+    information,
+    proportion_correct,
+    sensitivity,
+    similarities,
+)
+
+NAMES = ("fine", "middle", "coarse")
+COUNTS = np.array([[6, 1, 0], [2, 5, 3], [0, 4, 7]])  # rows answers, columns stimuli
+
+
+def interval(low: float, high: float, **more: Any) -> Any:
+    return SimpleNamespace(low=low, high=high, level=0.95, method="bootstrap", **more)
+
+
+def matrix(counts: np.ndarray = COUNTS, **changes: Any) -> Any:
+    with np.errstate(invalid="ignore"):
+        percent = 100 * counts / counts.sum(axis=0)
+    values: dict[str, Any] = {
+        "answers": NAMES, "stimuli": NAMES, "counts": counts, "percent": percent,
+        "is_square": True, "trials": int(counts.sum()), "chance": 1 / 3,
+    }  # fmt: skip
+    return SimpleNamespace(**{**values, **changes})
+
+
+def estimate(key: str, value: float, bounds: Any = None) -> Any:
+    return SimpleNamespace(
+        key=key, name=f"the {key}", estimate=value, interval=bounds, fails=f"why {key} fails"
+    )
+
+
+RAW, GOOD = estimate("raw", 1.1), estimate("good", 0.5, interval(0.25, 0.75))
+THURSTONE = SimpleNamespace(
+    total=3.0, d_prime=np.array([2.0, 1.0]), positions=np.array([0.0, 2.0, 3.0]),
+    criteria=np.array([1.0, 2.5]), low=np.array([1.5, 0.5]), high=np.array([2.5, 1.75]),
+    level=0.95, interval_method="a-method", corrected=False, deviance=4.25, degrees_of_freedom=3,
+    p_value=0.234,
+)  # fmt: skip
+CHOICE = SimpleNamespace(
+    similarity=np.array([[1, 0.25, 0.125], [0.25, 1, 0.75], [0.125, 0.75, 1]]),
+    bias=np.array([0.25, 0.45, 0.3]), pseudo_trials=0, deviance=1.25, degrees_of_freedom=1,
+    p_value=0.0004,
+)  # fmt: skip
+POINTS = SimpleNamespace(points=np.array([[0, 0.5], [1, -0.25], [2, 0.75]]), explained=0.875)
+
+
+def analysis(**changes: Any) -> Any:
+    values: dict[str, Any] = {
+        "origin": "made-up", "name": "a study", "participants": 4, "matrix": matrix(),
+        "trials": 28,
+        "proportion_correct": 18 / 28, "interval": interval(0.5, 0.75), "permutation_p": 0.0004,
+        "by_stimulus": [
+            SimpleNamespace(stimulus=name, low=p - 0.125, high=p + 0.125, proportion_correct=p)
+            for name, p in zip(NAMES, (0.75, 0.5, 0.625), strict=True)
+        ],
+        "participant_correct": np.array([0.5, 0.75, 0.75, 1.0]),
+        "counts": np.array([COUNTS, COUNTS // 2]),
+        "intervals": [interval(0.5, 0.75), interval(0.4, 0.8)],
+        "information": SimpleNamespace(
+            best=GOOD, greatest=1.585, estimates=[RAW, GOOD, estimate("lost", math.nan)],
+            recommended="good",
+        ),
+        "sensitivity": THURSTONE, "choice": CHOICE, "choice_map": POINTS, "notes": (),
+    }  # fmt: skip
+    return SimpleNamespace(**{**values, **changes})
+
+
+def data(line: Any) -> list[list[float]]:
+    return [[float(v) for v in line.get_xdata()], [float(v) for v in line.get_ydata()]]
+
+
+def upright(axes: Any) -> list[tuple[float, float, float]]:
+    """Place, bottom and top of the intervals that stand upright."""
+    seen = [data(line) for line in axes.get_lines()]
+    return [(x[0], *y) for x, y in seen if len(x) == 2 and x[0] == x[1]]
+
+
+def test_the_small_print_counts_people_and_trials() -> None:
+    assert data_of(analysis()) == "made-up answers, a study; 4 participants, 28 trials"
+    assert "; 1 participant, " in data_of(analysis(participants=1))
+
+
+def test_a_confusion_stands_in_its_cell() -> None:
+    figure = confusion(analysis())
+    # 18 of 28; of eight fine ones two, of ten middle ones four, of ten coarse ones three.
+    assert words(figure.get_suptitle()) == (
+        "64.3 % of the answers are right; middle is most often taken for coarse (40 %)"
+    )
+    (axes,) = figure.axes
+    (image,) = axes.images
+    shares = 100 * COUNTS / np.array([8, 10, 10])
+    assert np.asarray(image.get_array()) == pytest.approx(shares)
+    assert image.get_clim() == (0, 100)
+    cells = {one.get_position(): one for one in axes.texts}
+    assert {at: one.get_text() for at, one in cells.items()} == {
+        (j, i): f"{shares[i, j]:.0f} %\n({COUNTS[i, j]})" if COUNTS[i, j] else "·"
+        for i in range(3)
+        for j in range(3)
+    }
+    # What is right is bold and framed.
+    assert {at for at, one in cells.items() if one.get_weight() == "bold"} == {
+        (0, 0), (1, 1), (2, 2),
+    }  # fmt: skip
+    assert [(*one.get_xy(), one.get_width(), one.get_height()) for one in axes.patches] == [
+        (n - 0.5, n - 0.5, 1, 1) for n in range(3)
+    ]
+    for labels in (axes.get_xticklabels(), axes.get_yticklabels()):
+        assert [one.get_text() for one in labels] == list(NAMES)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("simulated", "answered")
+
+
+def test_a_stimulus_that_was_not_shown_has_no_shares() -> None:
+    right = np.diag([3, 0, 5])
+    figure = confusion(analysis(matrix=matrix(right, is_square=False)))
+    assert "nothing is confused" in figure.get_suptitle()
+    (axes,) = figure.axes
+    assert [one.get_text() for one in axes.texts if one.get_position()[0] == 1] == ["–"] * 3
+    assert not axes.patches
+    assert {one.get_weight() for one in axes.texts} == {"normal"}
+
+
+def test_right_answers_stand_with_their_intervals() -> None:
+    figure = proportion_correct(analysis())
+    assert words(figure.get_suptitle()) == (
+        "64.3 % right (50 to 75 %), better than unrelated answers (p < 0.001)"
+    )
+    assert "by stimulus Wilson's 95 % intervals over trials" in words(figure.get_supxlabel())
+    left, right = figure.axes
+    assert upright(left) == [(0, 62.5, 87.5), (1, 37.5, 62.5), (2, 50, 75)]
+    points = [data(one) for one in left.get_lines() if one.get_marker() == "o"]
+    assert points == [[[0], [75]], [[1], [50]], [[2], [62.5]]]
+    assert [one.get_text() for one in left.get_xticklabels()] == list(NAMES)
+    assert left.get_ylim() == (0, 104)
+    # Of seventeen possible scores each has a bin of its own around it (28 trials: twenty steps).
+    edges = np.array([(one.get_y(), one.get_height()) for one in right.patches])
+    assert edges[:, 0] == pytest.approx(5 * (np.arange(21) - 0.5))
+    assert edges[:, 1] == pytest.approx(np.full(21, 5))
+    held = {
+        round(y + 2.5): one.get_width() for (y, _), one in zip(edges, right.patches, strict=True)
+    }
+    assert {place: count for place, count in held.items() if count} == {50: 1, 75: 2, 100: 1}
+    means = upright(right)
+    assert [one[1:] for one in means] == [(50, 75), (40, 80)]
+    assert 0 < means[0][0] < means[1][0]
+    assert [one.get_text() for one in right.texts] == ["bootstrap"] * 2
+    for text, (x, low, _) in zip(right.texts, means, strict=True):
+        assert text.get_position()[0] == x
+        assert low - 5 < text.get_position()[1] < low
+    for axes in (left, right):
+        flat = [data(one)[1] for one in axes.get_lines() if data(one)[0] == [0, 1]]
+        assert [pytest.approx([100 / 3] * 2)] == flat[-1:]
+    assert "guessing: 33.3 %" in [one.get_text() for one in left.texts]
+
+
+@pytest.mark.parametrize(("p", "said"), [(0.049, "), better than"), (0.05, "), not shown to be")])
+def test_what_chance_makes_one_time_in_twenty_is_not_shown(p: float, said: str) -> None:
+    title = words(proportion_correct(analysis(permutation_p=p)).get_suptitle())
+    assert said in title
+    assert title.endswith(f"(p = {p:.2g})")
+
+
+def test_few_trials_have_a_bin_for_each_score() -> None:
+    few = np.array([np.diag([1, 1, 1]), np.diag([1, 1, 2])])
+    _, right = proportion_correct(analysis(counts=few)).axes
+    # Four trials: 0, 25, 50, 75 and 100 %.
+    assert [one.get_y() + one.get_height() / 2 for one in right.patches] == pytest.approx(
+        [0, 25, 50, 75, 100]
+    )
+
+
+def test_every_estimate_of_the_information_has_its_line() -> None:
+    figure = information(analysis())
+    assert words(figure.get_suptitle()) == (
+        "Answers carry 0.50 bit of 1.58: about 1.4 stimuli told apart without error"
+    )
+    assert "the good is the one to quote" in words(figure.get_supxlabel())
+    (axes,) = figure.axes
+    lines = [(data(one), to_hex(one.get_color()), one.get_marker()) for one in axes.get_lines()]
+    assert lines == [
+        ([[1.1], [2]], BLUE, "o"), ([[0.25, 0.75], [1, 1]], MUTED, "None"),
+        ([[0.5], [1]], ORANGE, "D"),
+    ]  # fmt: skip
+    names = {one.get_text(): one.get_weight() for one in axes.get_yticklabels()}
+    assert names == {"the raw": "normal", "the good": "bold", "the lost": "normal"}
+    assert list(axes.get_yticks()) == [2, 1, 0]
+    assert axes.get_xlim() == (0, 1.585)
+    assert [(one.get_text(), one.get_position()[1]) for one in axes.texts] == [
+        ("why raw fails", 2), ("why good fails", 1), ("why lost fails", 0),
+    ]  # fmt: skip
+    below = SimpleNamespace(
+        best=estimate("good", -0.1), greatest=1.0, estimates=[estimate("good", -0.1)],
+        recommended="good",
+    )  # fmt: skip
+    figure = information(analysis(information=below))
+    assert "about 1.0 stimuli" in figure.get_suptitle()
+    assert figure.axes[0].get_xlim() == (-0.1, 1.0)
+
+
+def test_stimuli_and_criteria_lie_on_the_decision_axis() -> None:
+    figure = sensitivity(analysis())
+    assert words(figure.get_suptitle()) == (
+        "Δ′ = 3.00 from fine to coarse; middle and coarse lie closest, d′ = 1.00"
+    )
+    assert "G² = 4.2 with 3 degrees of freedom (p = 0.23)" in words(figure.get_supxlabel())
+    top, below = figure.axes
+    curves = [one for one in top.get_lines() if len(one.get_xdata()) > 2]
+    for curve, place in zip(curves, (0, 2, 3), strict=True):
+        x, y = np.asarray(curve.get_xdata()), np.asarray(curve.get_ydata())
+        assert y == pytest.approx(np.exp(-((x - place) ** 2) / 2))
+        # All that is more than a thirtieth of a peak is seen.
+        assert x[0] < -2.5
+        assert x[-1] > 3 + 2.5
+    assert [(one.get_text(), one.get_position()[0]) for one in top.texts] == [
+        ("fine", 0), ("middle", 2), ("coarse", 3),
+    ]  # fmt: skip
+    criteria = [data(one)[0][0] for one in top.get_lines() if len(one.get_xdata()) == 2]
+    assert criteria == [1.0, 2.5]
+    assert [one.get_text() for one in top.get_legend().get_texts()] == ["criteria"]
+    assert upright(below) == [(0, 1.5, 2.5), (1, 0.5, 1.75)]
+    assert [data(one) for one in below.get_lines() if one.get_marker() == "o"] == [
+        [[0], [2]],
+        [[1], [1]],
+    ]
+    assert [one.get_text() for one in below.get_xticklabels()] == [
+        "fine – middle", "middle – coarse",
+    ]  # fmt: skip
+    assert below.get_xlim() == (-0.5, 1.5)
+    assert below.get_title(loc="left") == "95 % intervals: a-method"
+    corrected = SimpleNamespace(**{**vars(THURSTONE), "corrected": True})
+    said = words(sensitivity(analysis(sensitivity=corrected)).get_supxlabel())
+    assert "one trial per stimulus added (some never confused): d′ too low" in said
+
+
+def test_what_is_alike_is_named_and_drawn_in_the_lower_triangle() -> None:
+    figure = similarities(analysis())
+    assert words(figure.get_suptitle()) == (
+        "middle and coarse are felt most alike (η = 0.75); middle is the answer preferred"
+    )
+    assert "G² = 1.2 with 1 degrees of freedom (p < 0.001)" in words(figure.get_supxlabel())
+    left, right, bars = figure.axes
+    assert {one.get_position(): one.get_text() for one in left.texts} == {
+        (0, 1): "0.25", (0, 2): "0.12", (1, 2): "0.75",
+    }  # fmt: skip
+    shown = np.ma.filled(left.images[0].get_array().astype(float), np.nan)
+    expected = np.full((3, 3), np.nan)
+    expected[1, 0], expected[2, 0], expected[2, 1] = 0.25, 0.125, 0.75
+    assert shown == pytest.approx(expected, nan_ok=True)
+    assert [one.get_text() for one in left.get_xticklabels()] == ["fine", "middle"]
+    assert [one.get_text() for one in left.get_yticklabels()] == ["middle", "coarse"]
+    assert list(left.get_yticks()) == [1, 2]
+    assert (left.get_xlim(), left.get_ylim()) == ((-0.5, 1.5), (2.5, 0.5))
+    line, points = right.get_lines()
+    assert data(line) == data(points) == [[0, 1, 2], [0.5, -0.25, 0.75]]
+    assert [(one.get_text(), one.xy) for one in right.texts] == [
+        ("fine", (0, 0.5)), ("middle", (1, -0.25)), ("coarse", (2, 0.75)),
+    ]  # fmt: skip
+    assert "(88 % of them)" in right.get_title(loc="left")
+    assert [one.get_height() for one in bars.patches] == pytest.approx([25, 45, 30])
+    assert [one.get_text() for one in bars.get_xticklabels()] == list(NAMES)
+    (even,) = bars.get_lines()
+    assert data(even)[1] == pytest.approx([100 / 3] * 2)
+
+
+def test_points_on_a_line_and_trials_added_are_shown_as_such() -> None:
+    choice = SimpleNamespace(**{**vars(CHOICE), "pseudo_trials": 0.5})
+    line = SimpleNamespace(points=np.array([[0.0], [1.0], [2.0]]), explained=1.0)
+    figure = similarities(analysis(choice=choice, choice_map=line))
+    assert "choice model, 0.5 trial per stimulus added" in words(figure.get_supxlabel())
+    assert data(figure.axes[1].get_lines()[0]) == [[0, 1, 2], [0, 0, 0]]
+
+
+def test_what_was_not_computed_says_why() -> None:
+    notes = ("choice model: too few", "d′: too many")
+    for draw, missing, title, said in (
+        (sensitivity, "sensitivity", "No d′", "d′: too many"),
+        (similarities, "choice", "No choice model", "choice model: too few"),
+        (similarities, "choice_map", "No choice model", "choice model: too few"),
+    ):
+        figure = draw(analysis(notes=notes, **{missing: None}))
+        assert (figure.get_suptitle(), figure.axes[0].texts[0].get_text()) == (title, said)
+        figure = draw(analysis(**{missing: None}))
+        assert figure.axes[0].texts[0].get_text() == "It was not computed."

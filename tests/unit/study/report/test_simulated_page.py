@@ -1,0 +1,213 @@
+"""Files of simulated participants: every answer, what is confused, and that nobody answered."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import functools
+import html
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.core.kit import style
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.percepts import Apparatus
+from squeezefilm.physics.perception.senses import Candidates, line_periods
+from squeezefilm.study.design.study_design import load_design
+from squeezefilm.study.report import simulated_page
+from squeezefilm.study.report.simulated_page import (
+    COLUMNS,
+    LEGEND,
+    REASONS,
+    REMARK,
+    confusion_rows,
+    reason_rows,
+    write_simulated,
+)
+from squeezefilm.study.simulated.causes import Causes
+from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.participants import SimulatedStudy
+from squeezefilm.study.tasks import analyze
+
+PAPER = load_design("biet2008-gratings")
+# Answers in another order than what is presented; the second display's name tries to be markup.
+DESIGN = dataclasses.replace(
+    PAPER, name="two-gratings", displays=("biet2008-stator", "<b>plate</b>"),
+    stimuli=PAPER.stimuli[1:3], alternatives=PAPER.alternatives[2:0:-1],
+)  # fmt: skip
+FIRST = Causes(25.04, 101.2, math.nan, 0.123, 2.54, math.nan, 1e-6, 3.456, 2.0e-3, 4.0)
+SECOND = Causes(12.5, 101.2, 0.876, 0.06, 1.27, 0.254, 1e-6, 1.2, 3.98e-3, 4.0)
+
+
+def study(design: Any = DESIGN) -> SimulatedStudy:
+    """Two people, each asked two gratings on two displays; on the first one answer is wrong."""
+    observer = dataclasses.replace(load_observer(), finger_classes=1, name="<i>made up</i>")
+    periods = line_periods().size
+    tables = ChainTables(
+        design=design, observer=observer, fingers=observer.fingers(), apparatus=(Apparatus(),) * 2,
+        virtual=Candidates(np.full((2, 1, 2, 1), 2e-3), np.full((2, 1, 2, 1), 3.0)),
+        real=Candidates(np.full((1, 2, 1), 2e-3), np.full((1, 2, 1), 3.0)),
+        virtual_rhythm=np.ones((2, 1, 2, periods)), real_rhythm=np.ones((1, 2, periods)),
+        causes=(((FIRST,), (SECOND,)), ((SECOND,), (FIRST,))),
+    )  # fmt: skip
+    return SimulatedStudy(
+        tables=tables, seed=5,
+        display=np.array([[0, 0, 1, 1], [1, 1, 0, 0]]),
+        stimulus=np.array([[0, 1, 0, 1], [1, 0, 1, 0]]),
+        # Alternative 1 is the 2 mm of stimulus 0: only the very first answer is wrong.
+        choice=np.array([[0, 0, 1, 0], [0, 1, 0, 1]]),
+        number=np.array([[0, 1, 2, 3], [0, 1, 2, 3]]),
+        felt=np.array([[True, False, True, True], [True, True, True, True]]),
+        response_time=np.array([[1.5, 2.0, 2.5, 3.0], [0.5, 0.75, 1.0, 1.25]]),
+        finger=np.array([0, 3]),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Any], list[str]]:
+    """The folder, the analyses handed on, and what was told meanwhile."""
+    folder, handed, told = tmp_path_factory.mktemp("simulated") / "deep", [], []
+
+    def write_study(analysis: Any, to: Path) -> Path:
+        handed.append((analysis, to))
+        return to / "index.html"
+
+    quick = functools.partial(analyze.analyze_answers, resamples=10)
+    with pytest.MonkeyPatch.context() as patch:
+        # Reports of real answers have tests of their own, and pictures are slow.
+        patch.setattr("squeezefilm.study.report.page.write_study", write_study)
+        patch.setattr(analyze, "analyze_answers", quick)
+        patch.setattr(style, "png", lambda one: one.get_suptitle().encode())
+        assert write_simulated(study(), folder, told.append) == folder / "index.html"
+    return folder, handed, told
+
+
+def test_every_answer_is_a_row(written: tuple[Path, list[Any], list[str]]) -> None:
+    with (written[0] / "trials.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    assert rows[0] == [one.name for one in COLUMNS]
+    assert len(rows) == 9
+    assert rows[1] == [
+        "simulated", "0", "0", "0", "biet2008-stator", "2 mm", "4 mm", "true", "1.5",
+    ]  # fmt: skip
+    assert rows[2] == [
+        "simulated", "0", "0", "1", "biet2008-stator", "4 mm", "4 mm", "false", "2.0",
+    ]  # fmt: skip
+    assert rows[6] == [
+        "simulated", "1", "3", "1", "<b>plate</b>", "2 mm", "2 mm", "true", "0.75",
+    ]  # fmt: skip
+
+
+def test_confusions_are_shares_of_a_column_with_their_counts() -> None:
+    head, rows = confusion_rows(study(), 0)
+    assert head == ["Answered \\ simulated", "2 mm", "4 mm"]
+    assert rows == [["4 mm", "50 % (1)", "100 % (2)"], ["2 mm", "50 % (1)", "0 % (0)"]]
+    assert confusion_rows(study(), 1)[1] == [
+        ["4 mm", "0 % (0)", "100 % (2)"], ["2 mm", "100 % (2)", "0 % (0)"],
+    ]  # fmt: skip
+
+
+def test_reasons_are_in_the_order_of_their_heads_with_a_dash_for_none() -> None:
+    first, second = reason_rows(study(), 0)
+    assert first == ["2 mm", "25", "101", "–", "0.12", "2.5", "–", "3.46", "2"]
+    assert second == ["4 mm", "12.5", "101", "0.88", "0.06", "1.3", "0.25", "1.20", "3.98"]
+    assert reason_rows(study(), 1)[0][1:] == second[1:]
+    assert len(first) == len(REASONS)
+
+
+def test_each_display_is_analysed_with_the_answer_that_is_right_on_the_diagonal(
+    written: tuple[Path, list[Any], list[str]],
+) -> None:
+    folder, handed, told = written
+    (first, one), (second, other) = handed
+    assert (one, other) == (folder / "display-1", folder / "display-2")
+    # Rows are answers by the stimulus they stand for.
+    assert first.matrix.counts.tolist() == [[1, 0], [1, 2]]
+    assert second.matrix.counts.tolist() == [[2, 0], [0, 2]]
+    assert first.name == "two-gratings, biet2008-stator"
+    assert first.origin == "simulated"
+    assert (told[0], told[-1]) == ("figures", "writing the report")
+    assert told.count("counting") == 2
+
+
+def test_numbers_and_figures_are_beside_the_page(
+    written: tuple[Path, list[Any], list[str]],
+) -> None:
+    folder = written[0]
+    assert sorted(one.name for one in folder.iterdir()) == [
+        "channels.png", "index.html", "percepts.png", "simulated.json", "trials.csv",
+    ]  # fmt: skip
+    text = (folder / "simulated.json").read_text(encoding="utf-8")
+    assert text.endswith("}\n")
+    data = json.loads(text)
+    assert data["participants"] == 2
+    assert data["proportion_correct"] == {"biet2008-stator": 0.75, "<b>plate</b>": 1.0}
+    assert "Channels of" in (folder / "channels.png").read_text(encoding="utf-8")
+    assert "Least evident" in (folder / "percepts.png").read_text(encoding="utf-8")
+
+
+def test_the_page_says_that_nobody_answered_and_shows_names_as_text(
+    written: tuple[Path, list[Any], list[str]],
+) -> None:
+    # A number and its unit stay in one line of the page.
+    page = (written[0] / "index.html").read_text(encoding="utf-8").replace("\u00a0", " ")
+    assert "<b>plate" not in page
+    assert "<i>made" not in page
+    assert page.count("<h1>two-gratings: simulated participants</h1>") == 1
+    assert "<title>two-gratings: simulated participants</title>" in page
+    said = page.replace("\n", " ")
+    assert (
+        "2 <b>simulated</b> participants, observer &lt;i&gt;made up&lt;/i&gt;, seed 5, "
+        "finger: ; no person answered" in said
+    )
+    assert REMARK in page
+    assert "<h2>biet2008-stator, simulated: 75.0 % right</h2>" in page
+    assert "<h2>&lt;b&gt;plate&lt;/b&gt;, simulated: 100.0 % right</h2>" in page
+    assert (
+        '<thead><tr><th scope="col">Answered \\ simulated</th><th scope="col">2 mm</th>'
+        '<th scope="col">4 mm</th></tr></thead>\n<tbody>\n'
+        '<tr><th scope="row">4 mm</th><td>50 % (1)</td><td>100 % (2)</td></tr>\n'
+        '<tr><th scope="row">2 mm</th><td>50 % (1)</td><td>0 % (0)</td></tr>\n</tbody>' in page
+    )
+    assert page.count(f"<caption>Reasons the model sees. {html.escape(LEGEND)}</caption>") == 2
+    assert '<th scope="col">Clearest</th>' in page
+    assert '<tr><th scope="row">2 mm</th><td>25</td><td>101</td><td>–</td>' in page
+    for number in (1, 2):
+        link = f'<p><a href="display-{number}/index.html">Full analysis</a></p>'
+        assert page.count(link) == 1
+    assert page.index("display-1/index.html") < page.index("&lt;b&gt;plate")
+    assert page.index('src="percepts.png"') < page.index('src="channels.png"')
+    stamp = json.loads((written[0] / "simulated.json").read_text(encoding="utf-8"))["provenance"]
+    assert f"<code>{stamp['config_sha256']}</code>" in page
+    assert f"made {stamp['created_utc']} (UTC)" in said
+
+
+@pytest.mark.parametrize(
+    "alternatives",
+    [PAPER.alternatives[:3], (PAPER.alternatives[1], PAPER.alternatives[0])],
+    ids=["more answers than gratings", "a grating without a right answer"],
+)
+def test_gratings_that_do_not_pair_up_get_no_analysis_of_right_answers(
+    alternatives: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(style, "png", lambda _: b"")
+    monkeypatch.setattr(simulated_page.observer_figures, "channels", lambda _: Figure())
+    monkeypatch.setattr(simulated_page.observer_figures, "percepts", lambda _: Figure())
+    design = dataclasses.replace(DESIGN, alternatives=alternatives)
+    page = write_simulated(study(design), tmp_path).read_text(encoding="utf-8")
+    assert "Full analysis" not in page
+    assert page.count("</table>") == 4
+    assert not [one for one in tmp_path.iterdir() if one.is_dir()]
+
+
+def test_a_file_is_no_folder(tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("x")
+    with pytest.raises(InputError, match="is a file, not a folder; choose another"):
+        write_simulated(study(), tmp_path / "taken")

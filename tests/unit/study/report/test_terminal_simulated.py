@@ -1,0 +1,85 @@
+"""What the terminal says of simulated participants: answers by display, and the reasons."""
+
+from __future__ import annotations
+
+import numpy as np
+from tests.unit.printed import printed
+
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.percepts import Apparatus
+from squeezefilm.physics.perception.senses import Candidates
+from squeezefilm.study.report.simulated_page import LEGEND, REMARK
+from squeezefilm.study.report.terminal_analysis import show_simulated
+from squeezefilm.study.simulated.causes import Causes
+from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.participants import SimulatedStudy
+
+from ...study.scripted import gratings
+
+DESIGN = gratings(displays=("biet2008-plate", "biet2008-stator"))
+NONE = np.zeros(0)
+
+
+def why(hertz: float, kept: float, ripple: float) -> tuple[Causes]:
+    """What one finger gets of one stimulus."""
+    return (Causes(hertz, 123.45, kept, 0.25, 1.5, ripple, 1e-6, 3.25, 4.05e-3, 5.0),)
+
+
+def study() -> SimulatedStudy:
+    """Two people: on the plate 8 mm is taken for 4 mm, on the stator all is right."""
+    nan = float("nan")
+    tables = ChainTables(
+        DESIGN,
+        load_observer(),
+        load_observer().fingers()[:1],
+        (Apparatus(),) * 2,
+        Candidates(NONE, NONE),
+        Candidates(NONE, NONE),
+        NONE,
+        NONE,
+        (
+            (why(40.0, 0.5, 0.1), why(20.0, 0.75, 0.2), why(10.0, nan, nan)),
+            (why(41.0, 0.5, 0.1),) * 3,
+        ),
+    )
+    display = np.array([[0, 0, 0, 1, 1, 1, 1]] * 2)
+    stimulus = np.array([[0, 1, 2, 0, 1, 2, 2]] * 2)
+    choice = np.array([[0, 1, 1, 0, 1, 2, 2]] * 2)
+    number = np.array([np.arange(7)] * 2)
+    return SimulatedStudy(
+        tables, 5, display, stimulus, choice, number, number >= 0, 1.0 * number, np.array([0, 0])
+    )
+
+
+def test_each_display_has_its_answers_and_its_reasons() -> None:
+    lines = printed(lambda: show_simulated(study()))
+    reasons = "Simulated Hz Bandwidth Kept Lag Contact Ripple d′ Clearest"
+    columns = "Per cent of each column; rows are what was answered, columns simulated."
+    assert lines[:10] == [
+        "biet2008-plate, SIMULATED: 66.7 % right, 2 simulated participants, seed 5",
+        "Answered \\ simulated 2 mm 4 mm 8 mm",
+        "2 mm 100 % (2) 0 % (0) 0 % (0)",
+        "4 mm 0 % (0) 100 % (2) 100 % (2)",
+        "8 mm 0 % (0) 0 % (0) 0 % (0)",
+        columns,
+        reasons,
+        "2 mm 40 123 0.50 0.25 1.5 0.10 3.25 4.05",
+        "4 mm 20 123 0.75 0.25 1.5 0.20 3.25 4.05",
+        "8 mm 10 123 – 0.25 1.5 – 3.25 4.05",
+    ]
+    assert lines[10:20] == [
+        "biet2008-stator, SIMULATED: 100.0 % right, 2 simulated participants, seed 5",
+        "Answered \\ simulated 2 mm 4 mm 8 mm",
+        "2 mm 100 % (2) 0 % (0) 0 % (0)",
+        "4 mm 0 % (0) 100 % (2) 0 % (0)",
+        "8 mm 0 % (0) 0 % (0) 100 % (4)",
+        columns,
+        reasons,
+        *(f"{name} 41 123 0.50 0.25 1.5 0.10 3.25 4.05" for name in ("2 mm", "4 mm", "8 mm")),
+    ]
+
+
+def test_legend_and_remark_stand_once_below_all() -> None:
+    text = " ".join(printed(lambda: show_simulated(study())))
+    assert text.endswith(f"{LEGEND} {REMARK}")
+    assert text.count(LEGEND) == 1
