@@ -94,7 +94,8 @@ def table(times: dict[str, dict[bool, float]], tests: dict[str, int]) -> str:
     folders: dict[str, list[str]] = defaultdict(list)
     for file in times:
         parts = file.split("/")
-        folders["/".join(parts[1 : 3 if parts[1] == "unit" and len(parts) > 3 else 2])].append(file)
+        depth = min(len(parts) - 1, 4) if parts[1] == "unit" else 2
+        folders["/".join(parts[1:depth])].append(file)
 
     def total(files: list[str], is_slow: bool) -> float:
         return sum(times[file][is_slow] for file in files)

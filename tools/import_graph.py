@@ -146,6 +146,29 @@ def circles(graph: Graph) -> list[frozenset[str]]:
     return sorted(groups, key=sorted)
 
 
+def parts(graph: Graph) -> dict[str, frozenset[str]]:
+    """For every part, which is a folder of the package, the other parts that its modules import."""
+    within = {name.split(".")[1] for name in graph if name.count(".") > 1}
+    folders = {name: name.split(".")[1] for name in graph if name.partition(".")[2]}
+    folders = {name: part for name, part in folders.items() if part in within}
+    found: dict[str, frozenset[str]] = {}
+    for name, part in folders.items():
+        taken = {folders[other] for other in graph[name] if other in folders}
+        found[part] = found.get(part, frozenset()) | (taken - {part})
+    return found
+
+
+def parts_drawing(graph: Graph) -> str:
+    """The parts and what each imports, one a line, the highest first."""
+    found = parts(graph)
+    order = sorted(found, key=lambda part: (-len(distances([part], found)), part))
+    lines = (
+        f"    {part:<12} → {' '.join(other for other in order if other in found[part])}".rstrip()
+        for part in order
+    )
+    return "\n".join(line.removesuffix(" →") for line in lines)
+
+
 def test_files(tests: Path) -> list[Path]:
     """Every file of tests below a folder, sorted."""
     return sorted(tests.rglob("test_*.py"))
@@ -169,3 +192,7 @@ def modules_named_by(test: Path, modules: Collection[str]) -> frozenset[str]:
     """The modules that a test's file imports, or whose dotted name stands in it as text."""
     texts = _DOTTED.findall(test.read_text(encoding="utf-8"))
     return imports_of(test).modules(modules) | (frozenset(texts) & frozenset(modules))
+
+
+if __name__ == "__main__":
+    print(parts_drawing(import_graph(Path(__file__).parents[1] / "src")))

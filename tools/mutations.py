@@ -94,7 +94,9 @@ def sample(mutants: Iterable[Mutant], seed: int) -> Iterator[Mutant]:
 
 def all_mutants(source: Path, rooms: Iterable[str] = ()) -> list[Mutant]:
     """Every mutant of the package below a folder of sources, of all rooms or of those named."""
-    quantities = quantity_names((source / "squeezefilm" / "quantities" / "units.py").read_bytes())
+    quantities = quantity_names(
+        (source / "squeezefilm" / "core" / "quantities" / "units.py").read_bytes()
+    )
     wanted = set(rooms)
     found: list[Mutant] = []
     for path in sorted((source / "squeezefilm").rglob("*.py")):

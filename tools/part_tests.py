@@ -3,9 +3,9 @@
     python tools/part_tests.py film
 
 A part is a folder or a module below ``src/squeezefilm``, by its name (`film`) or its path
-(`physics/film/planar`); of several with that name the outermost. Its tests lie in the folder of the
-same path below ``tests/unit``, are named after one of its modules, or stand beside ``tests/unit``
-and import nothing else of the package.
+(`physics/film/planar`); of several with that name those that are outermost. Its tests lie in the
+folder of the same path below ``tests/unit``, are named after one of its modules, or stand beside
+``tests/unit`` and import nothing else of the package.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ ROOT = Path(__file__).parents[1]
 _EVERYWHERE = ("squeezefilm.core.quantities", "squeezefilm.core.errors")
 
 
-def part_path(part: str, package: Path) -> Path:
-    """The folder or module of a part, from the package on. Raises `ValueError` if there is none."""
+def part_paths(part: str, package: Path) -> list[Path]:
+    """The folders or modules of a part, from the package on. Raises `ValueError` without one."""
     parts = [path for path in package.rglob("*") if path.suffix == ".py" or path.is_dir()]
     paths = [path.relative_to(package).with_suffix("") for path in parts]
     wanted = Path(part).parts
@@ -28,19 +28,20 @@ def part_path(part: str, package: Path) -> Path:
     if not wanted or not named:
         rooms = sorted(str(path) for path in paths if len(path.parts) == 1 and str(path)[0] != "_")
         raise ValueError(f"src/squeezefilm holds no '{part}'; it has {', '.join(rooms)}")
-    return min(named, key=lambda path: (len(path.parts), path))
+    outermost = min(len(path.parts) for path in named)
+    return sorted(path for path in named if len(path.parts) == outermost)
 
 
 def tests_of(part: str, root: Path) -> list[str]:
     """The paths of a part's files of tests, from the root on, sorted."""
     source, tests = root / "src", root / "tests"
-    path = part_path(part, source / import_graph.PACKAGE)
+    paths = part_paths(part, source / import_graph.PACKAGE)
     graph = import_graph.import_graph(source)
-    name = ".".join([import_graph.PACKAGE, *path.parts])
-    modules = {module for module in graph if f"{module}.".startswith(f"{name}.")}
+    names = tuple(".".join([import_graph.PACKAGE, *path.parts, ""]) for path in paths)
+    modules = {module for module in graph if f"{module}.".startswith(names)}
 
     def belongs(test: Path) -> bool:
-        if tests / "unit" / path in test.parents:
+        if any(tests / "unit" / path in test.parents for path in paths):
             return True
         if import_graph.modules_in_the_name_of(test, tests, graph) & modules:
             return True

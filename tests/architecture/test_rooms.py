@@ -1,5 +1,6 @@
 """Rooms that one person can own: small folders, no circles, no private doors, tested modules."""
 
+import re
 from collections import Counter
 from pathlib import Path
 
@@ -28,6 +29,21 @@ def test_no_module_reaches_itself_by_imports(graph: dict[str, frozenset[str]]) -
     # the version, so it closes no circle.
     within = {name: imports for name, imports in graph.items() if name != "squeezefilm"}
     assert import_graph.circles(within) == []
+
+
+def test_the_drawing_of_the_parts_is_todays(graph: dict[str, frozenset[str]]) -> None:
+    """Run `python tools/import_graph.py` and put what it prints into architecture.md."""
+    text = (ROOT / "docs" / "development" / "architecture.md").read_text("utf-8")
+    assert import_graph.parts_drawing(graph) in text
+
+
+def test_each_part_has_a_page_that_says_what_it_imports(graph: dict[str, frozenset[str]]) -> None:
+    for part, imports in import_graph.parts(graph).items():
+        page = (SOURCE / "squeezefilm" / part / "README.md").read_text("utf-8")
+        line = next(line for line in page.splitlines() if line.startswith("Imports: "))
+        assert set(re.findall(r"`(\w+)`", line)) == imports, part
+        assert f"make test PART={part}" in page
+        assert len(page.splitlines()) < 40
 
 
 def test_nobody_inside_comes_in_by_the_front_door() -> None:

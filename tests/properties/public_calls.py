@@ -33,6 +33,7 @@ ROOMS = {
     "actuators.motor",
     "actuators.control",
     "core.materials",
+    "physics.texture_files",
     "core.quantities",
     "core.distributions",
     "core.formats",

@@ -52,7 +52,7 @@ def test_which_drives_are_safe(study: bool, bench_only: bool) -> None:
     elif bench_only:
         require_safe_drive(CARD, LOW, bench_only=True)
     else:
-        with pytest.raises(InputError, match="--bench-only"):
+        with pytest.raises(InputError, match="bench_only"):
             require_safe_drive(CARD, LOW)
 
 

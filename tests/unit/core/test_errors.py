@@ -48,11 +48,11 @@ def asked_certificate(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("extra", "what", "asked"),
     [
-        ("cluster", "--jobs", asked_cluster),
+        ("cluster", "jobs", asked_cluster),
         ("design", "DXF", lambda _: dxf_text(Drawing({}))),
         ("design", "search of designs", lambda folder: journal(folder / "journal.log")),
         ("device", "serial port", lambda _: SerialStream("/dev/none")),
-        ("lab", "--lan", asked_certificate),
+        ("lab", "tablets", asked_certificate),
         ("lsl", "stream of markers", lambda _: Markers()),
         ("study", "CSV", lambda _: parquet_bytes(Table({"x_m": np.zeros(1)}))),
     ],

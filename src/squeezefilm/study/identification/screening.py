@@ -84,6 +84,14 @@ class Screening:
         """Who does not do the task by the rule."""
         return tuple(one for one in self.people if one.reasons)
 
+    @property
+    def left_out_sentence(self) -> str:
+        """Sentence of a methods section about who was left out; empty for nobody."""
+        if not self.left_out:
+            return ""
+        many = "participant was" if len(self.named) == 1 else "participants were"
+        return f" By the rule of the design {len(self.named)} more {many} left out."
+
 
 def rule_of(design: StudyDesign) -> ExclusionRule:
     """The design's rule, or the one that marks where it has none."""

@@ -175,7 +175,9 @@ def _screened(
     if isinstance(everybody, TaskAnalysis):
         results["robust, everybody"] = everybody.robust
     known = {name: one for name, one in results.items() if one is not None}
-    return dataclasses.replace(chosen, screening=Screening(rule, people, known, said))
+    screening = Screening(rule, people, known, said)
+    methods = chosen.methods + screening.left_out_sentence
+    return dataclasses.replace(chosen, screening=screening, methods=methods)
 
 
 def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:

@@ -2,23 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 
 from squeezefilm.core.kit import terminal
 from squeezefilm.core.kit.numbers import printable, shown
 from squeezefilm.core.quantities import Unit
-
-
-def test_what_a_model_misses_is_said(printed: Callable[[], str]) -> None:
-    terminal.show_missed(terminal.plain_console(), "partial-levitation")
-    text = printed()
-    assert "What measurements say and 'partial-levitation' does not" in text
-    assert "the faster the finger slides" in " ".join(text.split())
-    assert "In the model" not in text
-    terminal.show_missed(terminal.plain_console(), "levitation-2016")
-    assert "were not asked of the model 'levitation-2016'" in printed()
 
 
 def test_progress_is_plain_lines_where_no_terminal_is(capsys: pytest.CaptureFixture[str]) -> None:

@@ -176,7 +176,7 @@ def test_a_link_leads_a_station_to_its_sitting(lab: Talk) -> None:
 
 def test_a_code_pairs_a_tablet_where_the_lab_has_an_address_for_them(lab: Talk) -> None:
     sitting = prepared(lab)
-    assert "--lan ADDRESS" in lab.refused("pairing code", sitting=sitting)
+    assert "lan ADDRESS" in lab.refused("pairing code", sitting=sitting)
     lab.lab.lan = LanPlace("https://10.0.0.1:8632/pair", "AB:CD")
     found = lab.say("pairing code", sitting=sitting)
     code = found.pop("code")

@@ -60,7 +60,7 @@ def test_an_ordinary_file_is_read(tmp_path: Path) -> None:
         (lambda: changed(7, 1, "18 %"), "line 7.*no reference"),
         (lambda: changed(7, 2, ""), "line 7.*no reference"),
         (lambda: [[*r[:4], str(1000 * float(r[4]))] for r in rows()], "milliseconds"),
-        (lambda: changed(9, 3, "left"), 'line 9.*--values "left=first"'),
+        (lambda: changed(9, 3, "left"), 'line 9.*values = "left=first"'),
         (lambda: changed(9, 1, "30"), "Did you mean '30 %'"),
     ],
 )

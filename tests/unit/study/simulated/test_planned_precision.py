@@ -121,7 +121,7 @@ def test_pairs_that_no_test_tells_apart_are_refused() -> None:
         require_pair(ALIKE, "4 mm", "4 mm")
     from squeezefilm.study.design.study_design import load_design
 
-    with pytest.raises(InputError, match="--precision"):
+    with pytest.raises(InputError, match="precision"):
         require_pair(load_design("period-jnd"), "4 mm", "6 mm")
 
 

@@ -34,9 +34,10 @@ def rest_friction_factor(
     decay_ratio: Annotated[si.DimensionlessArray, si.Above(0.0)],
 ) -> si.DimensionlessArray:
     """µ0 of people over the median µ0, not exceeded with probability `share` by people whose ℓ is
-    `decay_ratio` times the median ℓ; all of one shape."""
+    `decay_ratio` times the median ℓ; all of shape (n,). Raises `InputError` for other shapes."""
     from scipy.special import ndtri
 
+    si.require_alike(share=share, decay_ratio=decay_ratio)
     apart = math.sqrt(1 - CORRELATION**2) * ndtri(share)
     along = CORRELATION * np.log(decay_ratio) / DECAY_LENGTH_SPREAD
     return np.exp(REST_FRICTION_SPREAD * (along + apart))

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from squeezefilm.design.analysis.report.model_rows import cited, missed_directions, theory_rows
+from squeezefilm.core.kit.terminal import plain_console
+from squeezefilm.design.analysis.report.model_rows import (
+    cited,
+    missed_directions,
+    show_missed,
+    theory_rows,
+)
 
 MODE = SimpleNamespace(
     model="solid", resonance_frequency=30e3, half_wavelength=10e-3, amplitude_per_volt=100e-9
@@ -35,3 +42,13 @@ def test_directions_are_said_with_their_source() -> None:
     assert cited("elsewhere") == "elsewhere"
     (unasked,) = missed_directions("a-model")
     assert unasked == "Published directions were not asked of the model 'a-model'."
+
+
+def test_what_a_model_misses_is_said(printed: Callable[[], str]) -> None:
+    show_missed(plain_console(), "partial-levitation")
+    text = printed()
+    assert "What measurements say and 'partial-levitation' does not" in text
+    assert "the faster the finger slides" in " ".join(text.split())
+    assert "In the model" not in text
+    show_missed(plain_console(), "levitation-2016")
+    assert "were not asked of the model 'levitation-2016'" in printed()
