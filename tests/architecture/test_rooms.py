@@ -43,7 +43,7 @@ def test_each_part_has_a_page_that_says_what_it_imports(graph: dict[str, frozens
         line = next(line for line in page.splitlines() if line.startswith("Imports: "))
         assert set(re.findall(r"`(\w+)`", line)) == imports, part
         assert f"make test PART={part}" in page
-        assert len(page.splitlines()) < 40
+        assert len(page.splitlines()) < 40, part
 
 
 def test_nobody_inside_comes_in_by_the_front_door() -> None:
