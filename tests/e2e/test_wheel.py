@@ -45,11 +45,11 @@ def _run(site: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 def test_the_wheel_has_data_licence_and_types(unpacked: Path) -> None:
     files = {str(path.relative_to(unpacked)) for path in unpacked.rglob("*") if path.is_file()}
     assert {
-        "squeezefilm/presets/claims.toml",
-        "squeezefilm/presets/biet2008-plate.toml",
-        "squeezefilm/presets/biet2008-stator.toml",
+        "squeezefilm/core/presets/claims.toml",
+        "squeezefilm/core/presets/biet2008-plate.toml",
+        "squeezefilm/core/presets/biet2008-stator.toml",
         "squeezefilm/py.typed",
-        "squeezefilm/render/static/renderer.js",
+        "squeezefilm/physics/render/static/renderer.js",
     } <= files
     assert any(name.endswith("licenses/LICENSE") for name in files)
     assert not any(name.startswith(("tests", "docs")) for name in files)

@@ -163,7 +163,7 @@ def test_the_same_glue_shifts_nothing_and_one_out_of_reach_is_refused() -> None:
     shifts = CoarseShifts(plate, mode)
     assert shifts.to(plate) == (0.0, 0.0)
     # Without a bond to speak of the ceramic does not stiffen the plate.
-    with pytest.raises(OutOfRangeError, match="--sensitivities solved"):
+    with pytest.raises(OutOfRangeError, match="sensitivities solved"):
         shifts.to(with_glue(plate, 200e-6, 3e7))
     # The ceramic in the middle does not drive a mode that the middle's mirror turns over.
     still = with_glue(_small(), 20e-6, 3e9)

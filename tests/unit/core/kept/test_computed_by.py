@@ -112,7 +112,7 @@ def test_another_young_modulus_in_the_source_is_another_answer(tmp_path: Path) -
     unchanged = frequency(PACKAGE.parent, kept)
     assert frequency(PACKAGE.parent, kept) == unchanged
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    materials = copy / "materials.py"
+    materials = copy / "core" / "materials.py"
     text, begin = materials.read_text("utf-8"), "\n    s = np.zeros((6, 6))\n"
     assert text.count(begin) == 1
     stiffer = f"\n    young_modulus = 1.2 * young_modulus{begin}"

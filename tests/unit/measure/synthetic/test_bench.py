@@ -124,7 +124,8 @@ def test_a_solved_plate_has_every_kind_and_a_fixture_that_no_model_has() -> None
 def test_every_vibration_of_a_default_bench_is_adequate_and_near_the_truth(tmp_path) -> None:
     """What a calibration takes of it: by the described display, which is not the drawn one. Of
     seeds 1 to 4 the bent raw signals are left out twice (1 and 4), with the reason, and one
-    resonance is 0.09 % off (2)."""
+    resonance is 0.09 % off (2). Leads and a loss of the coupling describe the noisy sweep of
+    impedance alike, so that it knows its resonance to 0.5 % only, and says so."""
     display = load_display("biet2008-plate")
     bench = synthetic_bench(display, 3)
     names = [name for name in bench.recordings if not name.startswith("friction")]
@@ -141,6 +142,7 @@ def test_every_vibration_of_a_default_bench_is_adequate_and_near_the_truth(tmp_p
         "quality_factor": (true.quality_factor, 0.03),
     }
     for answer, (value, share) in allowed.items():
-        found = [one.value for one in seen.observations if one.answer == answer]
+        found = [one for one in seen.observations if one.answer == answer]
         assert found, answer
-        assert found == pytest.approx([value] * len(found), rel=share), answer
+        for one in found:
+            assert abs(one.value - value) < max(share * value, 1.5 * one.standard_error), one
