@@ -113,7 +113,7 @@ def analyze(
         bool,
         typer.Option(
             "--mixed",
-            help="Mixed models of statsmodels too, of match-to-sample (needs the extra 'models').",
+            help="Mixed models of statsmodels too, of match-to-sample (needs the extra 'study').",
         ),
     ] = False,
     reruns: Annotated[

@@ -228,7 +228,7 @@ def analyze_identification(asked: IdentificationRequest) -> IdentificationAnalys
         name, origin: of the study, and whose answers these are.
         response_time: in s, shape (trials,); NaN where none was taken.
         exploration: quantity with its unit, e.g. "mean_speed_m_per_s" → values by trial.
-        mixed: whether to fit mixed models too (needs the extra `models`, at most 50 000 trials).
+        mixed: whether to fit mixed models too (needs the extra `study`, at most 50 000 trials).
         level: of all intervals, between 0 and 1.
         resamples: of people in bootstraps, and shuffles in the permutation test.
         seed: of all resampling.

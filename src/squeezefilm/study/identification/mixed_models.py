@@ -1,4 +1,4 @@
-"""Right answers with people as random effects; needs statsmodels (the extra `models`).
+"""Right answers with people as random effects; needs statsmodels (the extra `study`).
 
 Two models of the same log-odds by stimulus. The mixed model speaks of a typical person, the
 population-averaged one (GEE) of the mean over people: the second lies nearer 50 % the more people

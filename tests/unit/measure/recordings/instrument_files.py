@@ -1,5 +1,10 @@
-"""Exports of instruments as their makers' documentation has them, made here: every number is
-computed. A writer takes frequencies (Hz) and impedances (Ω), or times (s) and voltages (V)."""
+"""Exports of instruments, made here: every number is computed. No recording of these instruments
+was at hand but those of `test_instruments.py`.
+
+After documentation or readers that were found: E4990A, WaveForms, R&S, Copper Mountain, Siglent,
+Rigol. From memory, so that reader and writer may share a mistake: Bode 100, Sinephase, Moku, Red
+Pitaya, RTB, and the words of the 4294A's parameters. A writer takes frequencies (Hz) and
+impedances (Ω), or times (s) and voltages (V)."""
 
 from __future__ import annotations
 
@@ -29,7 +34,7 @@ def _degrees(z: si.ComplexArray) -> si.FloatArray:
 
 def agilent_4294a(parameter: str, values: Callable[..., tuple[si.FloatArray, ...]],
                   memory: bool = False) -> Sweep:  # fmt: skip
-    """The ASCII export of a 4294A (programming manual, "Saving data"): a head, then one table a
+    """The ASCII export of a 4294A (words of parameters from memory): a head, then one table a
     trace, with the traces in memory where they are on."""
 
     def write(f: si.HertzArray, z: si.ComplexArray) -> str:
