@@ -1,7 +1,6 @@
 """Processor time of the tests, as a table of folders and of files.
 
     pytest -p tests.costs --costs docs/development/test-costs.md
-    pytest -p tests.costs --seconds out/test-seconds.json       # of each test that passed
     pytest -p tests.costs --within 10                           # none is begun after 10 s
 
 The time of a test is user and system time of its process and of the children that ended meanwhile,
@@ -10,7 +9,6 @@ its fixtures included: what several tests share is counted with the first of the
 
 from __future__ import annotations
 
-import json
 import os
 from collections import defaultdict
 from pathlib import Path
@@ -24,7 +22,6 @@ LEAST = 1.0
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Declare what is written where."""
     parser.addoption("--costs", type=Path, help="the Markdown file of the table")
-    parser.addoption("--seconds", type=Path, help="the JSON file of each test's time (s)")
     parser.addoption("--within", type=float, help="processor time (s) after which none is begun")
 
 
@@ -32,8 +29,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Measure in every process; write in the one that hears all reports."""
     config.pluginmanager.register(Stopwatch(config.getoption("--within")), "stopwatch")
     if not hasattr(config, "workerinput"):
-        paths = config.getoption("--costs"), config.getoption("--seconds")
-        config.pluginmanager.register(Costs(*paths), "costs")
+        config.pluginmanager.register(Costs(config.getoption("--costs")), "costs")
 
 
 def processor_time() -> float:
@@ -67,9 +63,8 @@ class Stopwatch:
 class Costs:
     """Sums what tests took and writes it at the end."""
 
-    def __init__(self, costs: Path | None, seconds: Path | None) -> None:
-        self._costs, self._seconds = costs, seconds
-        self._passed: dict[str, float] = {}
+    def __init__(self, costs: Path | None) -> None:
+        self._costs = costs
         self._times: dict[str, dict[bool, float]] = defaultdict(lambda: {False: 0.0, True: 0.0})
         self._tests: dict[str, int] = defaultdict(int)
 
@@ -77,16 +72,12 @@ class Costs:
         """Add one phase of one test to its file."""
         file, spent = report.nodeid.partition("::")[0], getattr(report, "processor_time", 0.0)
         self._times[file][getattr(report, "is_slow", False)] += spent
-        if report.when == "call" and report.passed:
-            self._passed[report.nodeid] = round(spent, 3)
         self._tests[file] += report.when == "call"
 
     def pytest_sessionfinish(self) -> None:
-        """Write the table, and what each test took."""
+        """Write the table."""
         if self._costs is not None:
             self._costs.write_text(table(self._times, self._tests), encoding="utf-8")
-        if self._seconds is not None:
-            self._seconds.write_text(json.dumps(self._passed), encoding="utf-8")
 
 
 def table(times: dict[str, dict[bool, float]], tests: dict[str, int]) -> str:
