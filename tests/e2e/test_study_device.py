@@ -32,7 +32,7 @@ from squeezefilm.study.conduct.sessions import (
 from squeezefilm.study.conduct.study_device import NoDevice, StudyDevice
 from squeezefilm.study.conduct.trial_by_trial import conduct
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.store import Row, StudyStore
 
 pytestmark = [
     pytest.mark.realtime,
@@ -117,6 +117,12 @@ def conducted(run: StudyRun, device: StudyDevice) -> int:
     return before - run.remaining
 
 
+def counted(store: StudyStore) -> list[Row]:
+    """The answers that count: a trial that the machine held up is set aside and comes again."""
+    aside = "SELECT 1 FROM set_aside a WHERE a.trial = r.trial"
+    return store.rows(f"SELECT * FROM response r WHERE NOT EXISTS ({aside})")
+
+
 @pytest.mark.slow
 def test_a_session_on_a_twin_behind_a_port(store: StudyStore) -> None:
     with SessionDevice(DISPLAY, "twin", store.traces) as device:
@@ -126,7 +132,7 @@ def test_a_session_on_a_twin_behind_a_port(store: StudyStore) -> None:
         after = end_session(store, run.session["uuid"], device)
     assert after.passed
     assert after.resonance_frequency == pytest.approx(after.expected_resonance_frequency, rel=2e-3)
-    rows = store.rows("SELECT * FROM response")
+    rows = counted(store)
     assert len(rows) == 2
     for row in rows:
         # A second of strokes of 80 mm/s on average: of all of one, or where the machine held the
@@ -189,9 +195,9 @@ def test_a_device_that_dies_in_a_trial_leaves_no_answer_and_the_trial_comes_agai
                     again.terminate()
     found = store.rows("SELECT trial, count(*) AS n FROM presentation GROUP BY trial")
     shown = {one["trial"]: one["n"] for one in found}
-    assert len(shown) == 2
+    assert len(shown) >= 2
     assert shown[before[0]["trial"]] >= 3
-    assert len(store.rows("SELECT * FROM response")) == 2
+    assert len(counted(store)) == 2
     # The record of the surface that failed is nobody's.
     assert len(store.unreferenced_traces()) >= 1
 
