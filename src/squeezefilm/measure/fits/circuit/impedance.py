@@ -166,7 +166,7 @@ def fit_impedance(
     told = _told(sweep, fit, layout)
     for rival in rivals:
         told = _holding(told, _told(sweep, *rival))
-    return told
+    return _alike(told, rivals[0][1]) if rivals else told
 
 
 def _holding(told: ImpedanceFit, rival: ImpedanceFit) -> ImpedanceFit:
@@ -174,26 +174,29 @@ def _holding(told: ImpedanceFit, rival: ImpedanceFit) -> ImpedanceFit:
     pairs = zip(told.branches, rival.branches, strict=True)
     branches = tuple(
         Branch(**{
-            one.name: _wider(getattr(ours, one.name), getattr(theirs, one.name))
-            for one in fields(Branch)
+            part.name: _wider(getattr(ours, part.name), getattr(theirs, part.name))
+            for part in fields(Branch)
         })
         for ours, theirs in pairs
     )  # fmt: skip
-    said = told.adequacy.sentence
-    if "alike" not in said:
-        either = told.layout, rival.layout
-        found = [one for one in _CORRECTIONS if any(getattr(layout, one) for layout in either)]
-        names = " and ".join(_WORDS[one] for one in found)
-        said += (
-            f" {names.capitalize()} describe this sweep alike: intervals hold what either makes of "
-            "it. Write compensated = true if leads were compensated, or false if they were not."
-        )
     return replace(
         told,
         branches=branches,
         static_capacitance=_wider(told.static_capacitance, rival.static_capacitance),
-        adequacy=replace(told.adequacy, sentence=said),
     )
+
+
+def _alike(told: ImpedanceFit, rival: Layout) -> ImpedanceFit:
+    """The same, and its adequacy names the corrections that the sweep does not tell apart."""
+    either = told.layout, rival
+    found = [name for name in _CORRECTIONS if any(getattr(layout, name) for layout in either)]
+    names = " and ".join(_WORDS[name] for name in found)
+    said = (
+        f"{told.adequacy.sentence} {names.capitalize()} describe this sweep alike: intervals hold "
+        "what either makes of it. Write compensated = true if leads were compensated, or false if "
+        "they were not."
+    )
+    return replace(told, adequacy=replace(told.adequacy, sentence=said))
 
 
 def _wider(ours: Estimate, theirs: Estimate) -> Estimate:
@@ -357,7 +360,6 @@ def _fitted(
     strong = quality * np.exp(np.clip(logs[:, 2] - fit.parameters[0], -60, 30)) > _LEAST_RISE
     if not np.all(inside & sharp & strong) or not np.all(np.diag(fit.covariance) > 0):
         return None
-    # Softer by a third is no correction of a linear circuit any more.
     if layout.leads:
         ohms, henries = fit.parameters[layout.lead :][:2]
         # A coil within the sweep's own reactance; leads give no power.
@@ -365,6 +367,7 @@ def _fitted(
         least = float(np.min(np.abs(1 / y)))
         if ohms < -2 * error or ohms > least or 2 * math.pi * f[-1] * abs(henries) > 10 * least:
             return None
+    # Softer by a third is no correction of a linear circuit any more.
     if layout.softening and np.any(np.abs(fit.parameters[layout.soft :][:2]) > [0.3, 0.95]):
         return None
     return _in_order(fit, layout, frequency), layout
