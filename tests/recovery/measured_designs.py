@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+from tests.made_bench.duffing import SofteningResonance
+from tests.made_bench.strokes import PlannedStrokes, recorded_strokes
 
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
@@ -20,8 +22,6 @@ from squeezefilm.measure.fits.vibration.raw_signals import fit_raw_signals
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
 from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings import kinds
-from squeezefilm.measure.synthetic.duffing import SofteningResonance
-from squeezefilm.measure.synthetic.strokes import PlannedStrokes, recorded_strokes
 
 Random = np.random.Generator
 Checked = dict[str, tuple[Estimate, float]]

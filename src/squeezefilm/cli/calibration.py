@@ -112,28 +112,3 @@ def score(
         return
     for line in (*(one.sentence for one in found), *(f"left out: {one}" for one in left_out)):
         typer.echo(line)
-
-
-@measure.command()
-def synthetic(
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where the files go.")],
-    display: Annotated[str, typer.Option(metavar="PRESET|FILE", help="Whose bench it is.")],
-    truth: Annotated[
-        Path | None, written_to("Where the values that were drawn are written; not in FOLDER.")
-    ] = None,
-    seed: Seed = 1,
-) -> None:
-    """Make up a complete bench: recordings, with noise, of a display whose values are drawn from
-    its own ranges and are not told. Every number is made by the physics; nothing was measured."""
-    from squeezefilm.measure.synthetic.bench import synthetic_bench
-    from squeezefilm.measure.synthetic.files import write_synthetic_bench, write_truth
-
-    described = to_be_solved(display)
-    with working(False) as step:
-        step("recordings of a made-up bench")
-        bench = synthetic_bench(described, seed)
-    for path in write_synthetic_bench(folder, bench):
-        typer.echo(f"recording: {path}")
-    if truth is not None:
-        write_truth(truth, bench)
-        typer.echo(f"truth: {truth}")

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.made_bench.duffing import SofteningResonance
 
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.averaged import averaged, free_amplitude
@@ -11,7 +12,6 @@ from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, VoltageSweeps
-from squeezefilm.measure.synthetic.duffing import SofteningResonance
 from squeezefilm.physics.plate.free_plate import FreePlate
 
 from .test_motor import motor

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from tests.e2e.program import run
 
-from squeezefilm.cli.calibration import calibrate, predict_unseen, score, synthetic
+from squeezefilm.cli.calibration import calibrate, predict_unseen, score
 from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted, Score
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.display import load_display
@@ -24,7 +24,7 @@ BLIND = BlindPrediction(PLATE, "plates drawn", (PREDICTED,), {}, "abc123")
 
 def test_the_verbs_are_named_as_people_type_them() -> None:
     listed = run("measure", "--help").stdout
-    for verb in (calibrate, score, synthetic):
+    for verb in (calibrate, score):
         assert verb.__name__ in listed
     assert predict_unseen.__name__ not in listed
     assert "predict" in listed

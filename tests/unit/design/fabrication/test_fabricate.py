@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.made_bench.bench import made_bench
 
 import squeezefilm as sf
 from squeezefilm.core.errors import InputError, OutOfRangeError
@@ -19,7 +20,6 @@ from squeezefilm.measure.calibration.folder import usable
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.measure.recordings import description
-from squeezefilm.measure.synthetic.bench import synthetic_bench
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.plate.parts import assembly_mass
 
@@ -65,7 +65,7 @@ def test_the_amplitude_is_that_of_analyze(disc: Fabrication) -> None:
 def test_a_bench_of_the_display_lies_in_what_was_expected(disc: Fabrication) -> None:
     from squeezefilm.measure.fits.by_kind import fit_recording
 
-    bench = synthetic_bench(sf.load_display(DISC), seed=2)
+    bench = made_bench(sf.load_display(DISC), seed=2)
     checks = checks_of(disc)
     fit = fit_recording(bench.recordings["frequency-response"])
     seen = {one.answer: one.value for one in fit.observations}

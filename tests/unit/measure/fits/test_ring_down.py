@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.made_bench.duffing import SofteningResonance
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
 from squeezefilm.measure.recordings.kinds import RingDown
-from squeezefilm.measure.synthetic.duffing import SofteningResonance
 
 T = np.arange(1500) / 500e3
 F, Q, A = 33.2e3, 60.0, 1.5e-6

@@ -4,11 +4,11 @@ import dataclasses
 
 import numpy as np
 import pytest
+from tests.made_bench.duffing import SofteningResonance
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, VoltageSweeps
-from squeezefilm.measure.synthetic.duffing import SofteningResonance
 
 F = np.linspace(31.5e3, 34.5e3, 90)
 SIZE = 2e-6

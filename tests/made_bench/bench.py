@@ -1,26 +1,28 @@
-"""A noisy, complete bench made by the physics: every kind of recording of one display.
-
-Nothing here was measured. A calibration that is given these recordings and not the truth behind
-them shows what it would do with measured ones.
-"""
+"""A noisy, complete bench made by the physics: every kind of recording of one display, whose true
+values are drawn from its own ranges. Nothing here was measured."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import contextlib
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from tests.made_bench.duffing import SofteningResonance
+from tests.made_bench.strokes import PlannedStrokes, recorded_strokes
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.recordings import kinds
-from squeezefilm.measure.synthetic.duffing import SofteningResonance
-from squeezefilm.measure.synthetic.strokes import PlannedStrokes, recorded_strokes
-from squeezefilm.measure.synthetic.truth import SyntheticOptions, SyntheticTruth, drawn_truth
 from squeezefilm.physics.chain.friction import friction_law
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
-from squeezefilm.physics.uncertainty.parameters import Parameter
+from squeezefilm.physics.uncertainty.parameters import (
+    SKIN_COMPLIANCE,
+    uncertain_parameters,
+    with_values,
+)
 
 _POINTS = 161
 # Half-bandwidths f/2Q that a sweep covers on each side.
@@ -37,32 +39,52 @@ _LONGEST_AMPLITUDE: si.Metre = 3e-6
 _SPREADS = {"speed": 0.25, "force": 0.15}
 
 
+_TRIED = 40
+
+
+@dataclass(frozen=True)
+class BenchOptions:
+    """How a made-up bench errs.
+
+    `noise` is one standard deviation of a recording over its largest value, of forces too;
+    `stroke_spread` that of ln µ between strokes, `sweating` how much ln µ rises during the session;
+    `background` the size of a straight remainder of frequency responses and the drift of a line
+    scan, over the largest value; `missing` the share of points that are not there; with
+    `phase_reversed` phases have the other sign. `backbone` and `damping_rise` are what frequency
+    and loss change by at the display's own voltage, as shares. With `fixture` what holds the plate
+    has a resonance of its own.
+    """
+
+    noise: float = 0.01
+    stroke_spread: float = 0.08
+    sweating: float = 0.2
+    background: float = 0.02
+    missing: float = 0.0
+    phase_reversed: bool = False
+    backbone: float = -0.004
+    damping_rise: float = 0.15
+    fixture: bool = False
+
+
 @dataclass(frozen=True, eq=False)
-class SyntheticBench:
-    """Recordings by their names, and the truth that they do not tell."""
+class MadeBench:
+    """Recordings by their names, and the display with the true values, which they do not tell."""
 
     recordings: Mapping[str, kinds.Recording]
-    truth: SyntheticTruth
+    display: Display
+    options: BenchOptions
 
 
-def synthetic_bench(
-    display: Display,
-    seed: int,
-    options: SyntheticOptions | None = None,
-    parameters: Sequence[Parameter] | None = None,
-) -> SyntheticBench:
+def made_bench(display: Display, seed: int, options: BenchOptions | None = None) -> MadeBench:
     """Noisy recordings of a display with values drawn from its own ranges by a seed.
 
-    Frequency response, ring-down, voltage sweeps, raw signals of a chirp, line scan, friction
-    bench and friction curve of every display; impedance and grid scan of a plate solved in three
-    dimensions, which is solved once. What is small in the recordings is linear: they are made at
-    2 % of the display's voltage, the voltage sweeps and the decay at all of it. See
-    `SyntheticOptions` for what is wrong with the bench, `drawn_truth` for `parameters`. Every
-    number is made up of the physics and of random numbers. Raises what solving the drawn display
-    raises.
+    Impedance and grid scan only of a plate solved in three dimensions, which is solved once. What
+    is small in the recordings is linear: they are made at 2 % of the display's voltage, the
+    voltage sweeps and the decay at all of it.
     """
-    truth = drawn_truth(display, seed, options, parameters)
-    bench = _Bench(truth, np.random.default_rng([seed, 91]))
+    options = options or BenchOptions()
+    true = drawn_display(display, seed)
+    bench = _Bench(true, seed, options, np.random.default_rng([seed, 91]))
     made: dict[str, Callable[[], kinds.Recording]] = {
         "frequency-response": bench.frequency_response,
         "ring-down": bench.ring_down,
@@ -74,27 +96,42 @@ def synthetic_bench(
     }
     if bench.mode.solid is not None:
         made |= {"impedance": bench.impedance, "grid-scan": bench.grid_scan}
-    return SyntheticBench({name: make() for name, make in made.items()}, truth)
+    return MadeBench({name: make() for name, make in made.items()}, true, options)
+
+
+def drawn_display(display: Display, seed: int) -> Display:
+    """A display with values drawn from its own ranges; draws that make none are drawn again."""
+    random = np.random.default_rng([seed, 19])
+    uncertain = uncertain_parameters(display, driven=True)
+    # How soft a pad is belongs to the model, not to a value of the display.
+    parameters = [parameter for parameter in uncertain if parameter.path != SKIN_COMPLIANCE]
+    for _ in range(_TRIED):
+        shares = random.random(len(parameters))
+        values = {
+            parameter.path: parameter.drawn(np.array([share]))[0]
+            for parameter, share in zip(parameters, shares, strict=True)
+        }
+        with contextlib.suppress(InputError):
+            return with_values(display, values)
+    raise AssertionError(f"none of {_TRIED} draws makes a display")
 
 
 @dataclass(frozen=True, eq=False)
 class _Bench:
     """The drawn display, solved once, and the random numbers of its instruments."""
 
-    truth: SyntheticTruth
+    display: Display
+    seed: int
+    options: BenchOptions
     random: np.random.Generator
-
-    @property
-    def options(self) -> SyntheticOptions:
-        return self.truth.options
 
     @cached_property
     def mode(self) -> WorkingMode:
-        return working_mode(self.truth.display.actuator)
+        return working_mode(self.display.actuator)
 
     @property
     def voltage(self) -> si.Volt:
-        return self.truth.display.drive.voltage
+        return self.display.drive.voltage
 
     @cached_property
     def resonance(self) -> SofteningResonance:
@@ -112,12 +149,11 @@ class _Bench:
     def fixture(self) -> tuple[float, float, complex]:
         """Frequency, Q and strength (over the plate's mode) of what holds the plate; no strength
         where the bench is as described."""
-        random = np.random.default_rng([self.truth.seed, 7])
-        there = self.options.mechanism == "unmodelled mode"
+        random = np.random.default_rng([self.seed, 7])
         way = float(random.choice([-1.0, 1.0])) * random.uniform(0.6, 2.0)
         f = self.mode.resonance_frequency * (1 + way / self.mode.quality_factor)
         size = random.uniform(0.25, 0.6) * np.exp(2j * np.pi * random.random())
-        return float(f), self.mode.quality_factor, complex(size) if there else 0j
+        return float(f), self.mode.quality_factor, complex(size) if self.options.fixture else 0j
 
     def motion(self, f: si.HertzArray) -> si.ComplexArray:
         """Displacement per volt (m/V) of the best antinode at frequencies (Hz)."""
@@ -154,7 +190,7 @@ class _Bench:
         return np.asarray(found.conj() if self.options.phase_reversed else found)
 
     def told(self, name: str) -> kinds.Told:
-        source = f"synthetic: computed by squeezefilm, seed {self.truth.seed}; nothing was measured"
+        source = f"synthetic: computed by the tests, seed {self.seed}; nothing was measured"
         return kinds.Told(name=f"synthetic {name}", instrument="none", source=source)
 
     def frequency_response(self) -> kinds.FrequencyResponse:
@@ -193,7 +229,7 @@ class _Bench:
             w = -1j * mode.amplitude_per_volt * shape
         if mode.solid is not None:
             w = np.asarray(self._solved_line(x))
-        if self.options.mechanism == "unmodelled mode":
+        if self.options.fixture:
             # What holds the plate lets it rock.
             w = w + self.fixture[2] * 0.3 * mode.amplitude_per_volt * (x / x[-1] - 0.3)
         w = w * volts * (1 + self.options.background * (x / x[-1] - 0.5))
@@ -210,7 +246,7 @@ class _Bench:
         """Displacement per volt (m/V) along the line through the best antinode."""
         assert self.mode.solid is not None
         response, at = self.mode.solid.driven_at()
-        lengthwise = getattr(self.truth.display.actuator, "lines_across", "length") == "length"
+        lengthwise = getattr(self.display.actuator, "lines_across", "length") == "length"
         across = np.array([self.mode.lobe[1]])
         if lengthwise:
             return np.asarray(response.motion(at, x, across)[:, 0])
@@ -219,7 +255,7 @@ class _Bench:
     def grid_scan(self) -> kinds.GridScan:
         assert self.mode.solid is not None
         response, at = self.mode.solid.driven_at()
-        extent = self.truth.display.actuator.extent
+        extent = self.display.actuator.extent
         x, y = (
             np.linspace(0.02 * side, 0.98 * side, count)
             for side, count in zip(extent, _GRID, strict=True)
@@ -227,7 +263,7 @@ class _Bench:
         volts = _SMALL * self.voltage
         w = volts * response.motion(at, x, y).ravel()
         X, Y = (one.ravel() for one in np.meshgrid(x, y, indexing="ij"))
-        if self.options.mechanism == "unmodelled mode":
+        if self.options.fixture:
             w = w + self.fixture[2] * 0.3 * volts * self.mode.amplitude_per_volt * (X / x[-1] - 0.3)
         keep = self.kept(w.size)
         return kinds.GridScan(
@@ -298,19 +334,18 @@ class _Bench:
         self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray, force: si.Newton
     ) -> tuple[si.DimensionlessArray, si.Dimensionless]:
         """µ′/µ by speeds × amplitudes, and µ, at a force (N)."""
-        display = self.truth.display
+        display = self.display
         law = friction_law(
             display,
             self.mode.half_wavelength,
             self.mode.resonance_frequency,
             normal_force=force,
-            model=self.truth.model,
         )
         return law.over_speeds(amplitude, speed), law.friction_coefficient
 
     def friction_bench(self) -> kinds.FrictionBench:
         """Amplitudes in a mixed order, at forces and speeds as a finger varies them."""
-        finger, random = self.truth.display.finger, self.random
+        finger, random = self.display.finger, self.random
         number = np.repeat(np.arange(_LEVELS), _REPEATS)
         random.shuffle(number)
         speeds = finger.speed * np.exp(_SPREADS["speed"] * np.array([-1.0, 0.0, 1.0]))
@@ -342,7 +377,7 @@ class _Bench:
         )
 
     def friction_curve(self) -> kinds.FrictionCurve:
-        finger = self.truth.display.finger
+        finger = self.display.finger
         exact, _ = self._relative(self._levels, np.array([finger.speed]), finger.normal_force)
         spread = self.options.stroke_spread / np.sqrt(_REPEATS)
         noise = np.exp(spread * self.random.standard_normal(_LEVELS))

@@ -1,9 +1,8 @@
-"""A synthetic bench on disk: CSV and TOML beside, as an engineer would leave them."""
+"""A made-up bench on disk: CSV and TOML beside, as an engineer would leave them."""
 
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,12 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
-from squeezefilm.core.hard_limits import RECORDING_BYTES
-from squeezefilm.core.regular_file import read_regular
-from squeezefilm.core.results import to_json, write_whole
 from squeezefilm.measure.recordings import kinds
-from squeezefilm.measure.synthetic.bench import SyntheticBench
 
 _AMPLITUDE = 'given_as = "zero-to-peak"'
 
@@ -37,53 +31,16 @@ class _File(NamedTuple):
     keys: list[str]
 
 
-def write_synthetic_bench(folder: str | Path, bench: SyntheticBench) -> tuple[Path, ...]:
-    """The recordings of a bench as files in a folder, and the paths of the data.
-
-    Nothing of the truth is among them; see `write_truth`. Each file is written whole or not at
-    all, and what lies there already of the same bench stays: a call that a full disk stopped is
-    repeated and goes on. Raises `InputError` for a file that cannot be written, and, before any is,
-    where another file lies in the place of one.
-    """
-    target = Path(folder)
-    files: dict[Path, bytes] = {}
-    for name, recording in bench.recordings.items():
-        path, made = target / f"{name}.csv", _file(recording)
-        files[path] = _csv(made.columns).encode()
-        files[path.with_suffix(".toml")] = _toml(made, recording.told).encode()
-    there = {path: _holds(path, content) for path, content in files.items()}
-    if others := [path for path, holds in there.items() if holds is False]:
-        raise InputError(
-            f"{target} has another {others[0].name} already; name another folder, or remove its "
-            "files"
-        )
-    for path, content in files.items():
-        if there[path] is None:
-            write_whole(path, content)
-    return tuple(path for path in files if path.suffix == ".csv")
-
-
-def _holds(path: Path, content: bytes) -> bool | None:
-    """Whether a file has this content; None where there is no file."""
-    if not os.path.lexists(path):
-        return None
-    return read_regular(path, RECORDING_BYTES, "another folder") == content
-
-
-def write_truth(path: str | Path, bench: SyntheticBench) -> None:
-    """The true values by path (SI), law, options and seed as JSON, for whoever checks a fit.
-
-    Raises `InputError` where the file cannot be written.
-    """
-    truth = bench.truth
-    told = {
-        "display": truth.display.name,
-        "seed": truth.seed,
-        "model": truth.model,
-        "options": to_json(truth.options),
-        "values": dict(truth.values),
-    }
-    write_whole(Path(path), json.dumps(told, indent=2) + "\n")
+def write_bench(folder: Path, recordings: Mapping[str, kinds.Recording]) -> list[Path]:
+    """Write recordings into a folder as CSV with TOML beside, and answer with the CSV's paths."""
+    folder.mkdir(exist_ok=True)
+    paths = []
+    for name, recording in recordings.items():
+        path, made = folder / f"{name}.csv", _OF_KIND[type(recording)](recording)
+        path.write_text(_csv(made.columns), "utf-8")
+        path.with_suffix(".toml").write_text(_toml(made, recording.told), "utf-8")
+        paths.append(path)
+    return paths
 
 
 def _csv(columns: list[_Column]) -> str:
@@ -226,7 +183,3 @@ _OF_KIND: Mapping[type, Callable[[Any], _File]] = {
     kinds.FrictionBench: _bench,
     kinds.FrictionCurve: _curve,
 }
-
-
-def _file(recording: kinds.Recording) -> _File:
-    return _OF_KIND[type(recording)](recording)

@@ -1,1 +1,0 @@
-"""A bench without instruments: noisy recordings of a display whose true values are drawn."""
