@@ -17,7 +17,7 @@ from squeezefilm.core import presets
 from squeezefilm.core.formats.traces import Table, csv_text, table_from_csv
 from squeezefilm.core.kept.folder import CACHE_VARIABLE
 from squeezefilm.core.kept.store import Kept as KeptResults
-from squeezefilm.design.search.evolution import JOURNAL, Proposals
+from squeezefilm.design.search.evolution import Proposals
 from squeezefilm.design.search.store import FILE as DESIGNS
 from squeezefilm.design.search.store import DesignStore
 from squeezefilm.design.sweep.kept import FILE as ANSWERS
@@ -65,18 +65,11 @@ def _answers(folder: Path) -> None:
 
 def _designs(folder: Path) -> None:
     wanted = requirements()
-    proposals = Proposals(wanted, 0, "screened", None, 1)
+    proposals = Proposals(wanted, 0, "screened", 1)
     store = DesignStore(wanted, folder)
     designs = [design for _, design in proposals.ask(6, 0)]
     store.add(formula(wanted, one, "screened") for one in designs if not store.get(one, "screened"))
     assert all(store.get(one, "screened") for one in designs)
-
-
-def _journal(folder: Path) -> None:
-    wanted = requirements()
-    proposals = Proposals(wanted, 0, "screened", folder, 1)
-    asked = proposals.ask(4, 0)
-    proposals.tell([(trial, formula(wanted, design, "screened")) for trial, design in asked])
 
 
 def _trace(folder: Path) -> None:
@@ -185,7 +178,6 @@ SWEEP = "voltage,relative_friction\n10 V,0.8\n20 V,0.6\n"
 OWN_FILES = [
     OwnFile("answers of a sweep", ANSWERS, _answers, _answers),
     OwnFile("designs of a search", DESIGNS, _designs, _designs),
-    OwnFile("journal of a search", JOURNAL, _journal, _journal),
     OwnFile("study", "a.sqlite", _study, _used_study),
     OwnFile("log of a study", "a.sqlite-wal", _killed_study, _used_study),
     OwnFile("list of exports", f"a.exports/{LIST}", _study, _deleted),

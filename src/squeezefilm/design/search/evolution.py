@@ -1,16 +1,15 @@
 """Who proposes designs: a genetic algorithm where they are screened, a Bayesian sampler where they
-are solved; both are Optuna's, with a journal on disk that several hosts may share."""
+are solved; both are Optuna's."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squeezefilm.core.errors import InputError, optional
+from squeezefilm.core.errors import optional
 from squeezefilm.design.search.candidate import (
     Design,
     Evaluated,
@@ -19,15 +18,10 @@ from squeezefilm.design.search.candidate import (
     rough_frequency,
 )
 from squeezefilm.design.search.criteria import bounded, excess_of
-from squeezefilm.design.search.journal import usable_journal
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.store import asked_hash, requirements_hash
 
 if TYPE_CHECKING:
     import optuna
-
-JOURNAL = "journal.log"
-"""Its name in the folder of a search."""
 
 POPULATION = 100
 
@@ -40,7 +34,6 @@ _NONE = 1e6
 # Optuna's own name for it, beside a trial: above 0 where a limit is not kept.
 _EXCESS = "constraints"
 _GENERATION = "NSGAIISampler:generation"
-_MEMBER = "member"
 
 
 class Proposals:
@@ -49,96 +42,56 @@ class Proposals:
     What is to be screened is proposed by NSGA-II (Deb et al. 2002, 10.1109/4235.996017), what is to
     be solved by a tree-structured Parzen estimator (Ozaki et al. 2020, 10.1145/3377930.3389817),
     since that takes long: the `level`. A first generation is aimed at a frequency that limits bound
-    on both sides. The seed and the number of the batch decide what is proposed: whoever asks again
-    from the beginning is proposed the same. In a `folder` what was answered is published in a
-    journal; hosts that search there, each with a `member` of its own, learn from each other's
-    answers.
+    on both sides. The seed, the number of the batch and what others found decide what is proposed:
+    whoever asks again from the beginning is proposed the same. Hosts that search together, each
+    with a `member` of its own, are proposed different designs.
     """
 
     def __init__(
-        self,
-        requirements: Requirements,
-        shape: int,
-        level: Level,
-        folder: Path | None,
-        seed: int,
-        *,
-        member: int = 0,
+        self, requirements: Requirements, shape: int, level: Level, seed: int, *, member: int = 0
     ) -> None:
         with optional("design", "a search of designs"):
             import optuna
 
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         self._requirements, self._shape, self._level = requirements, shape, level
-        self._seed, self._member = (seed, member, shape, int(level == "solved")), member
+        self._seed = (seed, member, shape, int(level == "solved"))
         self._space = requirements.spaces[shape]
         directions = [optuna.study.StudyDirection.MINIMIZE] * len(requirements.objectives)
         self._study = optuna.create_study(directions=directions)
-        self._shared: Any = None
-        self.is_rebuilt = False
-        self._others, self._published, self._told = 0, 0, 0
-        if folder is not None:
-            # A folder may have answers to other requirements, of which these values are none.
-            whose = f"{asked_hash(requirements, level)} {requirements_hash(requirements)[:16]}"
-            self._journal = folder / JOURNAL
-            storage, self.is_rebuilt = usable_journal(self._journal)
-            self._shared = optuna.create_study(
-                study_name=f"{self._space.shape}, {level}, seed {seed}, {whose}",
-                storage=storage,
-                directions=directions,
-                load_if_exists=True,
+        self._others: set[Design] = set()
+
+    def known(self, answers: Iterable[Evaluated], generation: int | None = None) -> None:
+        """Tell of designs that somebody else proposed, so that the sampler learns from them: as
+        of the generation that the next one is bred from, where it is given."""
+        for answer in answers:
+            trial = _trial(
+                self._space.places(answer.design.settings),
+                self._values(answer),
+                self._excess(answer),
             )
-            self._published = len(self._of_members(own=True))
+            if generation is not None:
+                trial.system_attrs[_GENERATION] = generation
+            self._study.add_trial(trial)
 
-    def _of_members(self, *, own: bool) -> list[Any]:
-        """The published trials of this member, or of all others."""
-        try:
-            every = self._shared.get_trials(deepcopy=False)
-        # Optuna reads what was added since, and fails anywhere where that is damaged.
-        except Exception as error:
-            raise InputError(
-                f"{self._journal} was damaged while the search ran ({type(error).__name__}); start "
-                "it again: it goes on from what is kept of its designs"
-            ) from error
-        return [one for one in every if (one.user_attrs.get(_MEMBER) == self._member) == own]
-
-    def known(self, found: Iterable[Evaluated]) -> None:
-        """Tell of designs that somebody else proposed, so that the sampler learns from them."""
-        for one in found:
-            places = self._space.places(one.design.settings)
-            self._study.add_trial(_trial(places, self._values(one), self._excess(one)))
-
-    def publish_again(self, found: Iterable[tuple[Evaluated, int]]) -> None:
-        """Publish what other members found, where the journal was lost (`is_rebuilt`).
-
-        What this one found it publishes when it is told of it again.
-        """
-        for answer, member in found:
-            places = self._space.places(answer.design.settings)
-            own = {_MEMBER: member}
-            self._shared.add_trial(_trial(places, self._values(answer), self._excess(answer), own))
-
-    def ask(self, count: int, batch: int) -> list[tuple[Any, Design]]:
-        """So many designs, each with the trial that is to be told of."""
-        if self._shared is not None:
-            others = self._of_members(own=False)
-            for one in others[self._others :]:
-                excess = one.system_attrs.get(_EXCESS, [0.0])
-                trial = _trial(one.params, one.values, excess)
-                # As one of the generation that the next one is bred from.
-                trial.system_attrs[_GENERATION] = max(batch - 1, 0)
-                self._study.add_trial(trial)
-            self._others = len(others)
+    def ask(
+        self, count: int, batch: int, others: Iterable[Evaluated] = ()
+    ) -> list[tuple[Any, Design]]:
+        """So many designs, each with the trial that is to be told of; `others` are all that other
+        hosts have found until now of this shape at this level."""
+        fresh = {answer.design: answer for answer in others if answer.design not in self._others}
+        self._others.update(fresh)
+        self.known(fresh.values(), max(batch - 1, 0))
         self._study.sampler = self._sampler(batch)
         if self._level == "screened" and batch == 0:
             for places in self._aimed(count):
                 self._study.enqueue_trial(places)
-        found = []
+        proposed = []
         for _ in range(count):
             trial = self._study.ask()
             shares = {one.name: trial.suggest_float(one.name, 0.0, 1.0) for one in self._space.free}
-            found.append((trial, design_of(self._shape, self._space.at(shares))))
-        return found
+            proposed.append((trial, design_of(self._shape, self._space.at(shares))))
+        return proposed
 
     def _aimed(self, count: int) -> list[dict[str, float]]:
         """Places of at most so many random designs whose rough frequency is allowed; none where the
@@ -159,16 +112,10 @@ class Proposals:
         return found
 
     def tell(self, answers: Sequence[tuple[Any, Evaluated]]) -> None:
-        """What was found of proposals."""
-        for trial, one in answers:
-            values, excess = self._values(one), self._excess(one)
-            trial.set_user_attr(_EXCESS, excess)
-            self._study.tell(trial, values)
-            self._told += 1
-            # What a search that was stopped has published is there.
-            if self._shared is not None and self._told > self._published:
-                own = {_MEMBER: self._member}
-                self._shared.add_trial(_trial(trial.params, values, excess, own))
+        """Take what was found of proposals."""
+        for trial, answer in answers:
+            trial.set_user_attr(_EXCESS, self._excess(answer))
+            self._study.tell(trial, self._values(answer))
 
     def _sampler(self, batch: int) -> optuna.samplers.BaseSampler:
         import optuna
@@ -208,12 +155,7 @@ class Proposals:
         return found or [0.0]
 
 
-def _trial(
-    params: dict[str, float],
-    values: Sequence[float],
-    excess: Sequence[float],
-    attrs: dict[str, Any] | None = None,
-) -> Any:
+def _trial(params: dict[str, float], values: Sequence[float], excess: Sequence[float]) -> Any:
     """A finished trial of designs' places, with its constraints where Optuna looks for them."""
     import optuna
 
@@ -222,7 +164,6 @@ def _trial(
         distributions={name: optuna.distributions.FloatDistribution(0.0, 1.0) for name in params},
         values=list(values),
         system_attrs={_EXCESS: list(excess)},
-        user_attrs=attrs or {},
     )
 
 

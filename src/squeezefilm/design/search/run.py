@@ -166,7 +166,9 @@ class SearchRun:
             self._solve_the_best(pool, every)
             self._learn()
             # Only now: what is proposed and solved here depends on the seed alone.
-            self._seen["solved"].update(self._store.solved_by_others())
+            for shape in range(len(self.requirements.spaces)):
+                others = self._store.of_others(shape, "solved")
+                self._seen["solved"].update((one.design, one) for one in others)
             self._make(pool)
         self._done = True
 
@@ -185,7 +187,8 @@ class SearchRun:
             size = min(POPULATION, share)
             for batch in range(-(-share // size)):
                 self._say_screening(space.shape, shape * share + batch * size, begun)
-                asked = proposals.ask(min(size, share - batch * size), batch)
+                others = self._store.of_others(shape, "screened")
+                asked = proposals.ask(min(size, share - batch * size), batch, others)
                 found = self._evaluated(pool, [design for _, design in asked], "screened")
                 proposals.tell([(trial, found[design]) for trial, design in asked])
                 self._show()
@@ -205,13 +208,9 @@ class SearchRun:
         self._tell(f"screening {shape}: {done} of {every} designs, {feasible} feasible{left}")
 
     def _proposals(self, shape: int, level: Level) -> Proposals:
-        asked = self._asked
-        proposals = Proposals(
-            self.requirements, shape, level, self._folder, asked.seed, member=asked.member
+        return Proposals(
+            self.requirements, shape, level, self._asked.seed, member=self._asked.member
         )
-        if proposals.is_rebuilt:
-            proposals.publish_again(self._store.of_others(shape, level))
-        return proposals
 
     def _solve_the_best(self, pool: Workers, most: int) -> None:
         """Solve the designs that the screening, corrected by what was solved, takes for the best,
@@ -301,7 +300,8 @@ class SearchRun:
                 if count <= 0:
                     break
                 self._say_solving("what lies beside the front")
-                asked = studies[shape].ask(count, batch)
+                others = self._store.of_others(shape, "solved")
+                asked = studies[shape].ask(count, batch, others)
                 fresh = list(dict.fromkeys(design for _, design in asked))
                 # Where it lies beside its screened number is asked, too.
                 self._evaluated(pool, fresh, "screened")

@@ -91,18 +91,13 @@ class DesignStore:
             self._known[known.design, known.level] = known
             self._members[known.design, known.level] = int(read["member"])
 
-    def solved_by_others(self) -> dict[Design, Evaluated]:
-        """What other hosts that search in the same folder have solved until now."""
+    def of_others(self, shape: int, level: Level) -> list[Evaluated]:
+        """What other hosts that search in the same folder have evaluated until now, of a shape at a
+        level."""
         if self._lines is not None:
             self._lines.read(self._take)
-        shapes = range(len(self._requirements.spaces))
-        others = [one for shape in shapes for one, _ in self.of_others(shape, "solved")]
-        return {one.design: one for one in others}
-
-    def of_others(self, shape: int, level: Level) -> list[tuple[Evaluated, int]]:
-        """What other hosts evaluated of a shape at a level, with the number of each."""
         return [
-            (self._known[design, at], member)
+            self._known[design, at]
             for (design, at), member in self._members.items()
             if design.shape == shape and at == level and member != self._member
         ]

@@ -22,13 +22,13 @@ _CHECK = re.compile(rb',"check":"([0-9a-f]{8})"\}')
 _CHECK_SIZE = len(b',"check":"01234567"}')
 
 
-def checked_line(values: dict[str, Any]) -> bytes:
+def _checked_line(values: dict[str, Any]) -> bytes:
     """A JSON object on a line of its own, and in it a checksum of the others of its bytes."""
     text = json.dumps(values, ensure_ascii=False, separators=(",", ":"), allow_nan=False).encode()
     return text[:-1] + b',"check":"%08x"}' % zlib.crc32(text)
 
 
-def is_damaged(line: bytes) -> bool:
+def _is_damaged(line: bytes) -> bool:
     """Whether a line is not what was written: by its checksum, or, where it has none, no JSON."""
     if (check := _check_of(line)) is not None:
         return check != zlib.crc32(line[:-_CHECK_SIZE] + b"}")
@@ -76,7 +76,7 @@ class Lines:
             content = line.strip()
             if not content or (content.startswith(b"{") and not content.endswith(b"}")):
                 continue
-            if is_damaged(content):
+            if _is_damaged(content):
                 damaged.append((number, here, content))
                 continue
             if _check_of(content) is None:
@@ -118,7 +118,7 @@ class Lines:
     def append(self, values: Iterable[dict[str, Any]]) -> None:
         """Add a line for each value, all in one write, so that lines of several programs do not
         mix; a line that was cut off before ends first, and swallows none of these."""
-        lines = [checked_line(value) for value in values]
+        lines = [_checked_line(value) for value in values]
         if not lines:
             return
         try:
