@@ -1,4 +1,4 @@
-"""d′, just noticeable differences and Stevens' exponent against closed forms."""
+"""d′ and just noticeable differences against closed forms."""
 
 from __future__ import annotations
 
@@ -23,11 +23,6 @@ from squeezefilm.study.psychometric.discrimination import (
 )
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction
-from squeezefilm.study.psychometric.magnitude_estimation import (
-    equalised_estimates,
-    fit_power_law,
-    geometric_means,
-)
 
 
 @pytest.mark.parametrize("correct", [0.55, 0.76, 0.95])
@@ -149,43 +144,3 @@ def test_correct_answers_among_alternatives_have_no_just_noticeable_difference()
     fit = fit_psychometric([1.0, 2.0, 3.0], [5, 8, 10], [10, 10, 10], replicates=0)
     with pytest.raises(InputError, match="comparison is greater"):
         just_noticeable_difference(fit, 1.0)
-
-
-def magnitudes(seed: int, people: int, spread: float) -> tuple[np.ndarray, ...]:
-    random = np.random.default_rng(seed)
-    intensity = np.tile(np.geomspace(1.0, 50.0, 6), people * 3)
-    who = np.repeat(np.arange(people), 18)
-    slope = 0.6 + spread * random.standard_normal(people)
-    scale = random.normal(0.0, 1.0, people)
-    noise = 0.2 * random.standard_normal(intensity.size)
-    return intensity, np.exp(scale[who] + slope[who] * np.log(intensity) + noise), who
-
-
-def test_an_exact_power_law_is_found_exactly() -> None:
-    intensity = np.tile([1.0, 4.0, 9.0], 2)
-    who = np.repeat(["a", "b"], 3)
-    numbers = np.where(who == "a", 2.0, 30.0) * intensity**0.5
-    law = fit_power_law(intensity, numbers, who)
-    assert law.exponents == pytest.approx([0.5, 0.5])
-    assert law.moduli == pytest.approx([2.0, 30.0])
-    assert law.pooled_exponent == pytest.approx(0.5)
-    # With one modulus for all, all people gave the same numbers: those at √60 times the root.
-    level = equalised_estimates(numbers, who)
-    assert level == pytest.approx(math.sqrt(60.0) * np.sqrt(intensity))
-    places, means = geometric_means(intensity, level)
-    assert places == pytest.approx([1, 4, 9])
-    assert means == pytest.approx(math.sqrt(60.0) * np.sqrt(places))
-
-
-def test_intervals_of_the_exponent_cover_where_people_differ() -> None:
-    runs = 400
-    held = 0
-    for seed in range(runs):
-        low, high = fit_power_law(*magnitudes(seed, 8, 0.15)).interval
-        held += low <= 0.6 <= high
-    assert held / runs == pytest.approx(0.95, abs=4 * math.sqrt(0.95 * 0.05 / runs))
-
-
-def test_a_person_with_one_intensity_has_no_exponent() -> None:
-    with pytest.raises(InputError, match="'b' judged one intensity"):
-        fit_power_law([1.0, 2.0, 2.0], [1.0, 2.0, 2.0], ["a", "a", "b"])

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import integrate, stats
+from tests.known_observers import even_errors
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.choice_model import (
@@ -18,8 +19,8 @@ from squeezefilm.study.identification.choice_model import (
     choice_probabilities,
     perceptual_map,
 )
-from squeezefilm.study.identification.information import even_errors, ordered_observer
 from squeezefilm.study.identification.mixed_models import mixed_model
+from squeezefilm.study.identification.power import ordered_observer
 from squeezefilm.study.identification.response_times import (
     ex_gaussian_density,
     fit_ex_gaussian,

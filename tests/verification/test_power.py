@@ -5,10 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy import stats
+from tests.known_observers import even_errors
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.information import even_errors, ordered_observer
-from squeezefilm.study.identification.power import DirichletParticipants, distinction, power_curve
+from squeezefilm.study.identification.power import (
+    DirichletParticipants,
+    distinction,
+    ordered_observer,
+    power_curve,
+)
 
 
 def _binomial(counts: np.ndarray) -> float:

@@ -22,7 +22,11 @@ from squeezefilm.study.identification.choice_model import (
 from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
 from squeezefilm.study.identification.course import Course
-from squeezefilm.study.identification.information import InformationTransfer, information_transfer
+from squeezefilm.study.identification.information import (
+    METHOD,
+    InformationTransfer,
+    information_transfer,
+)
 from squeezefilm.study.identification.mixed_models import MixedModel, mixed_model
 from squeezefilm.study.identification.proportions import (
     METHODS,
@@ -73,7 +77,7 @@ class IdentificationAnalysis(Result):
         chance_p: exact binomial test against guessing, one-sided.
         permutation_p: test against answers unrelated to stimuli, preferences kept.
         posterior: of every cell.
-        information: transfer by every estimator.
+        information: transfer of the answers, with its interval over participants.
         sensitivity: d′ of stimuli in the order of the labels; None where it has none.
         choice: the biased choice model, and `choice_map` its stimuli as points; None likewise.
         response_times, ex_gaussian: empty and None without response times.
@@ -140,7 +144,7 @@ class IdentificationAnalysis(Result):
     def summary(self) -> dict[str, Any]:
         """All numbers as plain JSON values, units in the keys; `confusion` in the paper's layout:
         rows are answers (gratings), columns what was presented (simulated periods)."""
-        matrix, best = self.matrix, self.information.best
+        matrix = self.matrix
         person = self.participant_correct
         values = {
             "name": self.name,
@@ -164,8 +168,8 @@ class IdentificationAnalysis(Result):
             "chance_p": self.chance_p,
             "permutation_p": self.permutation_p,
             "posterior": self.posterior,
-            "information_transfer_bit": best.estimate,
-            "information_transfer_estimator": best.key,
+            "information_transfer_bit": self.information.estimate,
+            "information_transfer_estimator": METHOD,
             "information": self.information,
             "sensitivity": self.sensitivity,
             "choice_model": self.choice,

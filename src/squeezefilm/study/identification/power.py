@@ -14,6 +14,7 @@ from typing import Annotated, Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
+from scipy.special import ndtr
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -68,6 +69,18 @@ class DirichletParticipants:
             own /= own.sum(axis=1, keepdims=True)
             counts[:, :, j] = random.multinomial(self.trials_per_stimulus, own)
         return counts
+
+
+def ordered_observer(spacing: float, stimuli: int = 5) -> si.FloatArray:
+    """Answer probabilities of an unbiased observer of ordered stimuli, shape (answers, stimuli).
+
+    Stimulus j is felt as a normal deviate about j·`spacing` of unit spread, criteria lie midway
+    (Thurstone's model with equal variances); `spacing` is d′ of neighbours, above 0.
+    """
+    si.require("spacing", spacing, above=0.0)
+    place = spacing * np.arange(stimuli)
+    criteria = np.concatenate([[-np.inf], 0.5 * (place[1:] + place[:-1]), [np.inf]])
+    return np.asarray(np.diff(ndtr(criteria[:, None] - place[None, :]), axis=0))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,9 +1,8 @@
-"""Figures of an identification study: confusions, right answers, information, d′, similarities."""
+"""Figures of an identification study: confusions, right answers, d′, similarities."""
 
 from __future__ import annotations
 
 import itertools
-import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -145,40 +144,6 @@ def _deviance(fit: OrderedSensitivity | ChoiceModel) -> str:
     """How well a model fits, in words."""
     freedom = f"{fit.degrees_of_freedom} degrees of freedom"
     return f"G² = {fit.deviance:.1f} with {freedom} (p {_p(fit.p_value)})"
-
-
-@style.drawn
-def information(analysis: IdentificationAnalysis) -> Figure:
-    """Information transfer by every estimator, the recommended one marked, and where each fails."""
-    found = analysis.information
-    best = found.best
-    figure = style.new_figure(
-        f"Answers carry {best.estimate:.2f} bit of {found.greatest:.2f}: about "
-        f"{2 ** max(best.estimate, 0):.1f} stimuli told apart without error",
-        f"{data_of(analysis)}; {best.name} is the one to quote",
-        1.6 + 0.56 * len(found.estimates),
-    )
-    axes = figure.subplots()
-    rows = np.arange(len(found.estimates))[::-1]
-    for row, item in zip(rows, found.estimates, strict=True):
-        look = {**style.ESTIMATE, "ms": 8, "clip_on": False, "zorder": 4}
-        if item.key == found.recommended:
-            look |= {"marker": "D", "color": style.ORANGE}
-        if item.interval is not None:
-            axes.plot([item.interval.low, item.interval.high], [row, row], **style.INTERVAL)
-        if np.isfinite(item.estimate):
-            axes.plot([item.estimate], [row], **look)
-    axes.set_yticks(rows, [item.name for item in found.estimates])
-    for label, item in zip(axes.get_yticklabels(), found.estimates, strict=True):
-        label.set_fontweight("bold" if item.key == found.recommended else "normal")
-    lowest = min([0.0, *(i.estimate for i in found.estimates if np.isfinite(i.estimate))])
-    axes.set(xlabel="information transfer (bit)", xlim=(lowest, found.greatest))
-    small: dict[str, Any] = {"fontsize": 7.6, "color": style.MUTED, "va": "center"}
-    small["transform"] = axes.get_yaxis_transform()
-    for row, item in zip(rows, found.estimates, strict=True):
-        axes.text(1.02, row, textwrap.fill(item.fails, 62), **small)
-    axes.grid(visible=False, axis="y")
-    return figure
 
 
 @style.drawn

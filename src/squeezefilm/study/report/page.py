@@ -57,7 +57,6 @@ _EXPLORATION = FigureOf(
 FIGURES = (
     FigureOf("confusion", "Confusion matrix", draw.confusion),
     FigureOf("correct", "Right answers", draw.proportion_correct),
-    FigureOf("information", "Information transfer", draw.information),
     FigureOf("sensitivity", "Sensitivity along the stimuli", draw.sensitivity),
     FigureOf("similarities", "Similarities and biases", draw.similarities, file="similarity"),
     _TIMES,
@@ -206,10 +205,8 @@ def _task(analysis: Any) -> str:
 
 
 def _identification(analysis: Any) -> str:
-    return (
-        section("Confusions in numbers", _confusion(analysis))
-        + section("Information transfer by every estimator", _information(analysis))
-        + (section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else "")
+    return section("Confusions in numbers", _confusion(analysis)) + (
+        section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else ""
     )
 
 
@@ -271,25 +268,6 @@ def _cell(analysis: IdentificationAnalysis, i: int, j: int) -> str:
     low, high = 100 * analysis.posterior.low[i, j], 100 * analysis.posterior.high[i, j]
     share = "–" if percent != percent else f"{percent:.0f} %"
     return f"{share} ({count}; {low:.0f} to {high:.0f})"
-
-
-def _information(analysis: IdentificationAnalysis) -> str:
-    rows = [
-        (
-            item.name + (" (to quote)" if item.key == analysis.information.recommended else ""),
-            f"{item.estimate:.3f}" if item.estimate == item.estimate else "none",
-            "–"
-            if item.interval is None
-            else f"{item.interval.low:.3f} to {item.interval.high:.3f}",
-            item.fails,
-        )
-        for item in analysis.information.estimates
-    ]
-    return text_table(
-        "The pooled matrix; intervals over participants",
-        ("Estimator", "Transfer (bit)", "Interval (bit)", "Where it fails"),
-        rows,
-    )
 
 
 def _mixed(analysis: IdentificationAnalysis) -> str:

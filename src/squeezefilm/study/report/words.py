@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import shown
+from squeezefilm.study.identification.information import METHOD
 
 if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
@@ -51,16 +52,20 @@ def _people(analysis: StudyAnalysis) -> str:
 
 
 def _identification_first(analysis: IdentificationAnalysis) -> list[str]:
-    interval, best = analysis.interval, analysis.information.best
+    interval, carried = analysis.interval, analysis.information
     low, high = 100 * interval.low, 100 * interval.high
     chance = 100 * analysis.matrix.chance
     above = "above" if interval.low > analysis.matrix.chance else "not surely above"
-    return [
+    said = [
         f"{100 * analysis.proportion_correct:.3g} % of the answers are right ({low:.3g} to "
         f"{high:.3g} % at {100 * interval.level:g} %), which is {above} guessing ({chance:.3g} %).",
-        f"The answers carry {best.estimate:.2g} of {analysis.information.greatest:.3g} bit about "
-        "the stimulus.",
     ]
+    if not math.isnan(carried.estimate):
+        said.append(
+            f"The answers carry {carried.estimate:.2g} of {carried.greatest:.3g} bit about the "
+            "stimulus."
+        )
+    return said
 
 
 def _task_first(analysis: TaskAnalysis) -> list[str]:
@@ -261,7 +266,7 @@ def between(interval: Interval | None, scale: float = 1.0, unit: str = "") -> st
 
 
 def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
-    best, fit = analysis.information.best, analysis.sensitivity
+    carried, fit = analysis.information, analysis.sensitivity
     posterior = analysis.posterior.proportion_correct
     rows = [
         *(
@@ -282,8 +287,8 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
         ),
         (
             "Information transfer",
-            f"{best.estimate:.3g} bit of {analysis.information.greatest:.3g}",
-            f"{best.name}; {between(best.interval)}",
+            f"{carried.estimate:.3g} bit of {carried.greatest:.3g}",
+            f"{METHOD}; {between(carried.interval)}",
         ),
     ]
     if fit is not None:

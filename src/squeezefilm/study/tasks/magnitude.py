@@ -1,4 +1,9 @@
-"""Magnitude estimation: Stevens' exponents of people and population, and the scale itself."""
+"""Magnitude estimation: Stevens' exponents of people and population, and the scale itself.
+
+Every person has a scale of numbers of their own: an intercept of their own takes it out of the
+regression of ln number on ln stimulus, and modulus equalisation (Lane, Catania & Stevens 1961,
+10.1121/1.1908600) out of geometric means.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +16,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.psychometric.interval_ends import holding
-from squeezefilm.study.psychometric.magnitude_estimation import fit_power_law
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, through
 from squeezefilm.study.tasks.two_interval import t_interval
@@ -37,22 +41,14 @@ def exponents(
         persons.append(PersonEstimate(main.people[person], estimate, x.size, False))
     if len(persons) < 2:
         return persons, persons[0].estimate if persons else None, None
-    kept = np.isin(main.participant, [main.people.index(one.person) for one in persons])
-    law = fit_power_law(
-        main.values[main.first[kept]],
-        main.estimate[kept],
-        np.array(main.people)[main.participant[kept]],
-        level=level,
-    )
-    spread = float(law.exponents.std(ddof=1))
-    free = law.exponents.size - 1
+    slopes = np.array([one.estimate.value for one in persons])
+    spread, free = float(slopes.std(ddof=1)), slopes.size - 1
     low, high = (
         spread * math.sqrt(free / float(stats.chi2.ppf(share, free)))
         for share in (0.5 * (1 + level), 0.5 * (1 - level))
     )
     low, high = (float(end) for end in holding(spread, low, high))
-    low_mean, high_mean = (float(one) for one in law.interval)
-    pooled = Estimate(law.exponent, low_mean, high_mean, level, "t, over people")
+    pooled = t_interval(slopes, level)
     return persons, pooled, Estimate(spread, low, high, level, "χ², over people")
 
 

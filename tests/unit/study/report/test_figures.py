@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 from tests.unit.drawn import words
 
-from squeezefilm.core.kit.style import BLUE, MUTED, ORANGE
 from squeezefilm.study.report.figures import (
     confusion,
     data_of,
-    information,
     proportion_correct,
     sensitivity,
     similarities,
@@ -39,13 +35,6 @@ def matrix(counts: np.ndarray = COUNTS, **changes: Any) -> Any:
     return SimpleNamespace(**{**values, **changes})
 
 
-def estimate(key: str, value: float, bounds: Any = None) -> Any:
-    return SimpleNamespace(
-        key=key, name=f"the {key}", estimate=value, interval=bounds, fails=f"why {key} fails"
-    )
-
-
-RAW, GOOD = estimate("raw", 1.1), estimate("good", 0.5, interval(0.25, 0.75))
 THURSTONE = SimpleNamespace(
     total=3.0, d_prime=np.array([2.0, 1.0]), positions=np.array([0.0, 2.0, 3.0]),
     criteria=np.array([1.0, 2.5]), low=np.array([1.5, 0.5]), high=np.array([2.5, 1.75]),
@@ -72,10 +61,6 @@ def analysis(**changes: Any) -> Any:
         "participant_correct": np.array([0.5, 0.75, 0.75, 1.0]),
         "counts": np.array([COUNTS, COUNTS // 2]),
         "intervals": [interval(0.5, 0.75), interval(0.4, 0.8)],
-        "information": SimpleNamespace(
-            best=GOOD, greatest=1.585, estimates=[RAW, GOOD, estimate("lost", math.nan)],
-            recommended="good",
-        ),
         "sensitivity": THURSTONE, "choice": CHOICE, "choice_map": POINTS, "notes": (),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
@@ -182,34 +167,6 @@ def test_few_trials_have_a_bin_for_each_score() -> None:
     assert [one.get_y() + one.get_height() / 2 for one in right.patches] == pytest.approx(
         [0, 25, 50, 75, 100]
     )
-
-
-def test_every_estimate_of_the_information_has_its_line() -> None:
-    figure = information(analysis())
-    assert words(figure.get_suptitle()) == (
-        "Answers carry 0.50 bit of 1.58: about 1.4 stimuli told apart without error"
-    )
-    assert "the good is the one to quote" in words(figure.get_supxlabel())
-    (axes,) = figure.axes
-    lines = [(data(one), to_hex(one.get_color()), one.get_marker()) for one in axes.get_lines()]
-    assert lines == [
-        ([[1.1], [2]], BLUE, "o"), ([[0.25, 0.75], [1, 1]], MUTED, "None"),
-        ([[0.5], [1]], ORANGE, "D"),
-    ]  # fmt: skip
-    names = {one.get_text(): one.get_weight() for one in axes.get_yticklabels()}
-    assert names == {"the raw": "normal", "the good": "bold", "the lost": "normal"}
-    assert list(axes.get_yticks()) == [2, 1, 0]
-    assert axes.get_xlim() == (0, 1.585)
-    assert [(one.get_text(), one.get_position()[1]) for one in axes.texts] == [
-        ("why raw fails", 2), ("why good fails", 1), ("why lost fails", 0),
-    ]  # fmt: skip
-    below = SimpleNamespace(
-        best=estimate("good", -0.1), greatest=1.0, estimates=[estimate("good", -0.1)],
-        recommended="good",
-    )  # fmt: skip
-    figure = information(analysis(information=below))
-    assert "about 1.0 stimuli" in figure.get_suptitle()
-    assert figure.axes[0].get_xlim() == (-0.1, 1.0)
 
 
 def test_stimuli_and_criteria_lie_on_the_decision_axis() -> None:
