@@ -1,0 +1,197 @@
+"""Settings of the loops from an identified plate: its resonance, loss, pickup and their delay."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, OutOfRangeError
+from squeezefilm.instruments.control.plate_loop import ONE, LoopGains
+
+_SHARE = 1 << 24
+_TURN = 1 << 32
+_SWEEP_STEPS = 3  # of a half-bandwidth while the plate answers, in time constants
+_FASTEST_SWEEP = 20e3  # Hz/s
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class IdentifiedPlate:
+    """What a sweep of a free plate says of it.
+
+    Args:
+        frequency: of its resonance (Hz).
+        quality_factor: of that resonance.
+        ratio: the pickup's amplitude over the drive's at resonance (V/V).
+        phase: of the pickup against the drive at resonance (rad), by electronics and delay alone.
+        delay: by which that phase falls with frequency (s): half a sample of a converter's hold
+            is 1/(2 rate), `hold_phase` at one frequency.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    frequency: Annotated[si.Hertz, si.Above(0.0)]
+    quality_factor: Annotated[si.Dimensionless, si.AtLeast(5.0), si.AtMost(1e4)]
+    ratio: Annotated[si.Dimensionless, si.AtLeast(4e-5), si.AtMost(4.0)]
+    phase: si.Radian = 0.0
+    delay: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(2e-3)] = 0.0
+
+    @property
+    def time_constant(self) -> si.Second:
+        """Q/(π f0), of the envelope (s)."""
+        return self.quality_factor / (math.pi * self.frequency)
+
+    @property
+    def half_bandwidth(self) -> si.Hertz:
+        """f0/(2 Q) (Hz)."""
+        return self.frequency / (2 * self.quality_factor)
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class LoopAims:
+    """What the loops shall do, and what they may.
+
+    Args:
+        lowest_frequency, highest_frequency: of the carrier (Hz); a search begins at the highest.
+        highest_voltage: of the drive (V, zero-to-peak).
+        search_voltage: of the drive while it searches (V).
+        lowest_voltage: 0, or below it where the amplifier can turn the phase, to brake (V).
+        interval: between two steps (s).
+        tracking_bandwidth: ω/2π of the frequency's loop (Hz), see `tracking_bandwidth`.
+        amplitude_time: time constant of the amplitude (s); 95 % of a step takes three of it.
+        load_bandwidth: of what is believed of a finger's load (Hz).
+        floor: amplitude of the pickup below which it tells nothing (V).
+        heaviest_load: the largest loss of a finger over the plate's own.
+
+    Raises:
+        InputError: a value outside its range, or limits in the wrong order.
+    """
+
+    lowest_frequency: Annotated[si.Hertz, si.Above(0.0)]
+    highest_frequency: Annotated[si.Hertz, si.Above(0.0)]
+    highest_voltage: Annotated[si.Volt, si.Above(0.0), si.AtMost(2000.0)]
+    search_voltage: Annotated[si.Volt, si.Above(0.0)]
+    lowest_voltage: Annotated[si.Volt, si.AtMost(0.0), si.AtLeast(-2000.0)] = 0.0
+    interval: Annotated[si.Second, si.AtLeast(1e-5), si.AtMost(1e-3)] = 100e-6
+    tracking_bandwidth: Annotated[si.Hertz, si.Above(0.0)] = 700.0
+    amplitude_time: Annotated[si.Second, si.Above(0.0)] = 1.5e-3
+    load_bandwidth: Annotated[si.Hertz, si.Above(0.0)] = 100.0
+    floor: Annotated[si.Volt, si.AtLeast(1e-6), si.AtMost(10.0)] = 1e-3
+    heaviest_load: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(60.0)] = 15.0
+
+    def __post_init__(self) -> None:
+        if self.lowest_frequency >= self.highest_frequency:
+            raise InputError(
+                f"the lowest frequency, {self.lowest_frequency:g} Hz, must be below the highest, "
+                f"{self.highest_frequency:g} Hz",
+                quantity="lowest_frequency",
+            )
+        if self.search_voltage > self.highest_voltage:
+            raise InputError(
+                f"search_voltage = {self.search_voltage:g} V is above the highest, "
+                f"{self.highest_voltage:g} V; take less",
+                quantity="search_voltage",
+            )
+
+
+@si.checked_numbers
+def hold_phase(
+    frequency: Annotated[si.Hertz, si.Above(0.0)], rate: Annotated[si.Hertz, si.Above(0.0)]
+) -> si.Radian:
+    """The phase (rad, at most 0) of a converter that holds each sample of a `rate` (Hz): −π f/rate.
+
+    37.5° at 40 kHz and 192 kHz.
+    """
+    return -math.pi * frequency / rate
+
+
+@si.checked_numbers
+def calibrated_phase(
+    frequency: si.HertzArray, phase: Annotated[si.FloatArray, si.Unit("rad")]
+) -> tuple[si.Hertz, si.Radian, si.Second, si.Radian]:
+    """The chain's phase as a line: the mean frequency (Hz), the phase there (rad), the delay (s),
+    and the largest departure of a point from that line (rad).
+
+    `phase` (rad) is measured with the plate replaced by a resistor, or far from its modes, at each
+    `frequency` (Hz); jumps of a turn are taken out. Raises `InputError` for fewer than three points
+    or other shapes.
+    """
+    if frequency.ndim != 1 or frequency.shape != phase.shape or frequency.size < 3:
+        raise InputError(
+            f"a phase needs one value at each of at least three frequencies; the shapes are "
+            f"{phase.shape} and {frequency.shape}",
+            quantity="phase",
+        )
+    whole = np.unwrap(phase)
+    middle = float(frequency.mean())
+    slope, offset = np.polyfit(frequency - middle, whole, 1)
+    rest = whole - offset - slope * (frequency - middle)
+    return middle, float(offset), float(-slope / (2 * math.pi)), float(np.abs(rest).max())
+
+
+@si.checked_numbers
+def loop_gains(plate: IdentifiedPlate, aims: LoopAims) -> LoopGains:
+    """The loops' settings for a plate, rounded to the integers that they count in.
+
+    The amplitude gets a pole e^{−interval/amplitude_time} by κ = (a − pole)/(1 − a); the frequency
+    two equal poles. Raises `OutOfRangeError` where a loop would be faster than its steps, or the
+    resonance lies outside the allowed frequencies.
+    """
+    step = aims.interval
+    for name, pace in (
+        ("tracking_bandwidth", aims.tracking_bandwidth),
+        ("load_bandwidth", aims.load_bandwidth),
+        ("1/(2π amplitude_time)", 1 / (2 * math.pi * aims.amplitude_time)),
+    ):
+        if pace * step > 0.1:
+            raise OutOfRangeError(
+                f"{name} = {pace:g} Hz is too fast for steps of {step:g} s; at most a tenth of "
+                f"their rate, {0.1 / step:g} Hz, is held"
+            )
+    if not aims.lowest_frequency < plate.frequency < aims.highest_frequency:
+        raise OutOfRangeError(
+            f"the plate's resonance at {plate.frequency:g} Hz is outside the allowed "
+            f"{aims.lowest_frequency:g} to {aims.highest_frequency:g} Hz; widen these"
+        )
+    keep = math.exp(-step / plate.time_constant)
+    pole = math.exp(-step / aims.amplitude_time)
+    track = 1 - math.exp(-2 * math.pi * aims.tracking_bandwidth * step)
+    load = 1 - math.exp(-2 * math.pi * aims.load_bandwidth * step)
+    sweep = min(plate.half_bandwidth / (_SWEEP_STEPS * plate.time_constant), _FASTEST_SWEEP)
+    return LoopGains(
+        keep=round(keep * _SHARE),
+        take=_SHARE - round(keep * _SHARE),
+        turnover=round(ONE / (1 - keep)),
+        ratio=round(plate.ratio * _SHARE),
+        inverse=round(ONE / plate.ratio),
+        correction=round((keep - pole) / (1 - keep) * ONE),
+        half_bandwidth=round(plate.half_bandwidth * 1e3),
+        track_share=round(track * _SHARE),
+        rate_share=round(track**2 / 4 * _SHARE),
+        load_share=round(load * _SHARE),
+        lowest_frequency=round(aims.lowest_frequency * 1e3),
+        highest_frequency=round(aims.highest_frequency * 1e3),
+        sweep=max(1, round(sweep * step * 256e3)),
+        turn=round(plate.phase / (2 * math.pi) * _TURN) % _TURN,
+        reference=round(plate.frequency * 1e3),
+        turn_per_mhz=-round(plate.delay * 1e-3 * 256 * _TURN),
+        lowest_level=round(aims.lowest_voltage * 1e6),
+        highest_level=round(aims.highest_voltage * 1e6),
+        search_level=round(aims.search_voltage * 1e6),
+        floor=round(aims.floor * 1e6),
+        heaviest=round(aims.heaviest_load * ONE),
+        patience=50 + math.ceil(3 * plate.time_constant / step),
+    )
+
+
+@si.checked_numbers
+def tracking_bandwidth(gains: LoopGains, interval: Annotated[si.Second, si.Above(0.0)]) -> si.Hertz:
+    """ω/2π (Hz) of the frequency's loop, whose error follows a drift r (Hz/s) as 4 r/ω² s² e^…:
+    at most 4 r/(e ω), and 0 once it is steady."""
+    return -math.log(1 - gains.track_share / _SHARE) / (2 * math.pi * interval)
