@@ -3,6 +3,7 @@ result; physics, plots and pydantic are imported only by the verb that needs the
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from typing import Any
@@ -65,12 +66,15 @@ def main() -> None:
     # Before NumPy loads: its linear algebra on our small blocks is slower with threads, by far.
     for library in ("OMP", "OPENBLAS", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    # Loading makes hundreds of thousands of objects that stay: no use to go through them often.
+    gc.set_threshold(50_000)
     _show_announcements()
     _say_warnings()
     try:
         try:
             app()
         finally:
+            gc.freeze()
             # What was printed may not fit where it goes; later the interpreter would trip over it.
             sys.stdout.flush()
     except SqueezefilmError as error:

@@ -156,30 +156,28 @@ def analyze(asked: AnalyzeOptions) -> None:
     skin-stretch array's file is analysed as such; of the options it takes --voltage, --out and
     --json."""
     from squeezefilm.actuators.described import is_actuator
-    from squeezefilm.core.loading import loading
 
     if is_actuator(asked.target):
         import_module("squeezefilm.cli.actuator").analyze_actuator(asked)
         return
     from squeezefilm.core.blas_threads import one_blas_thread
 
-    with loading():
-        display = to_be_solved(
-            asked.target,
-            asked.voltage,
-            amplitude=asked.vibration_amplitude,
-            theory=asked.theory,
-            quiet=asked.as_json,
-        )
+    display = to_be_solved(
+        asked.target,
+        asked.voltage,
+        amplitude=asked.vibration_amplitude,
+        theory=asked.theory,
+        quiet=asked.as_json,
+    )
     with one_blas_thread(), working(asked.as_json) as step:
-        with loading():
-            from squeezefilm.design.analysis.analyze import analyze as run
-            from squeezefilm.design.analysis.report.terminal import (
-                SHOWN,
-                SHOWN_WITH_ALL,
-                show_analysis,
-            )
-            from squeezefilm.measure.fits.friction.person import with_finger
+        from squeezefilm.design.analysis.analyze import analyze as run
+        from squeezefilm.design.analysis.report.terminal import (
+            SHOWN,
+            SHOWN_WITH_ALL,
+            show_analysis,
+        )
+        from squeezefilm.measure.fits.friction.person import with_finger
+
         display = with_finger(display, asked.finger)
         options = given(asked, leave="target finger out as_json")
         with_shifts = asked.sensitivities is not None
@@ -191,8 +189,8 @@ def analyze(asked: AnalyzeOptions) -> None:
                 shown = (*shown, "sensitivities")
             result.compute(shown, step)
         if asked.out is not None:
-            with loading():
-                from squeezefilm.design.analysis.report.page import write_analysis
+            from squeezefilm.design.analysis.report.page import write_analysis
+
             written = write_analysis(result, asked.out, progress=step)
     show = partial(show_analysis, whole=asked.whole, sensitivities=with_shifts)
     answer(asked.as_json, result, show, report=written)

@@ -32,16 +32,15 @@ def fabricate(
     SVG), bodies (STL), electrodes and poling, bill of materials, drive electronics, and a test plan
     with what is expected."""
     from squeezefilm.actuators.described import is_actuator
-    from squeezefilm.core.loading import loading
 
     if is_actuator(target):
         raise InputError(
             f"'{target}' describes a motor or a skin-stretch array; fabricate takes a display: "
             "squeezefilm presets lists those that come with the package"
         )
-    with loading():
-        from squeezefilm.core.kit.folder import require_folder
-        from squeezefilm.design.fabrication.report.page import show_fabrication
+    from squeezefilm.core.kit.folder import require_folder
+    from squeezefilm.design.fabrication.report.page import show_fabrication
+
     folder = require_folder(out)
     display = to_be_solved(target, quiet=as_json)
     with working(as_json) as step:

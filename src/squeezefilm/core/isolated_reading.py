@@ -2,40 +2,37 @@
 
 MATLAB files, Universal Files and pictures are taken apart by libraries that a changed byte can
 crash or make unpack to gigabytes. A child reads them, with limits of memory and of processor time
-where the system has them (POSIX; macOS keeps none of memory) and of elapsed time everywhere. What
-it read comes back as JSON and arrays of floats, never as pickled objects. One child reads many
-files, and another is started after a crash: a start costs about half a second, once a process.
+where the system has them (POSIX; macOS keeps none of memory) and of elapsed time everywhere. One
+child reads many files, and another is started after a crash: a start costs about half a second,
+once a process. It is no process of `multiprocessing`, which would load the caller's program again.
 """
 
 from __future__ import annotations
 
 import atexit
 import contextlib
-import importlib
-import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import ConfigError, MissingPackageError
+from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.hard_limits import READING_MEMORY, READING_TIME
 
 Read = tuple[Any, list[si.FloatArray]]
-"""What a function in the child returns: facts (anything that JSON holds), and arrays."""
+"""What a function in the child returns: facts (plain values), and arrays."""
 
 _PATIENCE: si.Second = 4 * READING_TIME.most
 """How long a child may take for one file by the clock on the wall."""
-_FLOATS = np.dtype("<f8")
-_LONGEST_HEAD = 16_000_000
 _LEAVE: si.Second = 2.0
 
 
@@ -72,28 +69,27 @@ class IsolatedReader:
         `file` is what messages name. Raises `ConfigError`: what the function raises of this kind,
         and where the child crashed or reached a limit.
         """
-        head = {
-            "function": [function.__module__, function.__qualname__],
-            "arguments": arguments,
-            "bytes": len(data),
-            "processor_time": self._processor_time,
-        }
+        request = pickle.dumps((function, (data, *arguments), self._processor_time))
         with self._turn:
             child = self._started()
+            assert child.stdin is not None
+            assert child.stdout is not None
             overdue = threading.Event()
             watch = threading.Timer(self._patience, _end_late, (child, overdue))
             watch.start()
             try:
-                answer = _exchange(child, json.dumps(head).encode() + b"\n" + data)
+                child.stdin.write(request)
+                child.stdin.flush()
+                result, refused = pickle.load(child.stdout)
+            except (OSError, EOFError, pickle.UnpicklingError) as error:
+                self.end()
+                raise ConfigError(self._why(child, overdue.is_set()), file=file) from error
             finally:
                 watch.cancel()
-            if answer is None:
-                self.end()
-                raise ConfigError(self._why(child, overdue.is_set()), file=file)
-        facts, arrays, refused = answer
         if refused is not None:
             raise ConfigError(**{"file": str(file), **refused})
-        return facts, arrays
+        read: Read = result
+        return read
 
     def end(self) -> None:
         """Let the child go; another is started for the next file."""
@@ -121,13 +117,7 @@ class IsolatedReader:
         paths = os.pathsep.join(path for path in sys.path if path)
         threads = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
         child = subprocess.Popen(
-            [
-                sys.executable,
-                "-P",
-                "-m",
-                "squeezefilm.core.isolated_reading",
-                str(int(self._memory)),
-            ],
+            [sys.executable, "-P", "-m", __name__, str(int(self._memory))],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -139,7 +129,7 @@ class IsolatedReader:
         return child
 
     def _why(self, child: subprocess.Popen[bytes], is_late: bool) -> str:
-        """Why there is no answer from a child that ended, and what to do."""
+        """The reason why a child ended without an answer, and what to do."""
         time_ran_out = is_late or -child.returncode == getattr(signal, "SIGXCPU", None)
         if time_ran_out:
             allowed = si.format_quantity(self._processor_time, si.Unit("s"))
@@ -160,30 +150,6 @@ def _end_late(child: subprocess.Popen[bytes], overdue: threading.Event) -> None:
     child.kill()
 
 
-def _exchange(
-    child: subprocess.Popen[bytes], request: bytes
-) -> tuple[Any, list[si.FloatArray], dict[str, Any] | None] | None:
-    """Facts, arrays and refusal that a child answers; None where it ended before."""
-    assert child.stdin is not None
-    assert child.stdout is not None
-    try:
-        child.stdin.write(request)
-        child.stdin.flush()
-        head = json.loads(child.stdout.readline(_LONGEST_HEAD))
-        arrays = []
-        for shape in head["shapes"]:
-            size = int(np.prod(shape)) * _FLOATS.itemsize
-            if size > READING_MEMORY.most:
-                return None
-            content = child.stdout.read(size)
-            if len(content) < size:
-                return None
-            arrays.append(np.frombuffer(content, _FLOATS).astype(float).reshape(shape))
-    except (OSError, ValueError, RecursionError):
-        return None
-    return head["facts"], arrays, head["refused"]
-
-
 _READER = IsolatedReader()
 atexit.register(_READER.end)
 
@@ -193,39 +159,32 @@ read_isolated = _READER.read
 
 def _serve(requests: IO[bytes], answers: IO[bytes]) -> None:
     """Answer requests until there are no more: what the child does."""
-    while line := requests.readline():
-        head = json.loads(line)
-        _limit_processor_time(head["processor_time"])
-        data = requests.read(head["bytes"])
-        answers.write(_answer(head, data))
-        answers.flush()
+    with contextlib.suppress(EOFError):
+        while True:
+            function, arguments, seconds = pickle.load(requests)
+            _limit_processor_time(seconds)
+            answers.write(pickle.dumps(_answer(function, arguments)))
+            answers.flush()
 
 
-def _answer(head: dict[str, Any], data: bytes) -> bytes:
-    """A line of JSON, and the arrays behind it."""
-    facts: Any = None
-    arrays: Sequence[si.FloatArray] = ()
-    refused = None
-    module, name = head["function"]
+def _answer(
+    function: Callable[..., Read], arguments: tuple[Any, ...]
+) -> tuple[Read | None, dict[str, Any] | None]:
+    """What a function returns, or what a `ConfigError` says in its place."""
     try:
-        facts, arrays = getattr(importlib.import_module(module), name)(data, *head["arguments"])
-        contents = [np.ascontiguousarray(array, _FLOATS).tobytes() for array in arrays]
+        facts, arrays = function(*arguments)
+        return (facts, [np.asarray(array, dtype=float) for array in arrays]), None
     except ConfigError as error:
-        refused = {key: getattr(error, key) for key in ("message", "file", "line", "column", "key")}
-        refused = {key: value for key, value in refused.items() if value is not None}
-        arrays, contents = (), []
-    except MissingPackageError as error:
-        refused, contents = {"message": str(error)}, []
+        said = {key: getattr(error, key) for key in ("message", "file", "line", "column", "key")}
+        return None, {key: value for key, value in said.items() if value is not None}
+    except InputError as error:
+        return None, {"message": str(error)}
     except MemoryError:
-        arrays, contents = (), []
         allowed = f"{READING_MEMORY.most / 1e9:g} GB ({READING_MEMORY.name}"
-        refused = {
+        return None, {
             "message": f"cannot be read: reading it takes more than {allowed}: "
             f"{READING_MEMORY.reason}); export it again with less data"
         }
-    shapes = [np.shape(array) for array in arrays]
-    told = json.dumps({"facts": facts, "shapes": shapes, "refused": refused}).encode()
-    return b"".join((told, b"\n", *contents))
 
 
 def _limit_processor_time(seconds: si.Second) -> None:

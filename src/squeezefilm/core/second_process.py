@@ -1,18 +1,12 @@
 """A second process that does a part of the work of this one, where there is a processor for it.
 
-Work is cut into pieces that stand by themselves: functions of a module with arguments that can be
-sent. Whichever process is free takes the next piece, so that neither waits while any is left; what
-the other does not answer (it could not be started, it died, a piece failed) this one does itself,
-and meets the error if there is one. So nothing depends on it, and what comes of the work is the
-same with it and without.
+Work is cut into pieces: functions of a module with arguments that can be sent. Whichever process is
+free takes the next piece. What the other does not answer (it could not be started, it died, a piece
+failed or cannot be sent) this process does itself, and meets the error if there is one. So what
+comes of the work is the same with a second process and without.
 
-A verb has one for its time, `second_process`; what it calls asks for work by `later` and for what
-comes of it by `values`. Without one all of it is done here, when its value is asked for. One
-process takes less time of both processors together: it is worth it for what takes long.
-
-On Linux it is a copy of this process (fork), made once both have what they need. Elsewhere, and
-where a thread beside the main one asks, it is a new one that loads all again, which takes seconds
-of a processor. A copy asks for nothing that other threads may hold, as that of a progress line.
+A verb has one for its time, `second_process`; what it calls asks for work by `later` and for the
+values by `values`. On Linux it is a copy of this process (fork), made once this has what both need.
 """
 
 from __future__ import annotations
@@ -20,36 +14,24 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
-import pickle
-import queue
-import signal
 import sys
 import threading
 import warnings
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
-from multiprocessing.connection import Connection
 from typing import Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.blas_threads import one_blas_thread
-from squeezefilm.core.loading import interrupts_held
+from squeezefilm.core.interrupts import interrupts_held
 
 _PATIENCE: si.Second = 60.0
+"""Longest wait for a piece that the other process has begun, before it is done here."""
 _LEAVE: si.Second = 2.0
-"""How long one waits for a piece before doing it oneself, and for a process to end by itself."""
-
-# A piece that is sent cannot be done here: one that waits there for a long one would be waited for.
-_AHEAD = 1
-
-
-class Kept:
-    """Something that many pieces need, sent once; in their arguments this stands for it."""
-
-    def __init__(self, name: int) -> None:
-        self.name = name
+"""Longest wait for that process to end by itself."""
 
 
 class Piece:
@@ -57,278 +39,165 @@ class Piece:
 
     def __init__(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
         self.function, self.arguments = function, arguments
-        self.value: Any = None
-        self.is_done = False
+        self.elsewhere: Future[Any] | None = None
+        self._value: Any = None
+        self._is_done = False
 
-    def do(self) -> None:
-        """Do it here."""
-        self.value = self.function(*self.arguments)
-        self.is_done = True
+    def value(self) -> Any:
+        """The value, waited for or computed here. Raises what the function raises."""
+        if self.elsewhere is not None and not self._is_done:
+            # Whatever went wrong there goes wrong here, or does not.
+            with contextlib.suppress(Exception):
+                self._value, warned = self.elsewhere.result(_PATIENCE)
+                self._is_done = True
+                for warning in warned:
+                    warnings.warn_explicit(
+                        warning.message, warning.category, warning.filename, warning.lineno
+                    )
+        if not self._is_done:
+            self._value, self._is_done = self.function(*self.arguments), True
+        return self._value
 
 
-class SecondProcess:
-    """A process that takes pieces of work, once it is started. The first of `prepare` loads what
-    they need, before any is sent; the others follow, in a new process when there is nothing to do.
-    """
+class _Other:
+    """The other process, which has one piece at a time."""
 
-    def __init__(self, *prepare: Callable[[], object]) -> None:
-        self._prepare, self._is_started = prepare, False
-        self._line: Connection | None = None
-        self._kept: list[Any] = []
+    def __init__(self, pool: ProcessPoolExecutor, ready: Future[Any]) -> None:
+        self._pool = pool
         self._waiting: deque[Piece] = deque()
-        self._sent: deque[Piece] = deque()
-        self._warned: list[warnings.WarningMessage] = []
-        self._change = threading.Condition()
-        self._is_lost, self._is_ready = True, False
-
-    def start(self) -> None:
-        """Start it, if it was not started before; what is asked for until then may wait for it."""
-        if self._is_started:
-            return
-        self._is_started = True
-        is_copy, lacking = _can_be_copied(), self._prepare
-        if is_copy:
-            for prepare in self._prepare:
-                _load(prepare)
-            lacking = ()
-        context: Any = multiprocessing.get_context("fork" if is_copy else "spawn")
-        # Where the system has no room for a process, this one does everything.
-        with contextlib.suppress(OSError):
-            ours, theirs = context.Pipe()
-            # A copy that kept our end would not hear that this process has ended.
-            arguments = theirs, lacking, [ours] if is_copy else []
-            self._process = context.Process(target=_work, args=arguments, daemon=True)
-            with theirs, interrupts_held(), warnings.catch_warnings():
-                # From 3.12 Python warns of every copy of a process with threads, as OpenBLAS has.
-                warnings.simplefilter("ignore", DeprecationWarning)
-                self._process.start()
-            self._line, self._is_lost = ours, False
-            threading.Thread(target=self._listen, args=(ours,), daemon=True).start()
+        self._turn = threading.RLock()
+        self._last = ready
 
     def ask(self, piece: Piece) -> None:
-        """Have a piece done by whichever process is free first."""
-        with self._change:
+        with self._turn:
             self._waiting.append(piece)
-            self._send_ahead()
+            if self._last.done():
+                self._send(self._last)
+            elif len(self._waiting) == 1:
+                self._last.add_done_callback(self._send)
 
-    def wait(self, pieces: Sequence[Piece]) -> None:
-        """Until pieces are done; meanwhile this process does those of them that are not begun.
+    def take_back(self, piece: Piece) -> bool:
+        """True for a piece that is not begun, which is then not begun there."""
+        with self._turn:
+            is_waiting = piece in self._waiting
+            if is_waiting:
+                self._waiting.remove(piece)
+        return is_waiting
 
-        Raises what a piece raises.
-        """
-        while mine := self._mine(pieces):
-            mine.do()
-        self._say_warnings()
-
-    def end(self) -> None:
-        """Let it go; it does nothing more."""
-        with self._change:
-            line, self._line, self._is_lost = self._line, None, True
-        if line is None:
-            return
-        with contextlib.suppress(OSError):
-            line.send(None)
-        self._process.join(_LEAVE)
-        if self._process.is_alive():
-            self._process.kill()
-            self._process.join()
-
-    def _mine(self, pieces: Sequence[Piece]) -> Piece | None:
-        """The next piece to be done here; None once all are done."""
-        with self._change:
-            while lacking := [one for one in pieces if not one.is_done]:
-                # From the end: the other process begins with the first.
-                for one in reversed(lacking):
-                    if one not in self._sent:
-                        with contextlib.suppress(ValueError):
-                            self._waiting.remove(one)
-                        return one
-                if not self._change.wait(_PATIENCE):
-                    self._lose()
-        return None
-
-    def _send_ahead(self) -> None:
-        # What is sent to one that still loads would be waited for.
-        while self._is_ready and not self._is_lost and self._waiting and len(self._sent) < _AHEAD:
-            piece = self._waiting.popleft()
-            # What cannot be sent is done here.
-            with contextlib.suppress(pickle.PicklingError, AttributeError, TypeError):
-                self._send((piece.function, [self._as_sent(one) for one in piece.arguments]))
-                if not self._is_lost:
-                    self._sent.append(piece)
-
-    def _as_sent(self, value: Any) -> Any:
-        """What stands for an argument: of a record that was sent before its number."""
-        if not hasattr(value, "__dict__"):
-            return value
-        for name, known in enumerate(self._kept):
-            if known is value:
-                return Kept(name)
-        self._send(value)
-        self._kept.append(value)
-        return Kept(len(self._kept) - 1)
-
-    def _send(self, message: Any) -> None:
-        if self._line is None or self._is_lost:
-            return
-        try:
-            self._line.send(message)
-        except OSError:
-            self._lose()
-
-    def _lose(self) -> None:
-        """It died, or takes too long: what was sent is to be done here."""
-        self._is_lost = True
-        self._sent.clear()
-        self._change.notify_all()
-
-    def _listen(self, line: Connection) -> None:
-        """Take answers, which come in the order of what was sent, and send what is next."""
-        with contextlib.suppress(OSError, EOFError):
-            while True:
-                answer = line.recv()
-                with self._change:
-                    if answer is None:
-                        self._is_ready = True
-                        self._send_ahead()
-                        self._change.notify_all()
-                        continue
-                    if not self._sent:
-                        continue
-                    is_done, value, warned = answer
-                    piece = self._sent.popleft()
-                    piece.value, piece.is_done = value, is_done
-                    self._warned += warned
-                    self._send_ahead()
-                    self._change.notify_all()
-        with self._change:
-            self._lose()
-
-    def _say_warnings(self) -> None:
-        """Warn of what was warned of there, as if it had been done here."""
-        with self._change:
-            warned, self._warned = self._warned, []
-        for one in warned:
-            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+    def _send(self, _: Future[Any]) -> None:
+        with self._turn:
+            if not self._last.done() or not self._waiting:
+                return
+            # A process that died takes nothing; what waits is taken back.
+            with contextlib.suppress(RuntimeError):
+                piece = self._waiting[0]
+                sent = self._pool.submit(_with_warnings, piece.function, piece.arguments)
+                piece.elsewhere = self._last = sent
+                self._waiting.popleft()
+                if self._waiting:
+                    sent.add_done_callback(self._send)
 
 
-_PRESENT: ContextVar[SecondProcess | None] = ContextVar("second process", default=None)
+_PRESENT: ContextVar[_Other | None] = ContextVar("second process", default=None)
 
 
 @contextmanager
-def second_process(
-    *prepare: Callable[[], object],
-) -> Iterator[SecondProcess | None]:
-    """A `SecondProcess` for the block; None unless there is a second processor for it, and in a
-    process that must not have children, as the lab's workers are."""
+def second_process(prepare: Callable[[], object]) -> Iterator[bool]:
+    """A second process for the block, which `prepare` loads; False, and none, where there is no
+    second processor, and in a process that must not have children, as the lab's workers are."""
     if _processors() < 2 or multiprocessing.current_process().daemon:
+        yield False
+        return
+    # Libraries of macOS forbid a copy, and what other threads hold would be held in it for ever.
+    is_copy = sys.platform == "linux" and threading.current_thread() is threading.main_thread()
+    if is_copy:
+        _load(prepare)
+    context = multiprocessing.get_context("fork" if is_copy else "spawn")
+    # Threads of either would wait for the other's.
+    with one_blas_thread(), _other(context, prepare) as other:
+        token = _PRESENT.set(other)
+        try:
+            yield other is not None
+        finally:
+            _PRESENT.reset(token)
+
+
+@contextmanager
+def _other(context: Any, prepare: Callable[[], object]) -> Iterator[_Other | None]:
+    """The process, started; None where the system has no room for one."""
+    pool = ProcessPoolExecutor(1, context, _begin, (prepare,))
+    others = set(multiprocessing.active_children())
+    try:
+        with interrupts_held(), warnings.catch_warnings():
+            # From 3.12 Python warns of every copy of a process with threads, as OpenBLAS has.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            ready = pool.submit(os.getpid)
+    except OSError:
         yield None
         return
-    process = SecondProcess(*prepare)
-    process.start()
-    before = _PRESENT.set(process)
     try:
-        # Threads of either would wait for the other's.
-        with one_blas_thread():
-            yield process
+        yield _Other(pool, ready)
     finally:
-        _PRESENT.reset(before)
-        process.end()
+        pool.shutdown(wait=False, cancel_futures=True)
+        for child in set(multiprocessing.active_children()) - others:
+            child.join(_LEAVE)
+            child.kill()
+            child.join()
 
 
 def is_present() -> bool:
-    """Whether there is one now, started or not."""
+    """True within `second_process`, where there is one."""
     return _PRESENT.get() is not None
 
 
 def later(function: Callable[..., Any], *arguments: Any) -> Piece:
-    """Work whose value is wanted later: begun by the second process, where there is one. Records
-    among the arguments are sent once, and must not change."""
-    piece, process = Piece(function, arguments), _PRESENT.get()
-    if process is not None:
-        process.ask(piece)
+    """Work whose value is wanted later: begun by the second process, where there is one."""
+    piece, other = Piece(function, arguments), _PRESENT.get()
+    if other is not None:
+        other.ask(piece)
     return piece
 
 
 def values(*pieces: Piece) -> list[Any]:
-    """What comes of pieces, in their order. Raises what one of them raises."""
-    process = _PRESENT.get()
-    if process is not None:
-        process.wait(pieces)
-    for one in pieces:
-        if not one.is_done:
-            one.do()
-    return [one.value for one in pieces]
+    """The values of pieces, in their order. Raises what one of them raises."""
+    # From the end: the other process begins with the first.
+    other = _PRESENT.get()
+    for piece in reversed(pieces):
+        if other is not None and other.take_back(piece):
+            piece.value()
+    return [piece.value() for piece in pieces]
 
 
 def _processors() -> int:
-    """How many processors this process may use."""
+    """The number of processors that this process may use."""
     allowed = getattr(os, "sched_getaffinity", None)
     return (os.cpu_count() or 1) if allowed is None else len(allowed(0))
 
 
-def _can_be_copied() -> bool:
-    """Whether a copy of this process can work: not on macOS, whose libraries forbid it."""
-    return sys.platform == "linux" and threading.current_thread() is threading.main_thread()
-
-
-def _work(
-    line: Connection, prepare: Sequence[Callable[[], object]], closed: Sequence[Connection]
-) -> None:
-    """Say that it is ready, then do what comes, and answer each piece."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _begin(prepare: Callable[[], object]) -> None:
+    """Make ready in the second process, which ends with the first however that ends."""
     _PRESENT.set(None)
-    for other in closed:
-        other.close()
-    messages: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    threading.Thread(target=_take, args=(line, messages), daemon=True).start()
-    others = deque(prepare)
-    if others:
-        _load(others.popleft())
-    with contextlib.suppress(OSError), one_blas_thread():
-        line.send(None)
-        _answer(line, messages, others)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    _load(prepare)
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(0)
 
 
 def _load(prepare: Callable[[], object]) -> None:
-    """What fails here is done, and fails, where somebody sees it."""
+    # What fails here is done, and fails, where somebody sees it.
     with contextlib.suppress(Exception):
         prepare()
 
 
-def _answer(
-    line: Connection, messages: queue.SimpleQueue[Any], others: deque[Callable[[], object]]
-) -> None:
-    """Do what comes, until the line is gone, and between times what else there is to prepare."""
-    kept: list[Any] = []
-    while True:
-        while others and messages.empty():
-            _load(others.popleft())
-        message = messages.get()
-        if not isinstance(message, tuple):
-            kept.append(message)
-            continue
-        function, arguments = message
-        given = [kept[one.name] if isinstance(one, Kept) else one for one in arguments]
-        with warnings.catch_warnings(record=True) as warned:
-            warnings.simplefilter("always")
-            try:
-                answer = True, function(*given), warned
-            except Exception:
-                answer = False, None, []
-        try:
-            line.send(answer)
-        except OSError:
-            return
-        except Exception:
-            line.send((False, None, []))
-
-
-def _take(line: Connection, messages: queue.SimpleQueue[Any]) -> None:
-    """Take what is sent while something is done; None, or the end of the line, is the end of the
-    process, however the one that asks has ended."""
-    try:
-        while (message := line.recv()) is not None:
-            messages.put(message)
-    finally:
-        os._exit(0)
+def _with_warnings(
+    function: Callable[..., Any], arguments: tuple[Any, ...]
+) -> tuple[Any, list[warnings.WarningMessage]]:
+    """The value and the warnings of a call, which is made with one BLAS thread."""
+    with one_blas_thread(), warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        return function(*arguments), warned

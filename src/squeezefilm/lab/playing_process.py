@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
-from squeezefilm.core.loading import hear_interrupts
+from squeezefilm.core.interrupts import hear_interrupts
 from squeezefilm.core.results import to_json
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 

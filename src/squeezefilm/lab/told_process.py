@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.loading import interrupts_held
+from squeezefilm.core.interrupts import interrupts_held
 
 Tell = Callable[[dict[str, Any]], None]
 

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
-from squeezefilm.core.loading import interrupts_held
+from squeezefilm.core.interrupts import interrupts_held
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket

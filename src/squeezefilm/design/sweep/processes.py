@@ -14,7 +14,7 @@ from concurrent.futures.process import BrokenProcessPool
 from types import TracebackType
 from typing import Any
 
-from squeezefilm.core.loading import hear_interrupts, interrupts_held
+from squeezefilm.core.interrupts import hear_interrupts, interrupts_held
 from squeezefilm.design.sweep.tasks import A, K, Lost, Shares, computed, grouped, tried_again
 
 

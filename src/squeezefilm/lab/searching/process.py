@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
-from squeezefilm.core.loading import hear_interrupts
+from squeezefilm.core.interrupts import hear_interrupts
 from squeezefilm.core.progress import about
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare

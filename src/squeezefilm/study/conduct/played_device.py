@@ -21,7 +21,7 @@ from typing import Any, Self
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import DeviceError, InputError
-from squeezefilm.core.loading import interrupts_held
+from squeezefilm.core.interrupts import interrupts_held
 from squeezefilm.core.results import config_hash
 from squeezefilm.instruments.twin.hand import EXPLORING
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.page_style import FigureOf
-from squeezefilm.core.loading import loading
 from squeezefilm.core.second_process import later, values
 
 if TYPE_CHECKING:
@@ -35,11 +34,14 @@ def pictures(
     drawing: Drawing, figures: Iterable[FigureOf], result: Any, prefix: str = ""
 ) -> dict[str, tuple[str, Picture]]:
     """The pictures that a result has, by the name of their file: heading and picture."""
-    wanted = [one for one in figures if one.has(result)]
-    pieces = [later(_picture, drawing, result, one.key) for one in wanted]
+    wanted = [figure for figure in figures if figure.has(result)]
+    keys = [figure.key for figure in wanted]
+    # Two pieces: to send a result takes longer than to draw it once.
+    share = later(_drawn, drawing, result, keys[1::2]), later(_drawn, drawing, result, keys[::2])
+    drawn = {key: picture for part in values(*share) for key, picture in part.items()}
     return {
-        prefix + (one.file or one.key): (one.heading, found)
-        for one, found in zip(wanted, values(*pieces), strict=True)
+        prefix + (figure.file or figure.key): (figure.heading, drawn[figure.key])
+        for figure in wanted
     }
 
 
@@ -50,13 +52,15 @@ def png_files(found: Mapping[str, tuple[str, Picture]]) -> dict[str, str | bytes
 
 def load_drawing() -> None:
     """Load what drawing takes, in a program, before there is anything to draw."""
-    with loading():
-        for name in ("page", "simulated_page"):
-            import_module(f"squeezefilm.study.report.{name}")
-        import_module("matplotlib.figure")
-        import_module("matplotlib.backends.backend_agg")
+    for name in ("page", "simulated_page"):
+        import_module(f"squeezefilm.study.report.{name}")
+    import_module("matplotlib.figure")
+    import_module("matplotlib.backends.backend_agg")
 
 
-def _picture(drawing: Drawing, result: Any, key: str) -> Picture:
-    figure = drawing(result, key)
+def _drawn(drawing: Drawing, result: Any, keys: Sequence[str]) -> dict[str, Picture]:
+    return {key: _picture(drawing(result, key)) for key in keys}
+
+
+def _picture(figure: Figure) -> Picture:
     return Picture(style.png(figure), figure.get_suptitle())

@@ -52,6 +52,6 @@ def test_a_result_has_its_pictures_by_the_names_of_their_files() -> None:
 def test_two_processes_draw_what_one_draws(monkeypatch: pytest.MonkeyPatch) -> None:
     alone = pictures(drawing, FIGURES, 6.0)
     monkeypatch.setattr(second_process, "_processors", lambda: 2)
-    with second_process.second_process(load_drawing) as process:
-        assert process is not None
+    with second_process.second_process(load_drawing) as is_there:
+        assert is_there
         assert pictures(drawing, FIGURES, 6.0) == alone

@@ -10,7 +10,7 @@ from multiprocessing.connection import Connection
 
 import pytest
 
-from squeezefilm.core.loading import hear_interrupts, interrupts_held
+from squeezefilm.core.interrupts import hear_interrupts, interrupts_held
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows holds no signals back")
 
