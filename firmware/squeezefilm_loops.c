@@ -205,3 +205,33 @@ sf_loop_command sf_loop_step(
     command.frequency = scaled(s->frequency, FINE);
     return command;
 }
+
+/* --- friction ----------------------------------------------------------------------------- */
+
+int64_t sf_friction_step(
+    const sf_friction_gains *g, const int64_t levels[SF_FRICTION_POINTS], sf_friction_state *s,
+    int64_t wanted, int64_t measured, int fresh, int64_t *flags)
+{
+    const int64_t far = (int64_t)1 << 30, most = g->correction * 256, before = s->sum;
+    int64_t highest = g->lowest + (SF_FRICTION_POINTS - 1) * g->pitch, asked, held, place, number;
+    *flags = 0;
+    if (fresh) {
+        s->error = clamped(scaled(s->expected, 8) - measured, -far, far);
+        s->sum += scaled(g->integral * s->error, 16);
+        if (s->sum > most || s->sum < -most)
+            *flags = SF_CORRECTION_HELD;
+        s->sum = clamped(s->sum, -most, most);
+    }
+    s->expected += scaled(g->lag * (wanted * 256 - s->expected), 24);
+    asked = wanted + scaled(g->proportional * s->error, 16) + scaled(s->sum, 8);
+    held = clamped(asked, g->lowest, highest);
+    if (held != asked) {
+        *flags |= SF_OUT_OF_REACH;
+        if ((asked > highest) == (s->sum > before))
+            s->sum = before;
+    }
+    place = held - g->lowest;
+    number = clamped(place / g->pitch, 0, SF_FRICTION_POINTS - 2);
+    place -= number * g->pitch;
+    return levels[number] + (levels[number + 1] - levels[number]) * place / g->pitch;
+}

@@ -37,4 +37,21 @@ void sf_loop_begin(sf_loop_state *s, const sf_loop_gains *g);
 sf_loop_command sf_loop_step(
     const sf_loop_gains *g, sf_loop_state *s, int32_t p, int32_t q, int64_t wanted, int64_t applied);
 
+/* A loop that holds friction: see instruments/control/friction_loop.py. All uN and uV. */
+#define SF_FRICTION_POINTS 33
+enum { SF_OUT_OF_REACH = 1, SF_CORRECTION_HELD = 2 };
+
+typedef struct {
+    int64_t lowest, pitch, proportional, integral, lag, correction;
+} sf_friction_gains;
+
+typedef struct {
+    int64_t expected, error, sum;
+} sf_friction_state;
+
+/* Returns the level, and the flags where they are asked for. */
+int64_t sf_friction_step(
+    const sf_friction_gains *g, const int64_t levels[SF_FRICTION_POINTS], sf_friction_state *s,
+    int64_t wanted, int64_t measured, int fresh, int64_t *flags);
+
 #endif

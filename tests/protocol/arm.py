@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .builds import FIRMWARE, STRICT, build, missing, tool
+from .builds import FIRMWARE, LOOPS, STRICT, build, missing, tool
 from .recording import Recording
 
 HERE = Path(__file__).parent
@@ -38,21 +38,29 @@ class _Counter(ctypes.Structure):
 
 @dataclass
 class Work:
-    """The most that one call took: instructions of `sf_receive` and `sf_tick`, bytes of stack."""
+    """The most that one call took: instructions of `sf_receive` and `sf_tick`, or of a step of the
+    loops, and bytes of stack."""
 
     receive: int = 0
     tick: int = 0
+    step: int = 0
     stack: int = 0
 
 
 class Arm:
-    """One core with the firmware in its flash. `work` is the most that was seen up to now."""
+    """One core with the firmware in its flash. `work` is the most that was seen up to now.
 
-    def __init__(self, core: str, folder: Path, counter: ctypes.CDLL) -> None:
-        self.core = core
-        image = _linked(core, FIRMWARE, "host_run", folder / f"{core}.elf")
+    `entry` is the harness's function that makes the calls: `host_run` of scripts, or `host_loops`.
+    """
+
+    def __init__(
+        self, core: str, folder: Path, counter: ctypes.CDLL, entry: str = "host_run"
+    ) -> None:
+        self.core, self.entry = core, entry
+        sources = FIRMWARE if entry == "host_run" else LOOPS
+        image = _linked(core, sources, entry, folder / f"{core}-{entry}.elf")
         self.symbols = symbols(image)
-        flash = folder / f"{core}.bin"
+        flash = folder / f"{core}-{entry}.bin"
         _run("arm-none-eabi-objcopy", "-O", "binary", "-j", ".flash", image, flash)
         self._flash = flash.read_bytes()
         self._counter = counter
@@ -60,9 +68,23 @@ class Arm:
 
     def record(self, recording: Recording) -> bytes:
         """What it did. Whatever is no instruction or no memory of this core raises."""
+        most = len(recording.record) + 4096
+        done, counter = self._run(bytes(recording.script), most, ("sf_receive", "sf_tick"))
+        self.work.receive = max(self.work.receive, counter.longest[0])
+        self.work.tick = max(self.work.tick, counter.longest[1])
+        assert list(counter.calls) == [recording.received, recording.ticks]
+        return done
+
+    def loop_steps(self, given: bytes, count: int) -> bytes:
+        """State and command after each of `count` steps of the loops; see `loops_main.c`."""
+        done, counter = self._run(given, count * 120 + 4096, ("sf_loop_step", "sf_loop_begin"))
+        self.work.step = max(self.work.step, counter.longest[0])
+        assert counter.calls[0] == count
+        return done
+
+    def _run(self, script: bytes, most: int, counted: tuple[str, str]) -> tuple[bytes, _Counter]:
         unicorn = _unicorn()
         arm = unicorn.arm_const
-        script, most = bytes(recording.script), len(recording.record) + 4096
         core = unicorn.Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS)
         core.ctl_set_cpu_model(
             {
@@ -82,7 +104,7 @@ class Arm:
         core.mem_map(ROOM, out - ROOM, unicorn.UC_PROT_READ)
         core.mem_write(ROOM, script)
         core.mem_map(out, _pages(most), data)
-        counter = self._count(core)
+        counter = self._count(core, counted)
         for register, value in (
             (arm.UC_ARM_REG_R0, ROOM),
             (arm.UC_ARM_REG_R1, len(script)),
@@ -92,19 +114,17 @@ class Arm:
             (arm.UC_ARM_REG_LR, RETURN | 1),
         ):
             core.reg_write(register, value)
-        core.emu_start(self.symbols["host_run"][0] | 1, RETURN)
+        core.emu_start(self.symbols[self.entry][0] | 1, RETURN)
         stack = len(bytes(core.mem_read(top - _STACK, _STACK)).lstrip(_PAINT))
-        self.work.receive = max(self.work.receive, counter.longest[0])
-        self.work.tick = max(self.work.tick, counter.longest[1])
         self.work.stack = max(self.work.stack, stack)
-        assert list(counter.calls) == [recording.received, recording.ticks]
-        return bytes(core.mem_read(out, min(most, core.reg_read(arm.UC_ARM_REG_R0))))
+        done = bytes(core.mem_read(out, min(most, core.reg_read(arm.UC_ARM_REG_R0))))
+        return done, counter
 
-    def _count(self, core: Any) -> _Counter:
+    def _count(self, core: Any, counted: tuple[str, str]) -> _Counter:
         unicorn = _unicorn()
-        caller, size = self.symbols["host_run"]
+        caller, size = self.symbols[self.entry]
         counter = _Counter(caller, caller + size)
-        for i, name in enumerate(("sf_receive", "sf_tick")):
+        for i, name in enumerate(counted):
             counter.entry[i] = self.symbols[name][0]
         # As Uc.hook_add does it, which takes functions of Python only: they would be too slow.
         failed = unicorn.unicorn_py3.unicorn.uclib.uc_hook_add(
@@ -139,7 +159,8 @@ def _linked(core: str, sources: tuple[Path, ...], entry: str, built: Path) -> Pa
         "-fdata-sections",
         "--specs=nano.specs",
         "-nostartfiles",
-        f"-Wl,--gc-sections,-T,{HERE / 'arm.ld'},-e,{entry},-u,sf_boot,-u,sf_tick,-u,sf_trip",
+        f"-Wl,--gc-sections,-T,{HERE / 'arm.ld'},-e,{entry}"
+        + "".join(f",-u,{name}" for name in ("sf_boot", "sf_tick", "sf_trip") if sources != LOOPS),
     )
     return build(tool("arm-none-eabi-gcc"), flags, sources, built)
 

@@ -15,6 +15,7 @@ from .recording import Recording
 
 SOURCES = Path(__file__).parents[2] / "firmware"
 FIRMWARE = (SOURCES / "squeezefilm_fw.c", SOURCES / "host_harness.c")
+LOOPS = (SOURCES / "squeezefilm_loops.c", SOURCES / "loops_main.c")
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Werror")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 import subprocess
 from collections import Counter
@@ -14,12 +15,18 @@ from numpy.typing import NDArray
 from squeezefilm.core.compiled import compiled
 from squeezefilm.instruments.control import plate_loop as loop
 from squeezefilm.instruments.control.fixed_point import QUARTER, quotient, scaled, sine
+from squeezefilm.instruments.control.friction_loop import (
+    FrictionState,
+    friction_gains,
+    friction_step,
+)
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
 from squeezefilm.instruments.control.plate_loop import LoopGains, first_state, plate_step
 
-from .builds import SOURCES, STRICT, build, tool
+from .arm import Arm, instruction_counter
+from .builds import LOOPS, STRICT, build, tool
+from .test_firmware_arm import FLOATING, MOST_INSTRUCTIONS
 
-LOOPS = SOURCES / "squeezefilm_loops.c"
 STEP = 1e-4
 Integers = NDArray[np.int64]
 
@@ -31,12 +38,15 @@ def loops(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     flags: tuple[str, ...] = (*STRICT, "-O2")
     if request.param == "sanitized":
         flags = (*STRICT, "-O1", "-fsanitize=undefined", "-fno-sanitize-recover=all")
-    main = SOURCES / "loops_main.c"
-    return build(tool("cc", "gcc", "clang"), flags, (LOOPS, main), folder / request.param)
+    return build(tool("cc", "gcc", "clang"), flags, LOOPS, folder / request.param)
+
+
+def as_bytes(gains: LoopGains, steps: Integers) -> bytes:
+    return np.array(gains, np.int64).tobytes() + steps.tobytes()
 
 
 def in_c(program: Path, gains: LoopGains, steps: Integers) -> Integers:
-    given = np.array(gains, np.int64).tobytes() + steps.tobytes()
+    given = as_bytes(gains, steps)
     done = subprocess.run([program], input=given, capture_output=True, check=False)
     assert done.returncode == 0, done.stderr.decode(errors="replace")
     return np.frombuffer(done.stdout, np.int64).reshape(len(steps), -1)
@@ -110,6 +120,56 @@ def test_a_plate_that_is_found_locked_and_lost_in_c(loops: Path) -> None:
     assert expected[-1, 0] == loop.LOCKED
     assert expected[-1, 9] == 1
     assert np.array_equal(in_c(loops, gains, steps), expected)
+
+
+def test_the_friction_loop_gives_the_same_integers_in_c(tmp_path: Path) -> None:
+    flags = (*STRICT, "-O2", "-shared", "-fPIC")
+    compiler = tool("cc", "gcc", "clang")
+    built = ctypes.CDLL(str(build(compiler, flags, LOOPS[:1], tmp_path / "loops.so")))
+    in_c = built.sf_friction_step
+    in_c.restype = wide = ctypes.c_int64
+    pick = np.random.default_rng(53)
+    voltage = np.linspace(0, 100, 50)
+    gains, levels = friction_gains(
+        voltage, 0.6 * np.exp(-voltage / 40), 40.0, 1.5e-3, 2e-4, 1e-3, 0.2
+    )
+    state, other = FrictionState(), np.zeros(3, np.int64)
+    given, flag = np.array(gains, np.int64), wide()
+    seen = Counter[int]()
+    for n in range(20_000):
+        if n % 500 == 0:
+            wanted = int(pick.choice([0, 200_000, 300_000, 700_000, 2**30]))
+        measured = int(pick.integers(0, 600_000) if n % 97 else pick.integers(-(2**31), 2**31))
+        fresh = n % 5 == 0
+        state, command = friction_step(gains, levels, state, wanted, measured, fresh)
+        level = in_c(
+            given.ctypes.data_as(ctypes.c_void_p),
+            levels.ctypes.data_as(ctypes.c_void_p),
+            other.ctypes.data_as(ctypes.c_void_p),
+            wide(wanted),
+            wide(measured),
+            ctypes.c_int(fresh),
+            ctypes.byref(flag),
+        )
+        assert (level, flag.value, other.tolist()) == (*command, list(state)), n
+        seen[command.flags] += 1
+    assert all(seen[flags] > 20 for flags in range(4)), seen
+
+
+@pytest.mark.parametrize("core", list(MOST_INSTRUCTIONS))
+def test_the_loops_on_arm_are_the_same_and_short(core: str, tmp_path: Path) -> None:
+    """On an emulated core, never on a board; the tick of the state machine takes its part too,
+    which `test_firmware_arm` counts."""
+    arm = Arm(core, tmp_path, instruction_counter(tmp_path), "host_loops")
+    pick = np.random.default_rng(52)
+    for number in range(6):
+        gains = some_gains(pick)
+        steps = some_steps(pick, gains, 1500) if number else closed_loop(gains, 1500)
+        done = np.frombuffer(arm.loop_steps(as_bytes(gains, steps), len(steps)), np.int64)
+        assert np.array_equal(done.reshape(len(steps), -1), in_python(gains, steps)), number
+    print(f"{core}: at most {arm.work.step} instructions a step, {arm.work.stack} bytes of stack")
+    assert arm.work.step <= MOST_INSTRUCTIONS[core] // 2
+    assert [name for name in arm.symbols if FLOATING.match(name)] == []
 
 
 @compiled()
