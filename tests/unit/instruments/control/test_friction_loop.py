@@ -21,7 +21,7 @@ STEP, EVERY, LAG, BANDWIDTH = 2e-4, 5, 1.5e-3, 30.0
 """5 kHz, a sensor at 1 kHz, a plate of 1.5 ms."""
 VOLTAGE = np.linspace(0, 100, 201)
 FRICTION = 0.6 * np.exp(-VOLTAGE / 50)  # N over V: an exponential, as curves at 10 mm/s are
-GAINS, LEVELS = friction_gains(VOLTAGE, FRICTION, BANDWIDTH, LAG, STEP, EVERY * STEP, 0.3)
+GAINS, LEVELS = friction_gains(VOLTAGE, FRICTION, BANDWIDTH, LAG, STEP, EVERY * STEP, 0.15)
 
 
 @compiled()
