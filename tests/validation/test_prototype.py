@@ -6,17 +6,15 @@ import pytest
 
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.design.plate.sensitivity import plate_sensitivity, usual_changes
-from squeezefilm.validation.paper_plate import (
+from squeezefilm.validation import explanations as prototype
+from squeezefilm.validation.explanations import (
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,
-    paper_plate,
-    paper_points,
-)
-from squeezefilm.validation.prototype import explanations as prototype
-from squeezefilm.validation.prototype.explanations import (
     MEASUREMENTS,
     Explanation,
     PrototypeStudy,
+    paper_plate,
+    paper_points,
     prototype_study,
 )
 from squeezefilm.validation.report.page import prototype_sections

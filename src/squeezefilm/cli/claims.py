@@ -40,7 +40,7 @@ def reproduce(
         return
     from squeezefilm.core.kit.docs import checkout
     from squeezefilm.validation.command import reproduce as run
-    from squeezefilm.validation.prototype.explanations import prototype_study
+    from squeezefilm.validation.explanations import prototype_study
     from squeezefilm.validation.report.page import write_reproduction, write_validation_docs
     from squeezefilm.validation.report.terminal import show_claims
 

@@ -45,7 +45,7 @@ class ClaimResult:
 @dataclass(frozen=True)
 class Reproduction:
     """All claims recomputed, the errata, where the paper's design procedure leads, and the study of
-    its prototype (`validation.prototype.explanations.PrototypeStudy`; None where none was made)."""
+    its prototype (`validation.explanations.PrototypeStudy`; None where none was made)."""
 
     results: tuple[ClaimResult, ...]
     errata: tuple[Erratum, ...]
@@ -95,7 +95,7 @@ def reproduce(
     progress: SayProgress | None = None,
 ) -> Reproduction:
     """Recompute every claim (those on record, or those given); with `prototype`, what studies the
-    paper's prototype (`validation.prototype.explanations.prototype_study`), also that. What was
+    paper's prototype (`validation.explanations.prototype_study`), also that. What was
     found until it was stopped is kept on disk.
 
     Raises `ConfigError` for a claim that nothing computes.

@@ -42,7 +42,7 @@ from squeezefilm.physics.plate.beam.modes import (
 from squeezefilm.physics.plate.beam.response import beam_response
 from squeezefilm.physics.plate.laminate import Laminate, Layer, laminate, plate_laminate
 from squeezefilm.physics.plate.layout import AnnularStator
-from squeezefilm.validation.paper_plate import MODAL_FREQUENCY, paper_plate, paper_points
+from squeezefilm.validation.explanations import MODAL_FREQUENCY, paper_plate, paper_points
 
 PRINTED_HALF_WAVELENGTH: si.Metre = 10.37e-3
 PRINTED_WIDTH: si.Metre = 50e-3  # section 3.1.1 chooses b = 50 mm, section 3.1.2 ends at 49 mm

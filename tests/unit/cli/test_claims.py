@@ -12,7 +12,7 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.claims import reproduce
-from squeezefilm.validation.prototype.explanations import prototype_study
+from squeezefilm.validation.explanations import prototype_study
 
 StandsIn = Callable[..., Any]
 

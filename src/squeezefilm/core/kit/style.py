@@ -95,8 +95,6 @@ _RC: dict[str, Any] = {
     "grid.color": GRID,
     "grid.linewidth": 0.8,
     "figure.facecolor": "none",
-    # About where axes with a legend below them end: it is measured there (`core.kit.margins`).
-    "figure.subplot.bottom": 0.25,
     "figure.titlesize": 12.5,
     "figure.titleweight": "bold",
     "savefig.facecolor": "none",
@@ -152,10 +150,9 @@ def drawn(draw: Callable[[_A], Figure]) -> Callable[[_A], Figure]:
 def new_figure(title: str, model: str, height: float) -> Figure:
     """An empty figure with the message as its title and the model as its small print."""
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    from squeezefilm.core.kit.margins import MeasuredOnce
-
-    padding = MeasuredOnce(w_pad=0.08, h_pad=0.08, wspace=0.03, hspace=0.05)
+    padding = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.03, hspace=0.05)
     figure = Figure(figsize=(WIDTH, height), layout=padding)
     figure.suptitle(textwrap.fill(unit_stays(title), 90), x=0.012, ha="left")
     figure.supxlabel(

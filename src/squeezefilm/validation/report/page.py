@@ -14,8 +14,8 @@ from squeezefilm.core.results import write_whole
 from squeezefilm.design.analysis.paper_procedure import Design
 from squeezefilm.design.plate.report.sensitivity_figures import tornado
 from squeezefilm.validation.command import ClaimResult, Reproduction
-from squeezefilm.validation.prototype.explanations import PrototypeStudy
-from squeezefilm.validation.report.directions import (
+from squeezefilm.validation.explanations import PrototypeStudy
+from squeezefilm.validation.report.claim_rows import (
     direction_table,
     directions,
     missed_lists,

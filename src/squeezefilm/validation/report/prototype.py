@@ -11,17 +11,15 @@ import numpy as np
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.docs import markdown_table
 from squeezefilm.core.kit.numbers import changed
-from squeezefilm.validation.paper_plate import (
+from squeezefilm.validation.explanations import (
+    AMPLITUDE_ACCURACY,
     DRIVE_VOLTAGE,
     HARMONIC_AMPLITUDE,
     HARMONIC_FREQUENCY,
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,
-    MODAL_FREQUENCY,
-)
-from squeezefilm.validation.prototype.explanations import (
-    AMPLITUDE_ACCURACY,
     MEASUREMENTS,
+    MODAL_FREQUENCY,
     OPEN_ACCURACY,
     RATIO_ACCURACY,
 )
@@ -29,7 +27,7 @@ from squeezefilm.validation.prototype.explanations import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.validation.prototype.explanations import Explanation, PrototypeStudy
+    from squeezefilm.validation.explanations import Explanation, PrototypeStudy
 
 _TOLD_APART = 2.0
 Table = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]

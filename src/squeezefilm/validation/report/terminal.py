@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from squeezefilm.core import quantities as si
-from squeezefilm.core.kit.numbers import shown
 from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
-from squeezefilm.validation.report.directions import (
+from squeezefilm.validation.report.claim_rows import (
+    direction_table,
     directions,
     model_sentences,
     plain_claims,
+    show_printed,
+    show_values,
     verdict_table,
 )
 
@@ -30,7 +31,6 @@ _VERDICT_STYLES = {
     "does not reproduce": "yellow",
     "does not hold": "yellow",
 }
-_SIGNS = {"above": "> ", "at_least": "≥ ", "at_most": "≤ ", "within": "within "}
 
 
 def show_claims(result: Reproduction) -> None:
@@ -38,19 +38,15 @@ def show_claims(result: Reproduction) -> None:
     every model; then where and why; the errata; what the verdicts mean."""
     console = plain_console()
     plain, asked = plain_claims(result.results), directions(result.results)
-    table(
-        console,
-        ("claim", "printed", "as printed", "recomputed", "verdict"),
-        [_claim_row(item) for item in plain],
-        fixed=(0,),
-        styles=_style,
-    )
+    columns = ("claim", "printed", "as printed", "recomputed", "verdict")
+    table(console, columns, [_claim_row(item) for item in plain], fixed=(0,), styles=_style)
     if asked:
         heading(console, "Directions of friction that others observed, at one frozen set of values")
-        bullets(console, [("", text, "") for text in model_sentences()])
-        rows = [_direction_row(item, first=item is items[0]) for items in asked for item in items]
-        names = ("direction", "model", "bound", "found", "verdict")
-        table(console, names, rows, fixed=(0, 1), styles=_style)
+        _say(console, model_sentences())
+        head, rows = direction_table(result.results)
+        names = [item.claim.id if item is items[0] else "" for items in asked for item in items]
+        named = [(name, *row[2:]) for name, row in zip(names, rows, strict=True)]
+        table(console, head[1:], named, fixed=(0, 1), styles=_style)
     heading(console, "Where and why")
     for item in plain:
         heading(console, f"{item.claim.id}: {item.verdict}")
@@ -64,8 +60,12 @@ def show_claims(result: Reproduction) -> None:
     if result.errata:
         heading(console, "Errata of the paper")
         errata = [
-            (one.equation, f"{one.printed}  must be  {one.corrected}: {one.why}", "")
-            for one in result.errata
+            (
+                erratum.equation,
+                f"{erratum.printed}  must be  {erratum.corrected}: {erratum.why}",
+                "",
+            )
+            for erratum in result.errata
         ]
         bullets(console, errata)
     head, counted = verdict_table(result.results)
@@ -78,27 +78,13 @@ def _style(row: Sequence[str]) -> str:
 
 
 def _claim_row(item: ClaimResult) -> tuple[str, ...]:
-    claim, formula = item.claim, item.printed_formula_value
+    unit = item.claim.unit
+    printed_formula = show_values(item.printed_formula_value, unit)
     return (
-        claim.id,
-        _values(claim.printed, claim.unit, _SIGNS.get(claim.relation, "")) or "not compared",
-        "–" if formula is None else _values(formula, claim.unit),
-        _values(item.value, claim.unit),
-        item.verdict,
-    )
-
-
-def _direction_row(item: ClaimResult, *, first: bool) -> tuple[str, ...]:
-    claim = item.claim
-    return (
-        claim.id if first else "",
-        claim.model,
-        _values(
-            claim.printed[: None if claim.relation == "within" else 1],
-            claim.unit,
-            _SIGNS.get(claim.relation, ""),
-        ),
-        "\n".join(f"{value:.2g}" for value in item.value),
+        item.claim.id,
+        show_printed(item),
+        printed_formula,
+        show_values(item.value, unit),
         item.verdict,
     )
 
@@ -109,7 +95,3 @@ def _reasons(item: ClaimResult) -> list[str]:
 
 def _say(console: Console, texts: Iterable[str]) -> None:
     bullets(console, [("", text, "") for text in texts])
-
-
-def _values(values: Iterable[float], unit: str, sign: str = "") -> str:
-    return "\n".join(sign + shown(value, si.Unit(unit)) for value in values)

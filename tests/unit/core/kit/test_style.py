@@ -7,7 +7,6 @@ import os
 import re
 import subprocess
 import sys
-from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib
@@ -17,7 +16,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squeezefilm.core.kit import style
-from squeezefilm.core.kit.margins import MeasuredOnce
 
 
 def test_the_style_holds_within_another_and_is_undone() -> None:
@@ -87,28 +85,6 @@ def test_nothing_around_the_axes_overlaps_or_is_cut_off(height: float) -> None:
         assert min(whole[:2]) > 0
         assert whole[2] < 1
         assert small[1] > 0
-
-
-def test_axes_are_measured_once_unless_their_shape_is_fixed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    counted: list[Axes] = []
-    measure = Axes.get_tightbbox
-
-    def count(axes: Axes, *given: Any, **options: Any) -> Any:
-        counted.append(axes)
-        return measure(axes, *given, **options)
-
-    monkeypatch.setattr(Axes, "get_tightbbox", count)
-    figure, axes = _labelled(4.4)
-    assert isinstance(figure.get_layout_engine(), MeasuredOnce)
-    style.svg(figure, "one", "label")
-    assert counted.count(axes) == 1
-    assert "get_tightbbox" not in vars(axes), "what was put there for the layout is gone"
-    counted.clear()
-    axes.set_aspect(1e-5)
-    style.svg(figure, "one", "label")
-    assert counted.count(axes) == 2
 
 
 def test_every_name_in_a_drawing_has_its_prefix_and_every_reference_a_target() -> None:

@@ -14,8 +14,8 @@ from tests.unit.made_curves import AMPLITUDE, CURVES, GRID, made, point
 from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.style import INK, MUTED
 from squeezefilm.design.analysis.curves import PressureProfile, WavelengthCurve
-from squeezefilm.validation.report import paper_figures
-from squeezefilm.validation.report.paper_figures import friction, pressure, wavelength
+from squeezefilm.validation.report import figures
+from squeezefilm.validation.report.figures import friction, pressure, wavelength
 
 # 0.5 N on 1 cm² of contact is a twentieth of an atmosphere of 1 bar.
 DISPLAY = SimpleNamespace(
@@ -38,8 +38,8 @@ WAVES = (
 
 @pytest.fixture(autouse=True)
 def curves_by_hand(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(paper_figures, "pressure_profiles", lambda p: p.profiles)
-    monkeypatch.setattr(paper_figures, "wavelength_curves", lambda _: WAVES)
+    monkeypatch.setattr(figures, "pressure_profiles", lambda p: p.profiles)
+    monkeypatch.setattr(figures, "wavelength_curves", lambda _: WAVES)
 
 
 def of_display(**changes: Any) -> Any:

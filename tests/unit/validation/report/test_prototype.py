@@ -12,7 +12,7 @@ from matplotlib.colors import to_hex
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.style import BLUE, ORANGE
 from squeezefilm.design.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
-from squeezefilm.validation.prototype.explanations import (
+from squeezefilm.validation.explanations import (
     MEASUREMENTS,
     Explanation,
     PrototypeStudy,

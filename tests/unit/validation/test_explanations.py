@@ -13,13 +13,13 @@ import pytest
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.design.plate.sensitivity import SensitivityTable, WorkingPoint
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.validation import paper_plate as papers
-from squeezefilm.validation.paper_plate import paper_plate, paper_points
-from squeezefilm.validation.prototype import explanations as prototype
-from squeezefilm.validation.prototype.explanations import (
+from squeezefilm.validation import explanations as prototype
+from squeezefilm.validation.explanations import (
     MEASUREMENTS,
     NEIGHBOURS,
     Explanation,
+    paper_plate,
+    paper_points,
     prototype_study,
 )
 
@@ -47,8 +47,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[tuple[Any, Any, bool
         driven = 80e-9 if amplitude else None
         return WorkingPoint(label or (8, 0), at, 1.0, driven, 50.0, 1.1 * at)
 
-    for module in (prototype, papers):
-        monkeypatch.setattr(module, "working_point", point)
+    monkeypatch.setattr(prototype, "working_point", point)
     paper_points.cache_clear()
     yield every
     # What is made up may not stay behind for the tests of the real plate.
@@ -66,12 +65,12 @@ def explanation(**changes: Any) -> Explanation:
 
 def test_the_papers_numbers_are_the_papers() -> None:
     """Sections 3.1.3 and 3.2.1."""
-    assert papers.MODAL_FREQUENCY == 35.6e3
-    assert papers.HARMONIC_FREQUENCY == 34.77e3
-    assert papers.HARMONIC_AMPLITUDE == 3.2e-6
-    assert papers.MEASURED_FREQUENCY == 30.5e3
-    assert papers.MEASURED_AMPLITUDE == 1.15e-6
-    assert papers.DRIVE_VOLTAGE == 15.0
+    assert prototype.MODAL_FREQUENCY == 35.6e3
+    assert prototype.HARMONIC_FREQUENCY == 34.77e3
+    assert prototype.HARMONIC_AMPLITUDE == 3.2e-6
+    assert prototype.MEASURED_FREQUENCY == 30.5e3
+    assert prototype.MEASURED_AMPLITUDE == 1.15e-6
+    assert prototype.DRIVE_VOLTAGE == 15.0
     assert MEASUREMENTS == (
         "f(6,0) / f(8,0)", "f(7,0) / f(8,0)", "f(9,0) / f(8,0)", "open-circuit shift",
         "amplitude at known Q",
@@ -202,10 +201,10 @@ def test_an_end_of_the_range_that_meets_the_frequency_is_the_answer(
 
     def point(mass: float, label: Any = None, *, amplitude: bool = True) -> WorkingPoint:
         is_there = mass == pytest.approx(ends[end], rel=1e-9)
-        wanted = papers.MEASURED_FREQUENCY * (1.0 if is_there else 1.1)
+        wanted = prototype.MEASURED_FREQUENCY * (1.0 if is_there else 1.1)
         return WorkingPoint(label or (8, 0), wanted, 1.0, 80e-9, 50.0, wanted)
 
     monkeypatch.setattr(prototype, "working_point", point)
     plate: Any = None
     made = prototype._explained(plate, "a", "b", "kg", (8e3, 9e3), lambda _, mass: mass)  # type: ignore[arg-type,return-value]
-    assert made.frequency == papers.MEASURED_FREQUENCY
+    assert made.frequency == prototype.MEASURED_FREQUENCY

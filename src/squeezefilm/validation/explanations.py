@@ -6,6 +6,7 @@ then predict for other measurements says which of these would tell them apart, a
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.progress import SayProgress
+from squeezefilm.design.analysis.published_claims import measured_of_preset
 from squeezefilm.design.plate.sensitivity import (
     SensitivityTable,
     WorkingPoint,
@@ -24,15 +26,32 @@ from squeezefilm.design.plate.sensitivity import (
     with_other_data_set,
     working_point,
 )
+from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.uncertainty.parameters import with_values
-from squeezefilm.validation.paper_plate import (
-    DRIVE_VOLTAGE,
-    MEASURED_AMPLITUDE,
-    MEASURED_FREQUENCY,
-    paper_plate,
-    paper_points,
-)
+
+MODAL_FREQUENCY: si.Hertz = 35.6e3  # section 3.1.3, Fig 13
+HARMONIC_FREQUENCY: si.Hertz = 34.77e3  # section 3.1.3, Fig 14
+HARMONIC_AMPLITUDE: si.Metre = 3.2e-6
+MEASURED_FREQUENCY: si.Hertz = measured_of_preset("biet2008-plate", "resonance_frequency")
+MEASURED_AMPLITUDE: si.Metre = measured_of_preset("biet2008-plate", "vibration_amplitude")
+DRIVE_VOLTAGE: si.Volt = 15.0
+
+
+@functools.cache
+def paper_plate() -> RectangularPlate:
+    """The plate of the preset biet2008-plate."""
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    return plate
+
+
+@functools.cache
+def paper_points() -> tuple[WorkingPoint, WorkingPoint]:
+    """Mode (8,0) of the paper's plate with d31 and with the printed e31."""
+    plate = paper_plate()
+    return working_point(plate), working_point(with_other_data_set(plate))
+
 
 NEIGHBOURS = ((6, 0), (7, 0), (9, 0))
 
@@ -167,7 +186,7 @@ def _explained(
         raise SqueezefilmError(
             f"{free} between {between[0]:.3g} and {between[1]:.3g} ({unit}) does not bring "
             f"'{name}' to {MEASURED_FREQUENCY:.0f} Hz; widen the range in "
-            "validation/prototype/explanations.py"
+            "validation/explanations.py"
         )
     root = float(np.exp(brentq(above, *logarithms, xtol=2e-4, rtol=1e-4)))
     solved = make(plate, root)

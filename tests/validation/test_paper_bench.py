@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import pytest
-
-from squeezefilm.measure.calibration.priors import calibration_parameters
-from squeezefilm.measure.calibration.solved_answers import Asked
-from squeezefilm.validation.paper_plate import MEASURED_FREQUENCY
-from squeezefilm.validation.prototype.paper_bench import (
+from tests.validation.paper_bench import (
     GLUE_PRIORS,
     glued_paper_display,
     paper_calibration,
     paper_observations,
 )
+
+from squeezefilm.measure.calibration.priors import calibration_parameters
+from squeezefilm.measure.calibration.solved_answers import Asked
+from squeezefilm.validation.explanations import MEASURED_FREQUENCY
 
 
 def test_what_the_paper_measured() -> None:

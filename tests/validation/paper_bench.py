@@ -16,7 +16,7 @@ from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.priors import calibration_parameters
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.validation.paper_plate import (
+from squeezefilm.validation.explanations import (
     DRIVE_VOLTAGE,
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,
