@@ -125,6 +125,7 @@ def test_amplitude_friction_and_force_stay_where_physics_lets_them(seed: int) ->
     assert device.plant.counts.failed == device.plant.counts.beyond == 0
 
 
+@pytest.mark.slow
 def test_the_same_bytes_with_another_seed_give_other_noise() -> None:
     a, b = twin(), twin(TwinSettings(truth_period=100e-6, seed=10))
     for device in (a, b):

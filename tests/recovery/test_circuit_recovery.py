@@ -23,6 +23,7 @@ def test_a_sweep_with_little_noise_gives_back_what_it_was_made_of() -> None:
         assert estimate.value == pytest.approx(true, rel=0.01), name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(KINDS))
 def test_intervals_hold_the_truth(name: str) -> None:
     runs = 8 if name == "double modes" else 40

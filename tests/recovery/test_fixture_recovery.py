@@ -11,6 +11,7 @@ import pytest
 from .fixture_sweeps import ASKED, MAKERS, coverage_of
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MAKERS)
 def test_a_few_sweeps_of_each_kind_hold_the_truth(name: str) -> None:
     found = coverage_of(MAKERS[name], 12, seed=3)

@@ -17,6 +17,7 @@ def found() -> dict[str, ClaimResult]:
     return {item.claim.name: item for item in reproduce().results}
 
 
+@pytest.mark.slow
 def test_every_verdict_is_the_one_on_record(found: dict[str, ClaimResult]) -> None:
     assert {key: item.verdict for key, item in found.items()} == {
         key: item.claim.verdict for key, item in found.items()

@@ -46,6 +46,7 @@ def test_a_phase_that_is_off_by_180_degrees_is_noticed() -> None:
         fit_impedance(piezo_28khz(turned=False))
 
 
+@pytest.mark.slow
 def test_the_transducer_of_28_khz() -> None:
     fit = fit_impedance(piezo_28khz(turned=True))
     branch = fit.strongest
@@ -99,6 +100,7 @@ def test_the_committed_prediction_is_what_the_fit_to_the_first_mode_gives() -> N
         assert now.interval == pytest.approx((low, high), abs=(high - low) / 5), name
 
 
+@pytest.mark.slow
 def test_the_disc_as_a_circuit() -> None:
     fit = fit_impedance(disc_sweep())
     branch = fit.strongest

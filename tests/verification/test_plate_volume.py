@@ -99,6 +99,7 @@ def test_surface_moves_as_the_solver_says(read_back: meshio.Mesh, paper: Solved)
         )
 
 
+@pytest.mark.slow
 def test_electrodes_have_the_drives_potential(read_back: meshio.Mesh) -> None:
     potential = read_back.point_data["potential_real_V"]
     imaginary = read_back.point_data["potential_imaginary_V"]

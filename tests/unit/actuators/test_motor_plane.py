@@ -83,6 +83,7 @@ def test_friction_holds_a_slider_in_every_direction() -> None:
     assert not simulate_plane(held, BOTH, periods=50).period_velocity.any()
 
 
+@pytest.mark.slow
 def test_the_mean_holds_in_the_plane_where_the_slider_is_too_heavy_for_the_beat() -> None:
     """The modes are 1 kHz apart; 50 g on these feet follow that, 20 kg do not."""
     mean = averaged(planar(), BOTH)

@@ -39,6 +39,7 @@ def test_generations_learn_what_is_feasible_and_lose_nothing_to_chance() -> None
     assert hypervolume(rows(found), WORST) > 0.99 * hypervolume(rows(drawn), WORST)
 
 
+@pytest.mark.slow
 def test_the_first_generation_aims_at_a_frequency_that_is_bounded_on_both_sides() -> None:
     """By the beam, which the screening of strips of full length follows within some percent."""
     own = requirements()

@@ -138,7 +138,7 @@ def test_hosts_that_search_in_one_folder_end_with_what_all_have_solved(tmp_path:
 
 @pytest.mark.parametrize(
     "after",
-    [3, 25, pytest.param(40, marks=pytest.mark.slow), pytest.param(78, marks=pytest.mark.slow)],
+    [3, *(pytest.param(after, marks=pytest.mark.slow) for after in (25, 40, 78))],
 )
 @pytest.mark.usefixtures("by_formula")
 def test_a_search_that_was_stopped_goes_on(

@@ -66,6 +66,7 @@ def test_the_interval_is_about_the_solved_number(wanted: Requirements, solved: E
     assert abs(effects["quality_factor"]["resonance_frequency"]) < 1e-6 * own
 
 
+@pytest.mark.slow
 def test_the_yield_is_the_share_that_keeps_the_limits(
     wanted: Requirements, solved: Evaluated
 ) -> None:

@@ -48,6 +48,7 @@ def found() -> DiscConstants:
     return disc_constants(disc_sweep(), DISC)
 
 
+@pytest.mark.slow
 def test_what_the_mode_tells_is_found_and_the_rest_stays_with_the_prior(
     found: DiscConstants,
 ) -> None:

@@ -56,7 +56,7 @@ def test_a_circuit_is_found_and_its_numbers_belong_together() -> None:
     assert fit.admittance(FREQUENCY) == pytest.approx(PLAIN.admittance, rel=0.02)
 
 
-@pytest.mark.parametrize("noise", [1e-4, 0.02])
+@pytest.mark.parametrize("noise", [1e-4, pytest.param(0.02, marks=pytest.mark.slow)])
 def test_two_modes_are_told_from_one(noise: float) -> None:
     truth = np.concatenate([TRUTH, [np.log(29.3e3), np.log(90.0), np.log(2e-10)]])
     fit = fit_impedance(sweep_of(Layout(2), truth, noise))
@@ -67,6 +67,7 @@ def test_two_modes_are_told_from_one(noise: float) -> None:
     assert not alone.adequacy.adequate
 
 
+@pytest.mark.slow
 def test_five_modes_of_a_wide_band_are_found() -> None:
     """Two of them improve the fit little by themselves: it must look further than one step."""
     truth = TRUTH[:2]
@@ -130,7 +131,7 @@ def softened(g: float, h: float, noise: float) -> ImpedanceSweep:
     return ImpedanceSweep(FREQUENCY, noisy(curve, noise))
 
 
-@pytest.mark.parametrize("noise", [1e-4, 5e-3])
+@pytest.mark.parametrize("noise", [pytest.param(1e-4, marks=pytest.mark.slow), 5e-3])
 def test_a_branch_that_softens_is_told(noise: float) -> None:
     fit = fit_impedance(softened(0.008, 0.3, noise))
     assert fit.softening is not None
@@ -227,6 +228,7 @@ def test_the_parallel_resonance_lies_between_two_branches() -> None:
         assert abs(y[0]) < 1e-6 * abs(y[1])
 
 
+@pytest.mark.slow
 def test_an_instrument_without_ranges_is_fitted_by_its_own_noise() -> None:
     """The same noise everywhere, 1 % of the top: at the parallel resonance 100 % of the curve."""
     held = 0
@@ -243,6 +245,7 @@ def test_an_instrument_without_ranges_is_fitted_by_its_own_noise() -> None:
     assert "noise falls no further" in fit.adequacy.sentence
 
 
+@pytest.mark.slow
 def test_a_neighbour_under_such_noise_is_found_or_missed_aloud() -> None:
     """One that adds 6 % of the top, in the noise of 1 %."""
     curve = circuit_curve(Layout(1), TRUTH, FREQUENCY)[0]

@@ -42,6 +42,7 @@ def test_a_made_person_is_found_again(law: FrictionLaw) -> None:
         assert found.relative_error < 1e-2
 
 
+@pytest.mark.slow
 def test_the_error_of_a_person_is_that_of_repeated_curves(law: FrictionLaw) -> None:
     found = [fitted_person(curve(law, 9e-6, 0.02, seed), law) for seed in range(12)]
     spread = np.std(np.log([one.decay_length for one in found]), ddof=1)

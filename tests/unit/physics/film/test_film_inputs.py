@@ -203,6 +203,7 @@ def test_a_gas_of_tar_is_refused_before_a_solve_that_would_not_end():
         mean_gap_for_load(VibratedFilm(1e-6, 30e3, 0.03, viscosity=4e8), 1e4)
 
 
+@pytest.mark.slow
 def test_the_largest_squeeze_number_is_nearly_an_infinite_one():
     at = solve_films(MOST_SQUEEZE_NUMBER, 0.3, tolerance=1e-3).mean_load
     infinite = np.sqrt((1.0 + 1.5 * 0.3**2) / (1.0 - 0.3**2))  # Salbu's

@@ -44,6 +44,7 @@ def just_coarse(plate: RectangularPlate) -> Pace:
     return frozen(1.02 * (size.coarse + size.coarse_response))
 
 
+@pytest.mark.slow
 def test_the_coarse_answer_comes_with_its_error(display: Display) -> None:
     plate = plate_of(display)
     fine, rough = solid_mode(plate), solid_mode(plate, pace=just_coarse(plate))

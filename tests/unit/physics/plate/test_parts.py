@@ -49,6 +49,7 @@ def test_a_disc_weighs_what_its_solved_section_does(glued: bool) -> None:
         assert assembly_mass(one) == pytest.approx(ring_body(one).section.mass, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_stator_weighs_what_its_fitted_section_does() -> None:
     stator = sf.load_display("biet2008-stator").actuator
     assert isinstance(stator, AnnularStator)

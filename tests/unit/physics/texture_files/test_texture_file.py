@@ -154,6 +154,7 @@ def test_what_is_nested_without_end_is_refused() -> None:
         texture_text(RelativeFriction(pattern, 0.1, 0.2))
 
 
+@pytest.mark.slow
 def test_an_image_too_large_for_a_file_is_refused() -> None:
     import numpy as np
 

@@ -125,6 +125,7 @@ def test_intervals_hold_the_share_and_mirror(trials: int, share: float, level: f
     assert inner.high <= outer.high + 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("p", [0.2, 0.64, 0.9])
 def test_coverage_is_computed_exactly(p: float) -> None:
     weights = stats.binom.pmf(np.arange(61), 60, p)
@@ -152,6 +153,7 @@ def test_a_preference_is_no_skill() -> None:
     assert permutation_test(always_a, 2000) > 0.5
 
 
+@pytest.mark.slow
 def test_normal_limit_agrees_with_shuffles() -> None:
     random = np.random.default_rng(2)
     counts = random.multinomial(4, [0.26, 0.24, 0.24, 0.26], size=200).reshape(200, 2, 2)

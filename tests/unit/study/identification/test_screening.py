@@ -111,8 +111,15 @@ def test_three_bad_people_over_twenty_seeds(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "kind",
     [
-        *(*BAD, "second", "reversed half way", "first after half", "alternating", "in pairs"),
-        *("fast", "leaves"),
+        *BAD,
+        "fast",
+        *(
+            pytest.param(kind, marks=pytest.mark.slow)
+            for kind in (
+                *("second", "reversed half way", "first after half", "alternating", "in pairs"),
+                "leaves",
+            )
+        ),
     ],
 )
 def test_a_kind_of_bad_person_is_named_whatever_the_seed(tmp_path: Path, kind: str) -> None:
@@ -120,6 +127,7 @@ def test_a_kind_of_bad_person_is_named_whatever_the_seed(tmp_path: Path, kind: s
         assert named(recorded(tmp_path, ("good",) * 4 + (kind,), 200 + seed)) == [f"{kind}-4"]
 
 
+@pytest.mark.slow
 def test_people_of_many_sensitivities_are_kept(tmp_path: Path) -> None:
     # 320 people whose Weber fractions spread by 0.3 in their logarithm: a rule of 0.1 % and less.
     out = [named(recorded(tmp_path, GOOD, 300 + s, spread=0.3)) for s in range(40)]
@@ -137,6 +145,7 @@ def test_names_exchanged_in_the_file_are_said(tmp_path: Path) -> None:
     assert "exchanged" in said
 
 
+@pytest.mark.slow
 def test_a_rule_that_marks_keeps_everybody_and_shows_both(tmp_path: Path) -> None:
     answers = recorded(tmp_path, GOOD[:4] + BAD[:1], 5)
     marking = dataclasses.replace(DESIGN, exclusion=ExclusionRule())

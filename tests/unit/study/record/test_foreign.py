@@ -58,9 +58,9 @@ def short(design: StudyDesign) -> StudyDesign:
     "name",
     [
         pytest.param("period-jnd", marks=pytest.mark.slow),
-        "period-same-different",
+        pytest.param("period-same-different", marks=pytest.mark.slow),
         "coarseness-magnitude",
-        "biet2008-gratings",
+        pytest.param("biet2008-gratings", marks=pytest.mark.slow),
     ],
 )
 def test_what_a_study_exports_is_read_as_what_it_recorded(name: str, tmp_path: Path) -> None:
@@ -195,6 +195,7 @@ def test_columns_are_told_as_pairs() -> None:
     assert foreign.COUNT == "count"
 
 
+@pytest.mark.slow
 def test_a_recorded_series_of_same_different_has_weber_fractions(tmp_path: Path) -> None:
     """From its file and from its export, in which series' comparisons are known by intensity."""
     plain = load_design("period-same-different")

@@ -89,6 +89,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Any], 
     return folder, handed, told
 
 
+@pytest.mark.slow
 def test_every_answer_is_a_row(written: tuple[Path, list[Any], list[str]]) -> None:
     with (written[0] / "trials.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(file))

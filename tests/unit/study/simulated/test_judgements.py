@@ -59,6 +59,7 @@ def tables(design: StudyDesign, d_prime: list[float] | float = 1e6) -> ChainTabl
     )
 
 
+@pytest.mark.slow
 def test_the_coarser_is_found_as_often_as_two_percepts_have_it() -> None:
     main = simulate_judgements(PERIODS, EXACT, 200, 1, tables(PERIODS)).main(0)
     for one in PERIODS.stimuli[1:]:

@@ -100,6 +100,7 @@ def test_8_against_10_mm_differ_as_three_independent_percepts_do(
     assert power(NAMES[4], NAMES[3]).difference == pytest.approx(found.difference)
 
 
+@pytest.mark.slow
 def test_the_seed_is_of_people_and_studies(displays: list[tuple[str, ...]]) -> None:
     one, same, other = power(seed=3), power(seed=3), power(seed=4)
     assert one.curve.power.tolist() == same.curve.power.tolist()

@@ -105,6 +105,7 @@ def test_what_cannot_be_asked_is_refused() -> None:
         planned_precision(ALIKE, EXACT, 0.1, display="nowhere")
 
 
+@pytest.mark.slow
 def test_pairs_are_told_apart_in_every_task() -> None:
     for design, first, second in (
         (ALIKE, "4 mm", "6 mm"), (NUMBERS, "2 mm", "8 mm"), (DEPTHS, "30 %", "42 %"),
@@ -125,6 +126,7 @@ def test_pairs_that_no_test_tells_apart_are_refused() -> None:
         require_pair(load_design("period-jnd"), "4 mm", "6 mm")
 
 
+@pytest.mark.slow
 def test_scores_are_nought_of_people_who_cannot_tell() -> None:
     from squeezefilm.study.simulated.judgements import simulate_judgements
 

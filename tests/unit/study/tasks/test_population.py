@@ -54,6 +54,7 @@ def test_normal_likelihoods_give_the_random_effects_posterior() -> None:
         assert found.participants == 7
 
 
+@pytest.mark.slow
 def test_people_who_are_alike_have_no_spread_and_a_group_of_them_is_those_people() -> None:
     alike = Population([person(0.5, 0.1)] * 12)
     found = alike.estimate()

@@ -55,6 +55,7 @@ def test_the_surface_says_its_exaggeration_and_draws_the_nodal_lines(
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_line_scan_has_the_modes_nodes(result: PlateAnalysis) -> None:
     axes = line_scan(result).axes[0]
     nodes = axes.get_lines()[-1].get_xdata()

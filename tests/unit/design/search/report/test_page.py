@@ -59,6 +59,7 @@ def written(found: DesignSearch, tmp_path_factory: pytest.TempPathFactory) -> Pa
     return folder
 
 
+@pytest.mark.slow
 def test_every_link_leads_somewhere(found: DesignSearch, written: Path) -> None:
     tags = Tags()
     tags.feed((written / "index.html").read_text(encoding="utf-8"))

@@ -203,6 +203,7 @@ def test_a_looser_climb_is_shorter_and_no_less_honest(disc: Climb) -> None:
     assert loose.best.amplitudes[1:4] == pytest.approx(disc.best.amplitudes[1:4], abs=1.5e-3)
 
 
+@pytest.mark.slow
 def test_harmonics_left_out_are_corrected_for() -> None:
     # At 0.7 a few harmonics alone err by far more than the tolerance allows.
     climb = climb_to(ladder(PlanarGap(0.7), "disc"), 2e-3)

@@ -77,6 +77,7 @@ def test_a_pickled_response_has_its_state_again(mode: SolidMode) -> None:
     assert again.maximum == pytest.approx(mode.response.maximum, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_the_amplitude_s_error_holds_the_finer_mesh(mode: SolidMode) -> None:
     f = mode.response.frequencies
     finer = harmonic_response(PLATE, f, resolution=FINE).amplitude_at(*mode.lobe).max()
