@@ -26,6 +26,7 @@ from squeezefilm.design.film.report import film_map
 from squeezefilm.design.friction.command import FrictionAnalysis
 from squeezefilm.design.friction.report import figures as friction
 from squeezefilm.design.plate.command import PlateAnalysis
+from squeezefilm.design.plate.report import page as plate_page
 from squeezefilm.design.plate.report import plate, ring, sensitivity_figures
 from squeezefilm.design.plate.ring import RingAnalysis
 from squeezefilm.design.plate.sensitivity import SensitivityTable
@@ -95,8 +96,8 @@ SUBJECTS: Mapping[type, _Subject] = {
     FrictionAnalysis: _Subject(_by_key(friction.FIGURES), friction.write_friction),
     FilmAnswer: _Subject({"pressure": film_map.film_pressure}),
     FilmMap: _Subject({"map": film_map.film_map}, film_map.write_film_map),
-    PlateAnalysis: _Subject(_by_key(plate.FIGURES), plate.write_plate),
-    RingAnalysis: _Subject(_by_key(ring.FIGURES), plate.write_plate),
+    PlateAnalysis: _Subject(_by_key(plate.FIGURES), plate_page.write_plate),
+    RingAnalysis: _Subject(_by_key(ring.FIGURES), plate_page.write_plate),
     SensitivityTable: _Subject({"tornado": sensitivity_figures.tornado}),
     Sweep: _Subject({"sweep": sweep_figure}, write_sweep),
     DesignSearch: _Subject(_by_key(FIGURES_OF_DESIGN), write_design),
@@ -179,7 +180,7 @@ def write_mode(result: PlateAnalysis | RingAnalysis, file: str | Path) -> Path:
             f"'{result.display.name}' is no rectangular plate: it was solved by Fourier harmonics, "
             "and there is no volume to write"
         )
-    return plate.write_mode(result, Path(file))
+    return plate_page.write_mode(result, Path(file))
 
 
 def _subject(result: Any, wanted: str) -> _Subject:

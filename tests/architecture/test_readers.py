@@ -49,7 +49,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
         "read_bytes": "a figure of the checkout's documentation",
         "Image.open": "a figure of the checkout's documentation",
     },
-    "design/plate/report/vtu.py": {"read_bytes": "a draft in a folder of its own"},
+    "design/plate/report/page.py": {"read_bytes": "a draft in a folder of its own"},
     "study/report/session.py": {"path.open": WRITES},
     "instruments/session/record/trace.py": {"mmap.mmap": "over the descriptor that `opened` gave"},
     "instruments/session/record/trace_writer.py": {"os.open": WRITES},

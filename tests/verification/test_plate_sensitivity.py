@@ -7,7 +7,7 @@ import pytest
 
 from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.materials import ElasticMaterial
-from squeezefilm.design.plate.coarse_shift import CoarseShifts
+from squeezefilm.design.analysis.coarse_shift import CoarseShifts
 from squeezefilm.design.plate.sensitivity import (
     SensitivityTable,
     plate_sensitivity,

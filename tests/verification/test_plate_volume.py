@@ -10,7 +10,7 @@ from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import ElasticMaterial
-from squeezefilm.design.plate.report.vtu import LARGEST_DISPLACEMENT, write_vtu
+from squeezefilm.design.plate.report.page import LARGEST_DISPLACEMENT, write_vtu
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
 from squeezefilm.physics.plate.solid.modes import PlateModes

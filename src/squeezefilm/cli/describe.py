@@ -280,7 +280,7 @@ class FilmOptions:
 def film(asked: FilmOptions) -> None:
     """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
     from squeezefilm.design.film.command import FilmRequest, solve_film, sweep_film
-    from squeezefilm.design.plate.report.terminal import show_film
+    from squeezefilm.design.film.report.film_map import show_film
 
     of_film = given(asked, leave="sweep out as_json")
     squeeze_number, excursion = of_film.pop("squeeze_number"), of_film.pop("excursion")
@@ -350,7 +350,7 @@ def plate(asked: PlateOptions) -> None:
         written = []
         result = solve_plate(display, mode=mode, band=band, progress=step, budget=budget)
         if out is not None or vtu is not None:
-            from squeezefilm.design.plate.report.plate import write_mode, write_plate
+            from squeezefilm.design.plate.report.page import write_mode, write_plate
 
             step("figures")
             written += [] if out is None else [write_plate(result, out)]

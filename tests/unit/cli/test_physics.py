@@ -83,7 +83,7 @@ def test_a_quantity_of_another_kind_is_refused_with_its_option(
 
 def test_a_film_is_an_isothermal_strip_unless_asked(stands_in: StandsIn) -> None:
     asked = stands_in("design.film.command:solve_film", ANSWER)
-    shown = stands_in("design.plate.report.terminal:show_film")
+    shown = stands_in("design.film.report.film_map:show_film")
     done = run("film", "--squeeze-number", "10", "--excursion", "0.5")
     assert asked.given == (10.0, 0.5)
     assert asked.named == {
@@ -144,8 +144,8 @@ def plates(stands_in: StandsIn, monkeypatch: pytest.MonkeyPatch) -> SimpleNamesp
     return SimpleNamespace(
         solve=stands_in("design.plate.command:solve_plate", Plate(summary=lambda: {"plate": 1})),
         show_plate=stands_in("design.plate.report.terminal:show_plate"),
-        page=stands_in("design.plate.report.plate:write_plate", "plate.html"),
-        volume=stands_in("design.plate.report.plate:write_mode", "plate.vtu"),
+        page=stands_in("design.plate.report.page:write_plate", "plate.html"),
+        volume=stands_in("design.plate.report.page:write_mode", "plate.vtu"),
     )
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Uniform
 from squeezefilm.core.errors import InputError, SqueezefilmError
-from squeezefilm.design.plate.coarse_shift import CoarseShifts
+from squeezefilm.design.analysis.coarse_shift import CoarseShifts
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import TOLERANCE
 from squeezefilm.physics.display import Display

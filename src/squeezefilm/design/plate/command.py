@@ -19,10 +19,8 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.hard_limits import NODAL_LINES, require_within
 from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
-from squeezefilm.design.analysis.sound import plate_sound
-from squeezefilm.design.plate.hurry import Hurry
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring
-from squeezefilm.design.plate.solved import ModeRow, Remarks, SolvedBody
+from squeezefilm.design.plate.solved import Hurry, ModeRow, Remarks, SolvedBody, plate_sound
 from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.physics.plate.circuit import EquivalentCircuit

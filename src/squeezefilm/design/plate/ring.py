@@ -13,8 +13,7 @@ from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.hard_limits import RING_MODES, require_within
 from squeezefilm.core.progress import NO_HURRY, Deadline, Pace, SayProgress
 from squeezefilm.core.results import to_json
-from squeezefilm.design.plate.hurry import ALONE
-from squeezefilm.design.plate.solved import ModeRow, Remarks, SolvedBody, sweep_around
+from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks, SolvedBody, sweep_around
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.elements.box_model import require_half_wave

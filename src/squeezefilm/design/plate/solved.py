@@ -3,20 +3,34 @@
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.progress import Deadline, Pace
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.circuit import DrivenResponse
 from squeezefilm.physics.plate.electronics import ElectricalLoad, electrical_load
-from squeezefilm.physics.plate.sound import SoundField
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.solid.guess import estimated_frequency
+from squeezefilm.physics.plate.solid.modes import Label, PlateModes
+from squeezefilm.physics.plate.solid.response import HarmonicResponse
+from squeezefilm.physics.plate.solid.size import SolveSize, band_seconds, solve_size
+from squeezefilm.physics.plate.sound import DISTANCES, SoundField, rectangular_surface, sound_field
+from squeezefilm.physics.plausibility.expected import expectation
 
 if TYPE_CHECKING:
     from squeezefilm.physics.plate.heat.warming import Warming
+
+ALONE = "the budget left no time for the other modes of the band"
+"""What is said where only the working mode was solved."""
+# Points to a wave in air, and at the least along a side: halved, levels change by 0.1 dB.
+_POINTS_OF_A_WAVE, _LEAST_POINTS = 6, 31
+_SOUND_SPEED: si.MetrePerSecond = 343.2
 
 
 @dataclass(frozen=True)
@@ -171,3 +185,78 @@ def sweep_around(
     span = max(4 / quality_factor, 0.01)
     near = np.sinh(np.linspace(-3, 3, points)) / np.sinh(3)
     return np.asarray(frequency * (1 + span * near))
+
+
+def half_power(frequency: si.FloatArray, amplitude: si.FloatArray) -> tuple[float, float] | None:
+    """The two frequencies beside the peak where the amplitude falls to 1/√2 of it, in the unit of
+    `frequency`; None where the curve does not fall so far."""
+    top = int(np.argmax(amplitude))
+    level = float(amplitude[top]) / math.sqrt(2)
+    below = np.flatnonzero(amplitude < level)
+    left, right = below[below < top], below[below > top]
+    if not left.size or not right.size:
+        return None
+    edges = []
+    for low, high in ((left[-1], left[-1] + 1), (right[0], right[0] - 1)):
+        share = (level - amplitude[low]) / (amplitude[high] - amplitude[low])
+        edges.append(float(frequency[low] + share * (frequency[high] - frequency[low])))
+    return edges[0], edges[1]
+
+
+def plate_sound(
+    response: HarmonicResponse,
+    at: int,
+    frequency: si.Hertz,
+    voltage: si.Volt,
+    distances: tuple[si.Metre, ...] = DISTANCES,
+) -> SoundField:
+    """The sound of a plate's face alone, in a baffle, at a voltage (V, zero-to-peak).
+
+    The face moves as at the solved frequency of number `at`, with the `frequency` (Hz) of the
+    drive. No finger is on it. Range, model and errors are those of
+    `physics.plate.sound.sound_field`.
+    """
+    plate, wave = response.plate, _SOUND_SPEED / frequency
+    x, y = (
+        np.linspace(0, side, max(_LEAST_POINTS, math.ceil(_POINTS_OF_A_WAVE * side / wave) + 1))
+        for side in (plate.length, plate.width)
+    )
+    w = voltage * response.displacement(x, y)[at]
+    surface = rectangular_surface(x, y, 2j * np.pi * frequency * w, frequency)
+    return sound_field(surface, distances)
+
+
+@dataclass(frozen=True)
+class Hurry:
+    """The deadlines of the parts, None where there is no budget: the working mode's leaves time for
+    its response, and the band takes what these two leave."""
+
+    size: SolveSize | None = None
+    whole: Deadline | None = None
+
+    @classmethod
+    def of(cls, plate: RectangularPlate, label: Label, pace: Pace) -> Hurry:
+        """What a pace leaves of each part of a plate's analysis.
+
+        Raises `OutOfTimeError`, with the answer of a closed estimate, where the budget does not
+        allow the coarse meshes.
+        """
+        whole = pace.deadline()
+        if whole is None or pace.budget is None:
+            return cls()
+        size = solve_size(plate, label, estimated_frequency(plate, label))
+        seen = expectation(plate)
+        instead = "" if seen is None else f". Without a solve: {seen.sentence}."
+        size.require_within(whole, pace.budget, instead)
+        return cls(size, whole)
+
+    def allows_band(self, plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> bool:
+        """Whether all modes of a band (Hz, Hz) can be looked for, on the coarse meshes at least."""
+        return self.whole is None or self.whole.allows(band_seconds(plate, band[1]))
+
+    def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:
+        """What the budget left out of the working mode and the band's modes, in sentences."""
+        said = [alone.coarseness] if alone.coarseness else []
+        if self.whole is not None and modes is alone:
+            said.append(ALONE)
+        return tuple(said)

@@ -13,9 +13,8 @@ import pytest
 from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.progress import Pace
 from squeezefilm.design.plate import ring
-from squeezefilm.design.plate.hurry import ALONE
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring, mode_row, modes_in_band
-from squeezefilm.design.plate.solved import ModeRow
+from squeezefilm.design.plate.solved import ALONE, ModeRow
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.ring.body import ring_body

@@ -10,6 +10,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import M, shown
+from squeezefilm.design.plate.report.ring import FILL, draw_sector
 from squeezefilm.physics.plate.laminate import section_with
 from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate, Face, RectangularPlate
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 _FACES: dict[Face, str] = {"bottom": "lower", "top": "upper"}
 _SIGN = {1: "+", -1: "−"}
-FILL = {1: style.PLUS, -1: style.MINUS}
 
 
 @style.drawn
@@ -246,15 +246,6 @@ def _half_waves(axes: Axes, count: int, radius: float, width: float) -> None:
             x, y = place * math.cos(turn), place * math.sin(turn)
             size = float(np.clip(220 / count, 7, 14))
             axes.text(x, y, _SIGN[sign], ha="center", va="center", fontsize=size)
-
-
-def draw_sector(
-    axes: Axes, outer: float, width: float, ends: tuple[float, float], sign: int
-) -> None:
-    """A sector of one sign: its outer radius and width, in the axes' unit, its ends (degrees)."""
-    from matplotlib.patches import Wedge
-
-    axes.add_patch(Wedge((0, 0), outer, *ends, width=width, facecolor=FILL[sign], **style.OUTLINED))
 
 
 def _explain_ring(axes: Axes) -> None:

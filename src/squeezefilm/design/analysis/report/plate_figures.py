@@ -11,6 +11,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, M, V, shown
 from squeezefilm.design.analysis.report.layout_figures import drive_strip
+from squeezefilm.design.plate.solved import half_power
 from squeezefilm.physics.plate.layout import AnnularStator, RectangularPlate
 
 if TYPE_CHECKING:
@@ -190,19 +191,3 @@ def _mark_drive(axes: Axes, p: Prediction, voltage: float, peak: float) -> None:
         name += f", {shown(p.vibration_amplitude, M, 3)} with the finger on"
     look = {**style.ESTIMATE, "color": style.ORANGE, "ms": 8, "mew": 1.2}
     axes.plot(1e-3 * p.frequency, height, **look, zorder=4, label=name)
-
-
-def half_power(frequency: FloatArray, amplitude: FloatArray) -> tuple[float, float] | None:
-    """The two frequencies beside the peak where the amplitude falls to 1/√2 of it, in the unit of
-    `frequency`; None where the curve does not fall so far."""
-    top = int(np.argmax(amplitude))
-    level = float(amplitude[top]) / math.sqrt(2)
-    below = np.flatnonzero(amplitude < level)
-    left, right = below[below < top], below[below > top]
-    if not left.size or not right.size:
-        return None
-    edges = []
-    for low, high in ((left[-1], left[-1] + 1), (right[0], right[0] - 1)):
-        share = (level - amplitude[low]) / (amplitude[high] - amplitude[low])
-        edges.append(float(frequency[low] + share * (frequency[high] - frequency[low])))
-    return edges[0], edges[1]

@@ -24,7 +24,8 @@ from squeezefilm.core.kit.numbers import (
     span,
 )
 from squeezefilm.design.analysis.report.decisions import felt_rows
-from squeezefilm.design.analysis.report.point_rows import heat_rows, place_rows, reduction_row
+from squeezefilm.design.analysis.report.point_rows import place_rows, reduction_row
+from squeezefilm.design.plate.report.heat_and_sound import heat_rows
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:

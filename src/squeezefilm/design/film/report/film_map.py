@@ -1,4 +1,4 @@
-"""The map of a film over squeeze number and excursion, as a figure and as numbers."""
+"""What is shown of films: the numbers of one, and the map over squeeze number and excursion."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, write_folder
+from squeezefilm.core.kit.terminal import show_rows
 from squeezefilm.physics.film.planar.film import FilmPlanar
 
 if TYPE_CHECKING:
@@ -84,3 +85,17 @@ def write_film_map(found: FilmMap, folder: Path) -> Path:
     data, picture = json_text(found.summary()), style.png(film_map(found))
     write_folder(folder, {"film-map.json": data, "film-map.png": picture})
     return folder / "film-map.png"
+
+
+def show_film(answer: FilmAnswer) -> None:
+    """Print one solved film."""
+    error = f"± {answer.over_pressure_error:.1g} (estimated)"
+    harmonic = f"± {answer.force_error:.1g}, of p0·A·ε, first harmonic"
+    rows = [
+        ("Mean load W", f"{answer.mean_load:.8g}", "over ambient pressure × area"),
+        ("Over-pressure W − 1", f"{answer.over_pressure:.6g}", error),
+        ("Stiffness", f"{answer.stiffness_relative:.6g}", harmonic),
+        ("Damping", f"{answer.damping_relative:.6g}", harmonic),
+    ]
+    numbers = f"σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.4g}"
+    show_rows(f"{answer.request.shape}, {numbers}", rows).print(answer.status)

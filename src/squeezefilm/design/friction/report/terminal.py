@@ -15,7 +15,6 @@ from squeezefilm.design.analysis.report.model_rows import (
     weight_rows,
 )
 from squeezefilm.design.analysis.report.point_rows import (
-    heat_rows,
     place_rows,
     reduction_row,
     speed_row,
@@ -23,7 +22,8 @@ from squeezefilm.design.analysis.report.point_rows import (
 
 if TYPE_CHECKING:
     from squeezefilm.design.friction.command import FrictionAnalysis
-    from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
+    from squeezefilm.design.plate.report.heat_and_sound import heat_rows
+from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
 _RANKED = 6
 

@@ -11,13 +11,15 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, M, printable, shown
 from squeezefilm.core.kit.page_style import FigureOf
-from squeezefilm.design.analysis.report.layout_figures import FILL, draw_sector
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from squeezefilm.design.plate.ring import RingAnalysis
+
+FILL = {1: style.PLUS, -1: style.MINUS}
+"""The colours of ceramics that follow the drive with either sign."""
 
 
 @style.drawn
@@ -93,6 +95,15 @@ def _sectors(axes: Axes, result: RingAnalysis) -> None:
         Patch(**unused, label="not on this channel"),
     ]
     style.legend_below(axes, handles=handles[:1] if whole else handles)
+
+
+def draw_sector(
+    axes: Axes, outer: float, width: float, ends: tuple[float, float], sign: int
+) -> None:
+    """A sector of one sign: its outer radius and width, in the axes' unit, its ends (degrees)."""
+    from matplotlib.patches import Wedge
+
+    axes.add_patch(Wedge((0, 0), outer, *ends, width=width, facecolor=FILL[sign], **style.OUTLINED))
 
 
 @style.drawn

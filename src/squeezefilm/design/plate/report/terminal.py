@@ -1,5 +1,4 @@
-"""What the terminal shows of a solved film, and of a solved plate, disc or stator; the page shows
-the same rows."""
+"""The rows of a solved plate, disc or stator, for its page too, and what the terminal shows."""
 
 from __future__ import annotations
 
@@ -9,15 +8,14 @@ from typing import TYPE_CHECKING
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import HZ, PER_VOLT, A, M, Row, V, changed, printable, shown
 from squeezefilm.core.kit.terminal import heading, show_rows, table
-from squeezefilm.design.analysis.report.point_rows import heat_rows, sound_rows
 from squeezefilm.design.plate.command import PlateAnalysis
+from squeezefilm.design.plate.report.heat_and_sound import heat_rows, sound_rows
 from squeezefilm.design.plate.ring import RingAnalysis
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from squeezefilm.design.film.command import FilmAnswer
     from squeezefilm.design.plate.solved import ModeRow, SolvedBody
     from squeezefilm.physics.plate.ring.stator import StatorFit
     from squeezefilm.physics.plate.sound import SoundField
@@ -159,20 +157,6 @@ def show_modes(
     heading(console, "Modes in the band, each alone at its antinode")
     head = ("mode", "frequency", "±", "Q", "per volt", "coupling")
     table(console, head, mode_rows(rows, amplitude_per_volt))
-
-
-def show_film(answer: FilmAnswer) -> None:
-    """Print one solved film."""
-    error = f"± {answer.over_pressure_error:.1g} (estimated)"
-    harmonic = f"± {answer.force_error:.1g}, of p0·A·ε, first harmonic"
-    rows = [
-        ("Mean load W", f"{answer.mean_load:.8g}", "over ambient pressure × area"),
-        ("Over-pressure W − 1", f"{answer.over_pressure:.6g}", error),
-        ("Stiffness", f"{answer.stiffness_relative:.6g}", harmonic),
-        ("Damping", f"{answer.damping_relative:.6g}", harmonic),
-    ]
-    numbers = f"σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.4g}"
-    show_rows(f"{answer.request.shape}, {numbers}", rows).print(answer.status)
 
 
 def show_plate(result: SolvedBody) -> None:

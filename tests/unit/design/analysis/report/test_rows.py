@@ -9,7 +9,6 @@ import numpy as np
 from tests.unit.made_results import WARM
 
 from squeezefilm.design.analysis.other_models import MeasuredBeside
-from squeezefilm.design.analysis.report.point_rows import heat_rows
 from squeezefilm.design.analysis.report.rows import (
     decision_rows,
     unsaid_warnings,
@@ -17,6 +16,7 @@ from squeezefilm.design.analysis.report.rows import (
     with_measured,
     working_point,
 )
+from squeezefilm.design.plate.report.heat_and_sound import heat_rows
 
 
 def point(**changes: Any) -> Any:

@@ -16,16 +16,15 @@ from tests.unit.made_results import made_result
 
 from squeezefilm.core.kit import style
 from squeezefilm.design.plate.command import PlateAnalysis
-from squeezefilm.design.plate.report import mode_surface as surface_module
 from squeezefilm.design.plate.report import page, plate
-from squeezefilm.design.plate.report.mode_surface import driven_shape, mode_surface
+from squeezefilm.design.plate.report.page import write_mode, write_plate
 from squeezefilm.design.plate.report.plate import (
     admittance,
+    driven_shape,
     frequency_response,
     line_scan,
+    mode_surface,
     plan_view,
-    write_mode,
-    write_plate,
 )
 
 LENGTH, WIDTH = 80e-3, 50e-3
@@ -240,7 +239,7 @@ def test_numbers_volume_and_pictures_are_written_each_under_its_name(
     ]
     monkeypatch.setattr(plate, "FIGURES", named)
     monkeypatch.setattr(style, "png", lambda figure: f"PNG {figure}".encode())
-    monkeypatch.setattr(plate, "write_mode", lambda _, file: written.append(file))
+    monkeypatch.setattr(page, "write_mode", lambda _, file: written.append(file))
     monkeypatch.setattr(page, "plate_page", text)
     always = {
         "mode-surface": ("Mode shape", "mode_surface"),
@@ -268,7 +267,7 @@ def test_the_volume_is_the_mode_by_itself_at_the_displays_voltage(
 ) -> None:
     asked: list[Any] = []
     monkeypatch.setattr(
-        plate, "write_vtu", lambda *given, **named: asked.append((given, named)) or given[0]
+        page, "write_vtu", lambda *given, **named: asked.append((given, named)) or given[0]
     )
     result = solved(solid=SimpleNamespace(modes="modes", index=3))
     assert write_mode(result, tmp_path / "a.vtu") == tmp_path / "a.vtu"
@@ -279,7 +278,7 @@ def test_the_volume_is_the_mode_by_itself_at_the_displays_voltage(
 @pytest.fixture
 def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fewer points than a picture needs."""
-    monkeypatch.setattr(surface_module, "_POINTS", (41, 11))
+    monkeypatch.setattr(plate, "_POINTS", (41, 11))
 
 
 @pytest.mark.usefixtures("coarse")
@@ -333,7 +332,7 @@ def test_a_nodal_line_is_hidden_behind_a_wall_that_is_high_or_near_enough() -> N
 
     def hidden(wall: np.ndarray, reach: float = 7.0) -> bool:
         w = np.where(wall, reach, 0.0)
-        return surface_module._Hidden(x, y, w, (0.2, 0.2, 2 * height), reach)(*here)
+        return plate._Hidden(x, y, w, (0.2, 0.2, 2 * height), reach)(*here)
 
     assert hidden(way > 0.8 * far)
     assert not hidden(way > 1.15 * far)
@@ -344,8 +343,8 @@ def test_a_nodal_line_is_hidden_behind_a_wall_that_is_high_or_near_enough() -> N
     assert hidden((np.abs(aside) < 0.005) & (way > 0.3 * far))
     # A wall half as high hides what is half as far behind it.
     low = np.where(way > 0.3 * far, 0.5, 0.0)
-    assert surface_module._Hidden(x, y, low, (0.2, 0.2, 2 * height), 1.0)(*here)
+    assert plate._Hidden(x, y, low, (0.2, 0.2, 2 * height), 1.0)(*here)
     low = np.where(way > 0.6 * far, 0.5, 0.0)
-    assert not surface_module._Hidden(x, y, low, (0.2, 0.2, 2 * height), 1.0)(*here)
+    assert not plate._Hidden(x, y, low, (0.2, 0.2, 2 * height), 1.0)(*here)
     # Beyond the plate there is nothing.
-    assert not surface_module._Hidden(x, y, 0 * way, (0.2, 0.2, 2 * height), 1.0)(0.2, 0.0)
+    assert not plate._Hidden(x, y, 0 * way, (0.2, 0.2, 2 * height), 1.0)(0.2, 0.0)

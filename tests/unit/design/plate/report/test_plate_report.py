@@ -7,12 +7,13 @@ import pytest
 from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm.design.plate.command import PlateAnalysis, analyze_plate
-from squeezefilm.design.plate.report.mode_surface import driven_shape, mode_surface
 from squeezefilm.design.plate.report.page import plate_page
 from squeezefilm.design.plate.report.plate import (
     admittance,
+    driven_shape,
     frequency_response,
     line_scan,
+    mode_surface,
     plan_view,
 )
 from squeezefilm.design.plate.report.sensitivity_figures import tornado

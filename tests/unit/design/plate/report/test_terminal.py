@@ -10,8 +10,9 @@ from tests.unit.made_results import WARM, WARM_LINES, made_result
 from tests.unit.printed import printed
 
 from squeezefilm.design.film.command import FilmAnswer, FilmRequest
+from squeezefilm.design.film.report.film_map import show_film
 from squeezefilm.design.plate.command import PlateAnalysis
-from squeezefilm.design.plate.report.terminal import show_film, show_plate
+from squeezefilm.design.plate.report.terminal import show_plate
 from squeezefilm.design.plate.solved import ModeRow
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 

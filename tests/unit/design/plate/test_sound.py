@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.design.analysis.sound import plate_sound
+from squeezefilm.design.plate.solved import plate_sound
 from squeezefilm.physics.plate.sound import DISTANCES, rectangular_surface, sound_field
 
 PLATE = SimpleNamespace(length=60e-3, width=30e-3)
