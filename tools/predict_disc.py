@@ -23,9 +23,9 @@ from typing import Any
 import numpy as np
 import tomlkit
 
+from radial_mode import RadialPrediction, predict_radial_mode
 from squeezefilm import __version__
 from squeezefilm.measure.fits.ceramic.disc import DiscConstants, disc_by_mass, disc_constants
-from squeezefilm.measure.fits.ceramic.disc_prediction import RadialPrediction, predict_radial_mode
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 

@@ -9,8 +9,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.nonlinear import inverse_of
+from squeezefilm.measure.fits.estimate import Estimate, inverse_of
 from squeezefilm.study.identification.confusion import ConfusionMatrix
 from squeezefilm.study.identification.information import information_transfer
 from squeezefilm.study.identification.proportions import (

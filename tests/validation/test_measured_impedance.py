@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from predict_disc import DIAMETER, FILE, MASS, PREDICTED, THICKNESS
+from radial_mode import predict_radial_mode
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.ceramic.bar import bar_constants
 from squeezefilm.measure.fits.ceramic.disc import disc_by_mass, disc_constants
-from squeezefilm.measure.fits.ceramic.disc_prediction import predict_radial_mode
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.sweep_reading import sweep_peaks
 from squeezefilm.measure.recordings.ceramic_bar import CeramicBar

@@ -25,7 +25,7 @@ EXTRAS = {
     "device": ("serial",),
     "lab": ("cryptography", "starlette", "uvicorn", "websockets"),
     "lsl": ("pylsl",),
-    "measure": ("emcee", "pyuff", "sdypy"),
+    "measure": ("emcee", "pyuff"),
     "study": ("pyarrow", "statsmodels"),
 }
 

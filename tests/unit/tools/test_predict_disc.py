@@ -7,7 +7,7 @@ import tomllib
 import pytest
 
 from predict_disc import FILE, PREDICTED, difference, is_sealed, sealed
-from squeezefilm.measure.fits.ceramic.disc_prediction import RadialPrediction
+from radial_mode import RadialPrediction
 from squeezefilm.measure.fits.estimate import Estimate
 
 TEXT = FILE.read_text(encoding="utf-8")

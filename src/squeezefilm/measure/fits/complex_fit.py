@@ -6,25 +6,21 @@ alike whether their model is adequate.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, propagated
+from squeezefilm.measure.fits.least_squares import remembering
 from squeezefilm.measure.fits.misfit import adequacy_of
 
 Model = Callable[[si.FloatArray], tuple[si.ComplexArray, si.ComplexArray]]
 """Of parameters (p,): the curve (points,) and its derivatives (p, points)."""
 
-Weighing = Literal["relative", "absolute"]
-
-LEVEL = 0.95
 _PASSES = 3
 # A floor under relative noise must be told by this much (twice the logarithm of the likelihood).
 _EVIDENCE = 10.0
@@ -64,41 +60,22 @@ class ComplexFit:
     degrees_of_freedom: int
 
     def estimate(self, value: Callable[[si.FloatArray], float], unit: str) -> Estimate:
-        """What `value` makes of the parameters, with its 95 % interval to first order."""
-        best = value(self.parameters)
-        slope = gradient(value, self.parameters, np.sqrt(np.diag(self.covariance)))
-        error = math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
-        reach = error * float(stats.t.ppf((1 + LEVEL) / 2, self.degrees_of_freedom))
-        return Estimate(best, error, (best - reach, best + reach), unit, LEVEL)
-
-
-def gradient(
-    value: Callable[[si.FloatArray], float], at: si.FloatArray, steps: si.FloatArray
-) -> si.FloatArray:
-    """Central differences of `value`, a hundredth of a standard error to either side."""
-    slope = np.zeros(at.size)
-    for k, step in enumerate(np.maximum(0.01 * steps, 1e-9 * np.abs(at) + 1e-15)):
-        up, down = at.copy(), at.copy()
-        up[k] += step
-        down[k] -= step
-        slope[k] = (value(up) - value(down)) / (2 * step)
-    return slope
+        """What `value` makes of the parameters: see `propagated`."""
+        return propagated(value, self.parameters, self.covariance, self.degrees_of_freedom, unit)
 
 
 def fit_complex(
     model: Model,
     start: si.FloatArray,
     data: si.ComplexArray,
-    *,
-    weighing: Weighing = "relative",
     prior: Prior | None = None,
 ) -> ComplexFit:
     """Fit `model` to `data` (points,) from `start`.
 
-    Relative: every point's noise is the same share of |Y|, down to a floor where the residual tells
-    of one (`noise_floor`). |Y| is taken from the model and not from the noisy data, since these
-    would pull the fit down (the estimate solves its weighted equations, as in generalised linear
-    models). Absolute: the same noise everywhere. The noise is estimated from the residual. Where
+    Every point's noise is the same share of |Y|, down to a floor where the residual tells of one
+    (`noise_floor`). |Y| is taken from the model and not from the noisy data, since these would pull
+    the fit down (the estimate solves its weighted equations, as in generalised linear models). The
+    noise is estimated from the residual. Where
     neighbouring residuals are alike the model misses something: variances are then multiplied by
     the residual's correlation time. Real and imaginary part are taken as equally noisy and
     independent. Raises `InputError` for too few points, `ConvergenceError` where no minimum is
@@ -111,19 +88,16 @@ def fit_complex(
             f"give at least {(count + 9) // 2}"
         )
     parameters = np.asarray(start, dtype=float)
-    weight = np.full(points, 1 / np.mean(np.abs(data)))
-    if weighing == "relative":
-        weight = 1 / np.abs(data)
-    floor = 0.0
-    for number in range(_PASSES if weighing == "relative" else 1):
+    model = remembering(model)
+    weight, floor = 1 / np.abs(data), 0.0
+    for number in range(_PASSES):
         scale = _prior_scale(model, parameters, data, weight) if prior is not None else 1.0
         parameters = _minimum(model, parameters, data, weight, prior, scale)
-        if weighing == "relative":
-            size = np.abs(model(parameters)[0])
-            # Once, so that the weights settle; not at last, so that they are fitted with.
-            if number == 0:
-                floor = noise_floor(data - model(parameters)[0], size)
-            weight = 1 / np.hypot(size, floor)
+        curve = model(parameters)[0]
+        # Once, so that the weights settle; not at last, so that they are fitted with.
+        if number == 0:
+            floor = noise_floor(data - curve, np.abs(curve))
+        weight = 1 / np.hypot(np.abs(curve), floor)
     curve, slopes = model(parameters)
     fit = _fitted(parameters, (data - curve) * weight, slopes * weight, prior)
     left = fit.spread * float(np.exp(-np.mean(np.log(weight))))
@@ -166,16 +140,16 @@ def _minimum(
             rows = np.vstack([rows, scale * np.diag(1 / prior.spread)[known]])
         return rows
 
-    found = optimize.least_squares(
+    settled = optimize.least_squares(
         residual, start, slopes, method="lm", x_scale="jac", xtol=1e-10, ftol=1e-12, max_nfev=200
     )
-    if not found.success or not np.all(np.isfinite(found.x)):
+    if not settled.success or not np.all(np.isfinite(settled.x)):
         raise ConvergenceError(
             "the fit found no minimum within 200 steps; give a sweep that holds the resonance and "
             "some of both sides of it",
-            iterations=int(found.nfev),
+            iterations=int(settled.nfev),
         )
-    return np.asarray(found.x)
+    return np.asarray(settled.x)
 
 
 def _fitted(
@@ -232,7 +206,7 @@ def noise_floor(residual: si.ComplexArray, size: si.FloatArray) -> float:
         return float(2 / 3 * (np.sum(np.log(square)) + rows.size * np.log(np.mean(rows / square))))
 
     floors = typical * _FLOORS
-    tried = [deviance(float(one)) for one in floors]
+    tried = [deviance(float(floor)) for floor in floors]
     best = int(np.argmin(tried))
     return float(floors[best]) if deviance(0.0) - tried[best] > _EVIDENCE else 0.0
 

@@ -1,15 +1,22 @@
-"""What a fit says: a value with its interval, whether the model is adequate, what was observed."""
+"""What a fit says: a value with its interval, whether the model is adequate, what was observed; and
+a message in place of a fit whose arithmetic ends."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import functools
+import math
+import warnings
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, ParamSpec, Protocol, TypeVar
+
+import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 
 LEVEL: si.Dimensionless = 0.95
-"""Of an interval, unless said."""
+"""The level of every interval of a fit."""
 
 
 @dataclass(frozen=True)
@@ -55,3 +62,117 @@ class Observation:
     def __post_init__(self) -> None:
         for name, value in self.conditions.items():
             si.require(name, value)
+
+
+# Of a standard error, to either side of a fitted number.
+_STEP = 1e-5
+
+
+def interval_around(
+    value: float,
+    standard_error: float,
+    freedom: int,
+    unit: str,
+    *,
+    logarithmic: bool = False,
+) -> Estimate:
+    """A value with Student's interval for its degrees of freedom; of the value's logarithm where
+    `logarithmic`."""
+    from scipy.special import stdtrit
+
+    reach = float(stdtrit(max(freedom, 1), 0.5 + LEVEL / 2)) * standard_error
+    low, high = value - reach, value + reach
+    if logarithmic:
+        with np.errstate(over="ignore"):
+            value, low, high = (float(np.exp(end)) for end in (value, low, high))
+        return Estimate(value, value * standard_error, (low, high), unit)
+    return Estimate(value, standard_error, (low, high), unit)
+
+
+def inverse_of(estimate: Estimate) -> Estimate:
+    """One over an estimate (1), such as Q from a loss factor: its interval's ends change places.
+
+    What is not above zero, an end of the interval or the value itself (noise can make a loss
+    seem a gain), has an infinite inverse.
+    """
+    low, high = estimate.interval
+    value, *ends = (
+        1.0 / number if number > 0 else math.inf for number in (estimate.value, high, low)
+    )
+    error = value * estimate.standard_error / estimate.value if estimate.value > 0 else math.inf
+    return Estimate(value, error, (ends[0], ends[1]), "1")
+
+
+def propagated(
+    of: Callable[[si.FloatArray], float],
+    numbers: si.FloatArray,
+    covariance: si.FloatArray,
+    freedom: int,
+    unit: str,
+    *,
+    positive: bool = False,
+) -> Estimate:
+    """A number that follows from fitted ones, with its interval by the delta method.
+
+    `positive` numbers get theirs on a logarithmic scale, so that it never reaches zero. Holds where
+    the number bends little within its own interval.
+    """
+    scale = np.sqrt(np.diag(covariance))
+
+    def value(at: si.FloatArray) -> float:
+        number = of(at)
+        return float(np.log(number)) if positive else float(number)
+
+    gradient = np.zeros(numbers.size)
+    for i in np.flatnonzero(scale > 0):
+        step = np.zeros(numbers.size)
+        step[i] = max(_STEP * scale[i], 1e-9 * abs(numbers[i]) + 1e-15)
+        gradient[i] = (value(numbers + step) - value(numbers - step)) / (2 * step[i])
+    error = math.sqrt(max(float(gradient @ covariance @ gradient), 0.0))
+    return interval_around(value(numbers), error, freedom, unit, logarithmic=positive)
+
+
+_P = ParamSpec("_P")
+
+
+class Observing(Protocol):
+    """A fit: it has observations."""
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """What a calibration may use."""
+
+
+_F = TypeVar("_F", bound=Observing)
+
+
+def guarded_fit(fit: Callable[_P, _F]) -> Callable[_P, _F]:
+    """Have a fit raise `InputError` where its arithmetic ends, or gives what is not finite.
+
+    Trial steps of a search may overflow; that is no message to anybody, and none comes of it.
+    """
+
+    @functools.wraps(fit)
+    def guarded(*args: _P.args, **kwargs: _P.kwargs) -> _F:
+        try:
+            with np.errstate(all="ignore"), warnings.catch_warnings():
+                warnings.simplefilter("ignore", RuntimeWarning)
+                warnings.simplefilter("ignore", np.exceptions.RankWarning)
+                fitted = fit(*args, **kwargs)
+                observed = fitted.observations
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            raise _no_fit(str(error)) from error
+        numbers = [(seen.value, seen.standard_error) for seen in observed]
+        if not np.isfinite(numbers).all():
+            raise _no_fit("its numbers are not finite")
+        return fitted
+
+    return guarded
+
+
+def _no_fit(why: str) -> InputError:
+    return InputError(
+        f"the recording has no fit ({why}): its values are all alike, jump by many orders of "
+        "magnitude, or show nothing of what is to be fitted. Look at it with squeezefilm measure "
+        "check"
+    )

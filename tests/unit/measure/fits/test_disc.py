@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
+from radial_mode import (
+    Extrapolation,
+    RadialPrediction,
+    predict_radial_mode,
+)
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.ceramic.ceramic_prior import PARAMETERS, ceramic_prior, compliances
 from squeezefilm.measure.fits.ceramic.disc import (
     Combination,
     DiscConstants,
-    DiscCurve,
     _doubted,
     combinations,
     disc_by_mass,
     disc_constants,
-)
-from squeezefilm.measure.fits.ceramic.disc_prediction import (
-    Extrapolation,
-    RadialPrediction,
-    predict_radial_mode,
+    disc_curve,
 )
 from squeezefilm.measure.fits.estimate import Adequacy
 from squeezefilm.measure.fits.sweep_reading import sweep_peaks
@@ -85,7 +86,7 @@ def test_it_says_which_combinations_the_mode_tells(found: DiscConstants) -> None
 
 
 def test_derivatives_are_those_of_differences() -> None:
-    curve = DiscCurve(DISC, FREQUENCY[::30])
+    curve = partial(disc_curve, DISC, FREQUENCY[::30])
     slopes = curve(TRUE)[1]
     for k, name in enumerate(PARAMETERS):
         step = 1e-5 * np.eye(TRUE.size)[k]

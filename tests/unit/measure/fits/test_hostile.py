@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
+from squeezefilm.measure.fits.estimate import guarded_fit
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
-from squeezefilm.measure.fits.guarded import guarded_fit
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
 from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan
 from squeezefilm.measure.fits.vibration.line_scan import fit_line_scan

@@ -32,7 +32,7 @@ def test_a_resonance_is_resolved_and_fitted_from_its_response() -> None:
     assert coherence is not None
     near = np.abs(fit.response.frequency - F0) < 500
     assert coherence[near].min() > 0.9
-    own = fit_frequency_response(fit.response, modes=1).modes[0]
+    own = fit_frequency_response(fit.response).modes[0]
     assert own.frequency.value == pytest.approx(F0, rel=1e-3)
     assert own.quality_factor.value == pytest.approx(Q, rel=0.05)
 

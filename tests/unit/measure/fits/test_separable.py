@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.nonlinear import (
-    fit_nonlinear,
+from squeezefilm.measure.fits.estimate import (
+    Estimate,
     interval_around,
     inverse_of,
     propagated,
 )
-from squeezefilm.measure.fits.separable import fit_separable
+from squeezefilm.measure.fits.least_squares import fit_nonlinear, fit_separable, linear_fit
 
 T = np.linspace(0.0, 2.0, 60)
 
@@ -59,7 +58,7 @@ def test_the_shape_stays_within_reach_of_its_start() -> None:
 
 def test_fewer_data_than_numbers_are_refused() -> None:
     with pytest.raises(InputError, match="record more points"):
-        fit_separable(lambda _: (np.ones((2, 2)), np.empty((0, 2, 2))), np.ones(2), np.empty(0))
+        linear_fit(np.ones((2, 2)), np.ones(2))
 
 
 def test_nonlinear_numbers_agree_with_the_separable_ones() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -78,7 +79,7 @@ def disc_constants(
             quantity="disc",
         )
     prior = prior or ceramic_prior()
-    curve = DiscCurve(disc, sweep.frequency)
+    curve = partial(disc_curve, disc, sweep.frequency)
     start = _start(sweep, disc, prior)
     fit = fit_complex(curve, start, sweep.admittance, prior=prior)
     fitted = curve(fit.parameters)[0]
@@ -115,24 +116,13 @@ def _doubted(adequacy: Adequacy, away: float) -> Adequacy:
     return replace(adequacy, adequate=False, sentence=adequacy.sentence + said)
 
 
-class DiscCurve:
-    """The admittance of a disc at frequencies as a function of the parameters, with derivatives;
-    the last answer is kept, since a fit asks for curve and derivatives one after the other."""
-
-    def __init__(self, disc: CeramicDisc, frequency: si.HertzArray) -> None:
-        self._disc, self._frequency = disc, frequency
-        self._at: bytes = b""
-        self._answer: tuple[si.ComplexArray, si.ComplexArray] | None = None
-
-    def __call__(self, p: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
-        """Admittance (points,) and derivatives (parameters, points)."""
-        if self._answer is None or p.tobytes() != self._at:
-            curve, slopes = disc_admittance(
-                self._disc, weak_constants(*compliances(p)), self._frequency
-            )
-            self._answer = curve, _constant_slopes(p) @ slopes
-            self._at = p.tobytes()
-        return self._answer
+def disc_curve(
+    disc: CeramicDisc, frequency: si.HertzArray, p: si.DimensionlessArray
+) -> tuple[si.ComplexArray, si.ComplexArray]:
+    """The admittance (S, (points,)) of a disc at frequencies (Hz) and its derivatives with the
+    parameters `p` in the order of `PARAMETERS` (parameters, points)."""
+    curve, slopes = disc_admittance(disc, weak_constants(*compliances(p)), frequency)
+    return curve, _constant_slopes(p) @ slopes
 
 
 def _constant_slopes(p: si.FloatArray) -> si.ComplexArray:

@@ -15,12 +15,16 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.estimate import (
+    Adequacy,
+    Estimate,
+    Observation,
+    guarded_fit,
+    interval_around,
+)
 from squeezefilm.measure.fits.friction.strokes import Strokes, sliding_strokes
-from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.nonlinear import interval_around
-from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.recordings.kinds import FrictionBench, FrictionCurve
 
 MOST_DRIFT = 4
@@ -108,7 +112,6 @@ def fit_friction_bench(
     recording: FrictionBench,
     *,
     drift: Annotated[int, si.AtLeast(0), si.AtMost(MOST_DRIFT)] = 2,
-    level: si.Dimensionless = 0.95,
 ) -> FrictionBenchFit:
     """µ and µ′/µ against amplitude (m), speed (m/s) and force (N), drift of the finger taken out.
 
@@ -123,7 +126,7 @@ def fit_friction_bench(
     si.require("drift", drift, at_least=0, at_most=MOST_DRIFT)
     strokes = sliding_strokes(recording)
     strokes, floating = _touching(strokes)
-    found = _Fitted.of(strokes, drift, level).read(recording, strokes)
+    found = _Fitted.of(strokes, drift).read(recording, strokes)
     if not floating:
         return found
     shown = " and ".join(f"{1e6 * one:.3g} µm" for one in floating)
@@ -222,10 +225,9 @@ class _Fitted:
     design: _Design
     fit: SeparableFit
     data: si.FloatArray
-    level: float
 
     @classmethod
-    def of(cls, strokes: Strokes, drift: int, level: float) -> _Fitted:
+    def of(cls, strokes: Strokes, drift: int) -> _Fitted:
         design = _Design.of(strokes, drift)
         data = np.log(strokes.column("coefficient"))
         if len(strokes.rows) < design.matrix.shape[1] + 2:
@@ -233,19 +235,19 @@ class _Fitted:
                 f"{len(strokes.rows)} strokes were recorded; {design.levels.size} amplitudes, "
                 f"drift and what else varied need at least {design.matrix.shape[1] + 2}"
             )
-        return cls(design, _straight(design.matrix, data), data, level)
+        return cls(design, _straight(design.matrix, data), data)
 
     def straight(self, row: si.FloatArray) -> Estimate:
         """A weighted sum of the fitted numbers."""
         error = math.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
         value = float(row @ self.fit.weights)
-        return interval_around(value, error, self.fit.freedom, "1", self.level)
+        return interval_around(value, error, self.fit.freedom, "1")
 
     def exponential(self, row: si.FloatArray) -> Estimate:
         """e to such a sum."""
         error = math.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
         value, freedom = float(row @ self.fit.weights), self.fit.freedom
-        return interval_around(value, error, freedom, "1", self.level, logarithmic=True)
+        return interval_around(value, error, freedom, "1", logarithmic=True)
 
     def one(self, i: int, other: int | None = None) -> si.FloatArray:
         row = np.zeros(self.design.matrix.shape[1])
@@ -326,5 +328,4 @@ def _straight(matrix: si.FloatArray, data: si.FloatArray) -> SeparableFit:
             "amplitude, speed, force and time of the strokes went together, so that none can be "
             "told from the others; vary them in a mixed order, or ask for no drift"
         )
-    bent = np.empty((0, *matrix.shape))
-    return fit_separable(lambda _: (matrix, bent), data, np.empty(0))
+    return linear_fit(matrix, data)

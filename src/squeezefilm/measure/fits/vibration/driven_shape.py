@@ -12,8 +12,8 @@ from scipy.interpolate import RectBivariateSpline
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
+from squeezefilm.measure.fits.least_squares import fit_separable
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.separable import fit_separable
 from squeezefilm.physics.plate.solid.working import SolidMode
 
 REST = "what else the drive moves"
@@ -102,7 +102,6 @@ def line_by_shape(
     *,
     reach: Annotated[si.Metre, si.Above(0.0)],
     drift: bool = False,
-    level: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.95,
 ) -> LineByShape:
     """The shape of the line that fits displacements `w` (m, real or complex) at rising `x` (m).
 
@@ -135,18 +134,11 @@ def line_by_shape(
     reversed_ = False
     if recorded:
         # The rest moves at once and the mode late: ahead of the swing, unless the sign is wrong.
-        ahead = fit.estimate(lambda _, c: float((c[1] * np.conj(c[0])).imag), "1", level=level)
+        ahead = fit.estimate(lambda _, c: float((c[1] * np.conj(c[0])).imag), "1")
         reversed_ = ahead.interval[1] < 0
     if reversed_:
         w = w.conj()
         fit = fit_separable(columns, w / size, np.zeros(1), reach=reach)
-    own = fit.weights[0]
-    phase = None
-    if recorded:
-        turned = fit.estimate(lambda _, c: float(np.angle(c[0] * np.conj(own))), "rad", level=level)
-        angle = float(np.angle(own))
-        low, high = turned.interval
-        phase = Estimate(angle, turned.standard_error, (angle + low, angle + high), "rad", level)
     adequacy = adequacy_of(
         w,
         fit.residual * size,
@@ -158,11 +150,9 @@ def line_by_shape(
         "the solved plate.",
     )
     return LineByShape(
-        amplitude=fit.estimate(
-            lambda _, c: size * float(abs(c[0])), "m", positive=True, level=level
-        ),
-        phase=phase,
-        offset=fit.estimate(lambda one, _: float(one[0]), "m", level=level),
+        amplitude=fit.estimate(lambda _, c: size * float(abs(c[0])), "m", positive=True),
+        phase=fit.angle(lambda _, weights: complex(weights[0])) if recorded else None,
+        offset=fit.estimate(lambda one, _: float(one[0]), "m"),
         model=fit.model * size,
         phase_reversed=reversed_,
         adequacy=adequacy,

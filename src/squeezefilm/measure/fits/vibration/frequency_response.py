@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.estimate import (
+    Adequacy,
+    Estimate,
+    Observation,
+    guarded_fit,
+    inverse_of,
+)
+from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.nonlinear import inverse_of
-from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
-from squeezefilm.measure.fits.vibration.modal_band import ModalBand, band_poles
 from squeezefilm.measure.fits.vibration.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
 
-MOST_MODES = 12
-"""So many modes are fitted to one response at most."""
-
 _TRIED_MODES = 4
-_PEAKS_SUFFICE = 2
 _FEWEST_POINTS = 12
 # A wider band needs curved residuals; one mode's band is narrow.
 _WIDEST = 3.0
@@ -51,8 +50,7 @@ class FrequencyResponseFit:
     `model` (m/V, complex) is what was fitted, `residual` what it leaves, at the recording's
     frequencies (those that were recorded as finite numbers). `circle` is the strongest mode by its
     circle alone. `phase_reversed` says that the phase was recorded with the other sign (it rises
-    through the resonance), and that the fit is of the complex conjugate. `delay` (s) where it was
-    asked for: what the instrument adds, for modal constants taken to be real.
+    through the resonance), and that the fit is of the complex conjugate.
     """
 
     recording: FrequencyResponse
@@ -63,7 +61,6 @@ class FrequencyResponseFit:
     largest_per_volt: Estimate
     circle: ModalCircle | None
     phase_reversed: bool
-    delay: Estimate | None
     adequacy: Adequacy
 
     @property
@@ -85,8 +82,8 @@ class FrequencyResponseFit:
         error = float(np.hypot(largest.standard_error, remainder))
         return (
             *(
-                Observation(name, one.value, one.standard_error, under)
-                for name, one in (
+                Observation(name, estimate.value, estimate.standard_error, under)
+                for name, estimate in (
                     ("resonance_frequency", first.frequency),
                     ("quality_factor", first.quality_factor),
                 )
@@ -98,43 +95,26 @@ class FrequencyResponseFit:
 @guarded_fit
 def fit_frequency_response(
     recording: FrequencyResponse,
-    *,
-    modes: Annotated[int, si.AtLeast(1), si.AtMost(MOST_MODES)] | None = None,
-    delay: bool = False,
-    level: si.Dimensionless = 0.95,
 ) -> FrequencyResponseFit:
     """Frequency (Hz), Q and modal constant (m/V) of the modes in a response, with intervals.
 
-    H(f) = e^{−2πifτ} [Σ A_k f_k²/(f_k²(1 + i/Q_k) − f²) + R0 + R1 f]: structural damping, complex
-    modal constants, a straight remainder for modes outside the band, τ = 0 unless `delay` asks for
-    it (modal constants and remainder are then taken to be real: an assumption). Without `modes`
-    as many as the data call for by Schwarz's criterion, up to 4; where more than two are asked for
-    they start from the poles of sdypy-EMA's complex-frequency fit. Intervals at `level` are of
-    noise alike at all points, wider where neighbouring residuals are alike.
+    H(f) = Σ A_k f_k²/(f_k²(1 + i/Q_k) − f²) + R0 + R1 f: structural damping, complex modal
+    constants, a straight remainder for modes outside the band; as many modes as the data call for
+    by Schwarz's criterion, up to 4. Intervals are of noise alike at all points, wider where
+    neighbouring residuals are alike.
 
     A phase recorded with the other sign is noticed, said, and does not change frequency and Q.
     Raises `InputError` for fewer than 12 points, a response without phase, or a band of more than
     a factor 3. Source: Ewins, Modal Testing, 2nd ed., sections 4.3 and 4.4.
     """
     f, H = _recorded(recording)
-    if modes is not None:
-        si.require("modes", modes, at_least=1, at_most=MOST_MODES)
     reversed_phase, start = _first_mode(f, H)
     if reversed_phase:
         H = H.conj()
     size = float(np.max(np.abs(H)))
-    band = ModalBand.over(f)
-    fit = (
-        _as_many_as_needed(band, H / size, start)
-        if modes is None
-        else _with_modes(band, H / size, start, modes)
-    )
-    if delay:
-        count = (fit.shape.size) // 2
-        fit = fit_separable(
-            band.delayed, H / size, np.append(fit.shape[: 2 * count], 0.0), real_weights=True
-        )
-    return _FittedResponse(recording, band, H, fit, size, reversed_phase, delay, level).read()
+    band = _Band.over(f)
+    fit = _as_many_as_needed(band, H / size, start)
+    return _FittedResponse(recording, band, H, fit, size, reversed_phase).read()
 
 
 def _recorded(recording: FrequencyResponse) -> tuple[si.HertzArray, si.ComplexArray]:
@@ -165,6 +145,48 @@ def _recorded(recording: FrequencyResponse) -> tuple[si.HertzArray, si.ComplexAr
     return f, H
 
 
+@dataclass(frozen=True, eq=False)
+class _Band:
+    """Frequencies `f` (Hz, (points,)) and the columns of modes over them.
+
+    A mode's numbers are f_k over `middle`, less 1, and its loss 1/Q_k.
+    """
+
+    f: si.HertzArray
+    middle: si.Hertz
+    width: si.Hertz
+
+    @classmethod
+    def over(cls, f: si.HertzArray) -> _Band:
+        """The band of rising frequencies (Hz)."""
+        return cls(f, float((f[0] + f[-1]) / 2), float(f[-1] - f[0]))
+
+    @cached_property
+    def place(self) -> si.FloatArray:
+        """Frequencies from the middle, over the width."""
+        return (self.f - self.middle) / self.width
+
+    def columns(self, shape: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
+        """Modes, a constant and a slope; their derivatives by every number of `shape`."""
+        count = shape.size // 2
+        matrix = np.empty((self.f.size, count + 2), dtype=complex)
+        bent = np.zeros((2 * count, self.f.size, count + 2), dtype=complex)
+        squared = (self.f / self.middle) ** 2
+        for k in range(count):
+            own, loss = 1 + shape[2 * k], shape[2 * k + 1]
+            below = own**2 * (1 + 1j * loss) - squared
+            matrix[:, k] = own**2 / below
+            bent[2 * k, :, k] = -2 * own * squared / below**2
+            bent[2 * k + 1, :, k] = -1j * own**4 / below**2
+        matrix[:, count] = 1.0
+        matrix[:, count + 1] = self.place
+        return matrix, bent
+
+    def shape_of(self, modes: list[tuple[float, float]]) -> si.FloatArray:
+        """The numbers of modes of these frequencies (Hz) and losses."""
+        return np.array([number for f, loss in modes for number in (f / self.middle - 1, loss)])
+
+
 def _first_mode(f: si.HertzArray, H: si.ComplexArray) -> tuple[bool, tuple[float, float]]:
     """Whether the phase has the other sign, and frequency and loss of the strongest mode."""
     circle = modal_circle(f, H)
@@ -177,9 +199,7 @@ def _first_mode(f: si.HertzArray, H: si.ComplexArray) -> tuple[bool, tuple[float
     return loss < 0, (circle.frequency, min(abs(loss), 0.5))
 
 
-def _as_many_as_needed(
-    band: ModalBand, H: si.ComplexArray, start: tuple[float, float]
-) -> SeparableFit:
+def _as_many_as_needed(band: _Band, H: si.ComplexArray, start: tuple[float, float]) -> SeparableFit:
     """One mode more as long as what is left calls for it."""
     best = fit_separable(band.columns, H, band.shape_of([start]))
     while best.shape.size // 2 < _TRIED_MODES:
@@ -199,44 +219,24 @@ def _criterion(fit: SeparableFit, points: int) -> float:
     return float(2 * points * np.log(squares) + fit.covariance.shape[0] * np.log(2 * points))
 
 
-def _one_more(band: ModalBand, H: si.ComplexArray, fit: SeparableFit) -> SeparableFit | None:
+def _one_more(band: _Band, H: si.ComplexArray, fit: SeparableFit) -> SeparableFit | None:
     """The fit with a mode more, which starts where the residual is largest."""
-    found = modal_circle(band.f, fit.residual)
+    circle = modal_circle(band.f, fit.residual)
     at = float(band.f[np.argmax(np.abs(fit.residual))])
     loss = float(abs(fit.shape[1]))
     candidates = [(at, loss)]
-    if found is not None and band.f[0] < found.frequency < band.f[-1]:
-        candidates.append((found.frequency, min(abs(1 / found.quality_factor), 0.2)))
+    if circle is not None and band.f[0] < circle.frequency < band.f[-1]:
+        candidates.append((circle.frequency, min(abs(1 / circle.quality_factor), 0.2)))
     fits = []
-    for one in candidates:
-        start = np.append(fit.shape, band.shape_of([one]))
+    for candidate in candidates:
+        start = np.append(fit.shape, band.shape_of([candidate]))
         fitted = fit_separable(band.columns, H, start, reach=band.width / band.middle)
-        # A mode with gain, or as broad as the band, is none.
+        # A mode with gain, beside the band, or narrower than the points are apart, is none.
         losses, places = fitted.shape[1::2], fitted.shape[::2]
-        if np.all(losses > 0) and np.all(np.abs(places) < band.width / band.middle):
+        steps = np.interp(band.middle * (1 + places), band.f, np.gradient(band.f)) / band.middle
+        if np.all(losses > steps) and np.all(np.abs(places) < band.width / band.middle):
             fits.append(fitted)
-    return min(fits, key=lambda one: float(np.sum(np.abs(one.residual) ** 2)), default=None)
-
-
-def _with_modes(
-    band: ModalBand, H: si.ComplexArray, start: tuple[float, float], count: int
-) -> SeparableFit:
-    """The fit with a number of modes that was asked for."""
-    fit = fit_separable(band.columns, H, band.shape_of([start]))
-    if count > _PEAKS_SUFFICE:
-        poles = band_poles(band, H, count)
-        if len(poles) == count:
-            return fit_separable(band.columns, H, band.shape_of(poles))
-    while fit.shape.size // 2 < count:
-        more = _one_more(band, H, fit)
-        if more is None:
-            raise InputError(
-                f"modes = {count} were asked for and only {fit.shape.size // 2} can be told apart "
-                f"between {band.f[0]:.6g} Hz and {band.f[-1]:.6g} Hz; ask for fewer",
-                quantity="modes",
-            )
-        fit = more
-    return fit
+    return min(fits, key=lambda more: float(np.sum(np.abs(more.residual) ** 2)), default=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,13 +244,11 @@ class _FittedResponse:
     """A fit in its own numbers, to be read off."""
 
     recording: FrequencyResponse
-    band: ModalBand
+    band: _Band
     response: si.ComplexArray
     fit: SeparableFit
     size: float
     reversed_phase: bool
-    delay: bool
-    level: float
 
     def read(self) -> FrequencyResponseFit:
         count = self.fit.shape.size // 2
@@ -266,63 +264,38 @@ class _FittedResponse:
             largest_per_volt=self._largest(order[0]),
             circle=modal_circle(self.band.f, self.response),
             phase_reversed=self.reversed_phase,
-            delay=self._delay() if self.delay else None,
             adequacy=self._adequacy(),
         )
 
     def _mode(self, k: int) -> FittedMode:
-        fit, level = self.fit, self.level
-        loss = fit.estimate(lambda shape, _: shape[2 * k + 1], "1", level=level)
+        fit = self.fit
+        loss = fit.estimate(lambda shape, _: shape[2 * k + 1], "1")
         return FittedMode(
-            frequency=fit.estimate(
-                lambda shape, _: self.band.middle * (1 + shape[2 * k]), "Hz", level=level
-            ),
+            frequency=fit.estimate(lambda shape, _: self.band.middle * (1 + shape[2 * k]), "Hz"),
             quality_factor=inverse_of(loss),
             modal_constant=fit.estimate(
-                lambda _, weights: abs(weights[k]) * self.size, "m/V", positive=True, level=level
+                lambda _, weights: abs(weights[k]) * self.size, "m/V", positive=True
             ),
             amplitude_per_volt=fit.estimate(
                 lambda shape, weights: abs(weights[k] / shape[2 * k + 1]) * self.size,
                 "m/V",
                 positive=True,
-                level=level,
             ),
-            phase=self._phase(k),
+            phase=fit.angle(lambda _, weights: complex(weights[k])),
         )
-
-    def _phase(self, k: int) -> Estimate:
-        # From the fitted one, so that no interval is cut at ±π.
-        own = self.fit.weights[k]
-        turned = self.fit.estimate(
-            lambda _, weights: float(np.angle(weights[k] * np.conj(own))), "rad", level=self.level
-        )
-        angle = float(np.angle(own))
-        low, high = turned.interval
-        ends = angle + low, angle + high
-        return Estimate(angle, turned.standard_error, ends, "rad", self.level)
 
     def _largest(self, k: int) -> Estimate:
         """The largest size of the fitted response within the strongest mode's band."""
-        columns = self.band.delayed if self.delay else self.band.columns
         own, loss = self.band.middle * (1 + self.fit.shape[2 * k]), self.fit.shape[2 * k + 1]
-        near = ModalBand(
-            own * (1 + loss * np.linspace(-1, 1, 81)), self.band.middle, self.band.width
-        )
-        dense = near.delayed if self.delay else near.columns
-        at = int(np.argmax(np.abs(dense(self.fit.shape)[0] @ self.fit.weights)))
+        near = replace(self.band, f=own * (1 + loss * np.linspace(-1, 1, 81)))
+        at = int(np.argmax(np.abs(near.columns(self.fit.shape)[0] @ self.fit.weights)))
         # At the place of a maximum its shift changes the value to second order only.
-        point = ModalBand(near.f[at : at + 1], self.band.middle, self.band.width)
-        columns = point.delayed if self.delay else point.columns
+        point = replace(near, f=near.f[at : at + 1])
         return self.fit.estimate(
-            lambda shape, weights: float(abs((columns(shape)[0] @ weights)[0])) * self.size,
+            lambda shape, weights: float(abs((point.columns(shape)[0] @ weights)[0])) * self.size,
             "m/V",
             positive=True,
-            level=self.level,
         )
-
-    def _delay(self) -> Estimate:
-        scale = 2 * np.pi * self.band.width
-        return self.fit.estimate(lambda shape, _: shape[-1] / scale, "s", level=self.level)
 
     def _adequacy(self) -> Adequacy:
         said = (
@@ -335,7 +308,7 @@ class _FittedResponse:
             self.response,
             self.fit.residual * self.size,
             lambda i: f"at {si.format_quantity(self.band.f[i], si.Unit('Hz'), 5)}",
-            remedy="Ask for more modes, cut the band to the resonance, or drive less: a mode that "
-            "shifts with its amplitude is none of a linear plate.",
+            remedy="Cut the band to the resonance, or drive less: a mode that shifts with its "
+            "amplitude is none of a linear plate.",
             said=said,
         )

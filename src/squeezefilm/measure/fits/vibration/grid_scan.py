@@ -10,10 +10,9 @@ from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation, guarded_fit
+from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.fits.vibration.driven_shape import REST, DrivenShape
 from squeezefilm.measure.recordings.kinds import GridScan
 from squeezefilm.physics.plate.solid.modes import PlateModes
@@ -72,7 +71,6 @@ def fit_grid_scan(
     shapes: Mapping[str, si.Array],
     *,
     drift: bool = False,
-    level: si.Dimensionless = 0.95,
 ) -> GridScanFit:
     """Which of the `shapes` a scan is, by the modal assurance criterion, and how far it moves.
 
@@ -103,12 +101,10 @@ def fit_grid_scan(
         order = np.linspace(-0.5, 0.5, w.size)
         columns = np.column_stack([matrix, matrix[:, own] * order])
     size = float(np.max(np.abs(w)))
-    # Weights of real shapes in a complex scan are complex; the columns themselves do not bend.
-    bent = np.empty((0, *columns.shape))
     recorded = np.iscomplexobj(w) and bool(np.any(w.imag))
     data = w / size if recorded else w.real / size
-    fit = fit_separable(lambda _: (columns, bent), data, np.empty(0))
-    parts = {name: _part(fit, i, size, level) for i, name in enumerate(names)}
+    fit = linear_fit(columns, data)
+    parts = {name: _part(fit, i, size) for i, name in enumerate(names)}
     model = fit.model * size
     x, y = recording.x[good], recording.y[good]
     noise = float(np.sum(np.abs(fit.residual) ** 2)) / max(fit.freedom, 1) * 2 * w.size
@@ -120,7 +116,7 @@ def fit_grid_scan(
         likeness=likeness,
         attainable=float(np.clip(1 - noise / power, 0.0, 1.0)),
         amplitude=parts[label],
-        phase=_phase(fit, own, level),
+        phase=fit.angle(lambda _, weights: complex(weights[own])),
         parts=parts,
         model=model,
         residual=w - model,
@@ -191,21 +187,11 @@ def _likeness(shape: si.Array, other: si.Array) -> float:
     return float(abs(np.vdot(shape, other)) ** 2 / norm) if norm > 0 else 0.0
 
 
-def _part(fit: SeparableFit, i: int, size: float, level: float) -> Estimate:
+def _part(fit: SeparableFit, i: int, size: float) -> Estimate:
     """A shape's amplitude (m)."""
     if abs(fit.weights[i]) == 0:
-        return Estimate(0.0, 0.0, (0.0, 0.0), "m", level)
-    return fit.estimate(lambda _, weights: size * abs(weights[i]), "m", level=level)
-
-
-def _phase(fit: SeparableFit, i: int, level: float) -> Estimate:
-    own = fit.weights[i]
-    angle = float(np.angle(own))
-    turned = fit.estimate(
-        lambda _, weights: float(np.angle(weights[i] * np.conj(own))), "rad", level=level
-    )
-    low, high = turned.interval
-    return Estimate(angle, turned.standard_error, (angle + low, angle + high), "rad", level)
+        return Estimate(0.0, 0.0, (0.0, 0.0), "m")
+    return fit.estimate(lambda _, weights: size * abs(weights[i]), "m")
 
 
 def _adequacy(

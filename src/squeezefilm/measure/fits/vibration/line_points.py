@@ -12,9 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.nonlinear import interval_around
-from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
+from squeezefilm.measure.fits.estimate import Estimate, interval_around
+from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
 
 _REACH = 0.35
 _FEWEST = 6
@@ -29,7 +28,6 @@ class LinePoints:
     x: si.MetreArray
     w: si.Array
     half_wavelength: si.Metre
-    level: si.Dimensionless = 0.95
 
     @cached_property
     def swing(self) -> si.MetreArray:
@@ -59,8 +57,7 @@ class LinePoints:
         if near.sum() < _FEWEST:
             return None
         matrix = np.vander((self.x[near] - place) / reach, 4, increasing=True)
-        bent = np.empty((0, *matrix.shape))
-        return fit_separable(lambda _: (matrix, bent), self.swing[near], np.empty(0))
+        return linear_fit(matrix, self.swing[near])
 
     @cached_property
     def nodes(self) -> tuple[Estimate, ...]:
@@ -86,7 +83,7 @@ class LinePoints:
                 at -= float(value / slope)
             return place + reach * at
 
-        return fit.estimate(crossing, "m", level=self.level)
+        return fit.estimate(crossing, "m")
 
     @property
     def spacing(self) -> Estimate | None:
@@ -98,7 +95,7 @@ class LinePoints:
         first, last, count = nodes[0], nodes[-1], len(nodes) - 1
         error = float(np.hypot(first.standard_error, last.standard_error)) / count
         freedom = 2 * _FEWEST
-        return interval_around((last.value - first.value) / count, error, freedom, "m", self.level)
+        return interval_around((last.value - first.value) / count, error, freedom, "m")
 
     @property
     def antinode(self) -> tuple[si.Metre, Estimate] | None:
@@ -114,5 +111,5 @@ class LinePoints:
         fit = self._around(place)
         if fit is None:
             return None
-        size = fit.estimate(lambda _, weights: float(abs(weights[0])), "m", level=self.level)
+        size = fit.estimate(lambda _, weights: float(abs(weights[0])), "m")
         return place, size

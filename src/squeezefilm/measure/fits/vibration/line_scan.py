@@ -9,10 +9,9 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation, guarded_fit
+from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.line_points import LinePoints
 from squeezefilm.measure.fits.vibration.line_waves import LineWaves
@@ -89,22 +88,6 @@ class LineScanFit:
             )
         return tuple(found)
 
-    def delay(self, expected_phase: si.Radian = -np.pi / 2) -> Estimate:
-        """What the instrument adds (s), if the plate itself has `expected_phase` (rad; −π/2 at a
-        resonance driven by its electrodes, or turned by π where the lobe moves the other way).
-
-        The least of the delays a period apart, between minus and plus a quarter of a period.
-        Raises `InputError` where no phase was recorded.
-        """
-        if self.phase is None:
-            raise InputError("the line scan has no phase, so it tells of no delay")
-        omega = 2 * np.pi * self.recording.frequency
-        late = float((expected_phase - self.phase.value + np.pi / 2) % np.pi - np.pi / 2)
-        error = self.phase.standard_error / omega
-        half = (self.phase.interval[1] - self.phase.interval[0]) / 2 / omega
-        ends = late / omega - half, late / omega + half
-        return Estimate(late / omega, error, ends, "s", self.phase.level)
-
 
 @guarded_fit
 def fit_line_scan(
@@ -113,7 +96,6 @@ def fit_line_scan(
     *,
     free_ends: bool = True,
     drift: bool = False,
-    level: si.Dimensionless = 0.95,
 ) -> LineScanFit:
     """Half wavelength (m), nodal lines (m), loss, standing-wave ratio and amplitude (m) of a line.
 
@@ -151,7 +133,7 @@ def fit_line_scan(
         if grows
         else "",
     )
-    found = _FittedLine(recording, line, x, w, fit, size, grows, adequacy, level).read()
+    found = _FittedLine(recording, line, x, w, fit, size, grows, adequacy).read()
     if shape is None or not found.by_points:
         return found
     return _by_shape(found, shape, w.conj() if grows else w, drift)
@@ -160,9 +142,8 @@ def fit_line_scan(
 def _by_shape(found: LineScanFit, shape: DrivenShape, w: si.Array, drift: bool) -> LineScanFit:
     """What a solved shape says of a line that no even wave fits, from its displacement as it was
     recorded."""
-    level = found.half_wavelength.level
     reach = found.half_wavelength.value / 4
-    by = line_by_shape(shape, found.position, w, reach=reach, drift=drift, level=level)
+    by = line_by_shape(shape, found.position, w, reach=reach, drift=drift)
     swing = shape.along(found.position + by.offset.value)[0]
     along = LinePoints(found.position, swing, found.half_wavelength.value).spacing
     said = (
@@ -248,14 +229,13 @@ class _FittedLine:
     size: float
     phase_reversed: bool
     adequacy: Adequacy
-    level: float
 
     def at(self, x: si.MetreArray, shape: si.FloatArray, weights: si.Array) -> si.Array:
         """The fitted wave at places (m)."""
         return np.asarray(self.line.waves(x, shape) @ weights)
 
     def read(self) -> LineScanFit:
-        fit, level = self.fit, self.level
+        fit = self.fit
         dense = np.linspace(
             self.x[0],
             self.x[-1],
@@ -270,9 +250,7 @@ class _FittedLine:
             position=self.x,
             model=model,
             residual=self.w - model,
-            half_wavelength=fit.estimate(
-                lambda shape, _: np.pi / shape[0], "m", positive=True, level=level
-            ),
+            half_wavelength=fit.estimate(lambda shape, _: np.pi / shape[0], "m", positive=True),
             nodal_lines=tuple(self._node(float(one)) for one in nodes),
             antinode=lobe,
             antinode_amplitude=fit.estimate(
@@ -281,13 +259,16 @@ class _FittedLine:
                 ),
                 "m",
                 positive=True,
-                level=level,
             ),
             standing_wave_ratio=self._ratio() if self.line.complex else None,
-            loss_factor=fit.estimate(lambda shape, _: 4 * shape[1], "1", level=level)
+            loss_factor=fit.estimate(lambda shape, _: 4 * shape[1], "1")
             if self.line.complex
             else None,
-            phase=self._phase(lobe) if self.line.complex else None,
+            phase=fit.angle(
+                lambda shape, weights: complex(self.at(np.array([lobe]), shape, weights)[0])
+            )
+            if self.line.complex
+            else None,
             phase_reversed=self.phase_reversed,
             by_points=False,
             offset=None,
@@ -299,7 +280,7 @@ class _FittedLine:
     def _by_points(self, found: LineScanFit) -> LineScanFit:
         """What the points around each node and antinode say, in place of a wave that does not
         fit."""
-        points = LinePoints(self.x, self.w, found.half_wavelength.value, self.level)
+        points = LinePoints(self.x, self.w, found.half_wavelength.value)
         spacing, antinode = points.spacing, points.antinode
         if spacing is None or antinode is None:
             return found
@@ -328,7 +309,7 @@ class _FittedLine:
             low, middle, high = np.abs(self.at(places, shape, weights)) ** 2
             return float(node - step * (high - low) / (2 * (high - 2 * middle + low)))
 
-        return self.fit.estimate(least, "m", level=self.level)
+        return self.fit.estimate(least, "m")
 
     def _ratio(self) -> Estimate:
         """(a + b)/|a − b| by its inverse, which is finite: 0 for a pure standing wave."""
@@ -337,29 +318,13 @@ class _FittedLine:
             a, b = np.abs(weights[:2])
             return float((a - b) / (a + b))
 
-        found = self.fit.estimate(inverse, "1", level=self.level)
+        found = self.fit.estimate(inverse, "1")
         low, high = found.interval
         largest = max(abs(low), abs(high))
         smallest = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
         value = 1 / abs(found.value) if found.value else float("inf")
         ends = 1 / largest, 1 / smallest if smallest else float("inf")
-        return Estimate(value, found.standard_error * value**2, ends, "1", self.level)
-
-    def _phase(self, lobe: float) -> Estimate:
-        place = np.array([lobe])
-        own = self.at(place, self.fit.shape, self.fit.weights)[0]
-        turned = self.fit.estimate(
-            lambda shape, weights: float(
-                np.angle(self.at(place, shape, weights)[0] * np.conj(own))
-            ),
-            "rad",
-            level=self.level,
-        )
-        angle = float(np.angle(own))
-        low, high = turned.interval
-        return Estimate(
-            angle, turned.standard_error, (angle + low, angle + high), "rad", self.level
-        )
+        return Estimate(value, found.standard_error * value**2, ends, "1")
 
 
 def _minima(x: si.MetreArray, size: si.FloatArray) -> si.MetreArray:

@@ -9,10 +9,9 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation, guarded_fit
+from squeezefilm.measure.fits.least_squares import fit_separable
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.separable import fit_separable
 from squeezefilm.measure.fits.vibration.modal_circle import modal_circle
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, RawSignals
 
@@ -62,7 +61,6 @@ def fit_raw_signals(
     instrument: bool = False,
     segment: Annotated[si.Second, si.Above(0)] | None = None,
     band: tuple[si.Hertz, si.Hertz] | None = None,
-    level: si.Dimensionless = 0.95,
 ) -> RawSignalsFit:
     """H1 = S_vx/S_vv (m/V) and its coherence by Welch's averages; an instrument's scale and delay.
 
@@ -90,7 +88,7 @@ def fit_raw_signals(
     if not instrument:
         return replace(found, adequacy=_coherent(found, length / rate))
     f = found.response.frequency
-    return _as_instrument(found, (v, x, rate), (float(f[0]), float(f[-1])), level)
+    return _as_instrument(found, (v, x, rate), (float(f[0]), float(f[-1])))
 
 
 def _averaged(
@@ -196,7 +194,6 @@ def _as_instrument(
     found: RawSignalsFit,
     signals: tuple[si.VoltArray, si.MetreArray, float],
     band: tuple[si.Hertz, si.Hertz],
-    level: float,
 ) -> RawSignalsFit:
     """With scale and delay by the whole recording's spectra within a band."""
     from scipy.signal.windows import tukey
@@ -225,8 +222,8 @@ def _as_instrument(
     )
     return replace(
         found,
-        scale=fit.estimate(lambda _, weights: size * float(weights[0]), "m/V", level=level),
-        delay=fit.estimate(lambda shape, _: shape[0] / (2 * np.pi * f[-1]), "s", level=level),
+        scale=fit.estimate(lambda _, weights: size * float(weights[0]), "m/V"),
+        delay=fit.estimate(lambda shape, _: shape[0] / (2 * np.pi * f[-1]), "s"),
         adequacy=adequacy,
     )
 

@@ -9,11 +9,20 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.estimate import (
+    Adequacy,
+    Estimate,
+    Observation,
+    guarded_fit,
+    inverse_of,
+)
+from squeezefilm.measure.fits.least_squares import (
+    NonlinearFit,
+    SeparableFit,
+    fit_nonlinear,
+    fit_separable,
+)
 from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
-from squeezefilm.measure.fits.nonlinear import NonlinearFit, fit_nonlinear, inverse_of
-from squeezefilm.measure.fits.separable import SeparableFit, fit_separable
 from squeezefilm.measure.recordings.kinds import RingDown
 
 _FEWEST_POINTS = 40
@@ -72,9 +81,7 @@ class RingDownFit:
 
 
 @guarded_fit
-def fit_ring_down(
-    recording: RingDown, *, modes: int | None = None, level: si.Dimensionless = 0.95
-) -> RingDownFit:
+def fit_ring_down(recording: RingDown, *, modes: int | None = None) -> RingDownFit:
     """Frequency (Hz) and Q of a free decay, its amplitude (m), and how they depend on amplitude.
 
     w = a(t) cos φ(t) + constant + slope, first with a = A e^{−πft/Q}; where the residual calls for
@@ -107,7 +114,7 @@ def fit_ring_down(
     elif two:
         fit = _with_second(decay, fit)
     fit = fit.with_widening(correlation_factor(blocks.of(fit.residual)))
-    return _FittedDecay(recording, decay, fit, bent, two, blocks, size, level).read()
+    return _FittedDecay(recording, decay, fit, bent, two, blocks, size).read()
 
 
 def _recorded(recording: RingDown) -> tuple[si.SecondArray, si.MetreArray]:
@@ -257,8 +264,8 @@ class _Bent:
         model = decay.w + fit.residual
         return cls(fit.with_widening(widening), model, float(fdtrc(2, fit.freedom, gain)))
 
-    def estimate(self, i: int, unit: str, factor: float, level: float) -> Estimate:
-        return self.fit.estimate(lambda at: factor * float(at[i]), unit, level=level)
+    def estimate(self, i: int, unit: str, factor: float) -> Estimate:
+        return self.fit.estimate(lambda at: factor * float(at[i]), unit)
 
 
 def _bent_decay(t: si.SecondArray, numbers: si.FloatArray) -> si.FloatArray:
@@ -290,7 +297,6 @@ class _FittedDecay:
     two: bool
     blocks: _Blocks
     size: float
-    level: float
 
     def read(self) -> RingDownFit:
         bent = self.bent
@@ -309,7 +315,7 @@ class _FittedDecay:
             if bent is not None
             else "",
         )
-        size, level, unit = self.size, self.level, self.recording.unit
+        size, unit = self.size, self.recording.unit
         return RingDownFit(
             recording=self.recording,
             time=self.decay.t,
@@ -318,12 +324,8 @@ class _FittedDecay:
             frequency=frequency,
             quality_factor=quality,
             amplitude=amplitude,
-            damping_rise=bent.estimate(4, f"1/{unit}", 1 / size, level)
-            if bent is not None
-            else None,
-            frequency_rise=bent.estimate(5, f"1/{unit}2", size**-2, level)
-            if bent is not None
-            else None,
+            damping_rise=bent.estimate(4, f"1/{unit}", 1 / size) if bent is not None else None,
+            frequency_rise=bent.estimate(5, f"1/{unit}2", size**-2) if bent is not None else None,
             second=self._straight(1)[:2] if self.two else None,
             envelope_time=self.blocks.time,
             envelope=np.abs(w),
@@ -331,23 +333,20 @@ class _FittedDecay:
         )
 
     def _straight(self, k: int) -> tuple[Estimate, Estimate, Estimate]:
-        fit, level = self.fit, self.level
-        loss = fit.estimate(
-            lambda shape, _: shape[2 * k + 1] / (np.pi * shape[2 * k]), "1", level=level
-        )
+        fit = self.fit
+        loss = fit.estimate(lambda shape, _: shape[2 * k + 1] / (np.pi * shape[2 * k]), "1")
         return (
-            fit.estimate(lambda shape, _: shape[2 * k], "Hz", level=level),
+            fit.estimate(lambda shape, _: shape[2 * k], "Hz"),
             inverse_of(loss),
             fit.estimate(
                 lambda _, weights: self.size * float(np.hypot(*weights[2 * k : 2 * k + 2])),
                 self.recording.unit,
                 positive=True,
-                level=level,
             ),
         )
 
     def _slight(self, bent: _Bent) -> tuple[Estimate, Estimate, Estimate]:
         """Frequency, Q and first amplitude, the former two of slight amplitudes."""
-        frequency, unit = bent.estimate(0, "Hz", 1.0, self.level), self.recording.unit
-        loss = bent.estimate(1, "1", 1 / (np.pi * frequency.value), self.level)
-        return frequency, inverse_of(loss), bent.estimate(2, unit, self.size, self.level)
+        frequency, unit = bent.estimate(0, "Hz", 1.0), self.recording.unit
+        loss = bent.estimate(1, "1", 1 / (np.pi * frequency.value))
+        return frequency, inverse_of(loss), bent.estimate(2, unit, self.size)

@@ -11,10 +11,15 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
-from squeezefilm.measure.fits.guarded import guarded_fit
+from squeezefilm.measure.fits.estimate import (
+    Adequacy,
+    Estimate,
+    Observation,
+    guarded_fit,
+    inverse_of,
+)
+from squeezefilm.measure.fits.least_squares import NonlinearFit, fit_nonlinear
 from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
-from squeezefilm.measure.fits.nonlinear import NonlinearFit, fit_nonlinear, inverse_of
 from squeezefilm.measure.fits.vibration.modal_circle import ModalCircle, modal_circle
 from squeezefilm.measure.recordings.kinds import VoltageSweeps
 from squeezefilm.physics.plate.free_plate import FreePlate
@@ -122,7 +127,6 @@ def fit_voltage_sweeps(
     *,
     law: BackboneLaw | None = None,
     drift: bool = False,
-    level: si.Dimensionless = 0.95,
 ) -> VoltageSweepsFit:
     """How resonance frequency (Hz) and losses depend on the amplitude (m), from sweeps at several
     voltages (V), up and down.
@@ -140,7 +144,7 @@ def fit_voltage_sweeps(
         si.require_one_of("law", law, BACKBONE_LAWS)
     tried: tuple[BackboneLaw, ...] = BACKBONE_LAWS if law is None else (law,)
     looks = [_first_look(points, one, drift) for one in tried]
-    return _fitted(*min(looks, key=_left)).read(recording, level)
+    return _fitted(*min(looks, key=_left)).read(recording)
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,7 +275,7 @@ class _Fitted:
     fit: NonlinearFit
     used: np.ndarray[tuple[int, ...], np.dtype[np.bool]]
 
-    def read(self, recording: VoltageSweeps, level: float) -> VoltageSweepsFit:
+    def read(self, recording: VoltageSweeps) -> VoltageSweepsFit:
         points, own, power = self.duffing.points, self.duffing.own, self.duffing.power
         step, _ = self.duffing.steps_to_curve(self.fit.numbers)
         count = int(self.used.sum())
@@ -280,7 +284,7 @@ class _Fitted:
         size, volts = points.size, points.volts
 
         def estimate(i: int, factor: float, unit: str) -> Estimate:
-            return fit.estimate(lambda at: factor * float(at[i]), unit, level=level)
+            return fit.estimate(lambda at: factor * float(at[i]), unit)
 
         backbone = estimate(2, size**-power, "1/m2" if power == 2 else "1/m")
         f, used = points.f[self.used], points.u[self.used] * size
@@ -301,13 +305,12 @@ class _Fitted:
         return VoltageSweepsFit(
             recording=recording,
             law=self.duffing.law,
-            frequency=fit.estimate(lambda at: own * (1 + float(at[0])), "Hz", level=level),
+            frequency=fit.estimate(lambda at: own * (1 + float(at[0])), "Hz"),
             quality_factor=inverse_of(estimate(1, 1.0, "1")),
             amplitude_per_volt=fit.estimate(
                 lambda at: size / volts * math.hypot(at[4], at[5]) / abs(at[1]) / (1 + at[0]) ** 2,
                 "m/V",
                 positive=True,
-                level=level,
             ),
             backbone=backbone,
             damping_rise=estimate(3, 1 / size, "1/m"),
