@@ -21,7 +21,7 @@ from scipy.special import ndtr
 
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
-from squeezefilm.measure.fits.friction.detection import METHOD_RATIO, detection_medians
+from squeezefilm.measure.fits.friction.populations import METHOD_RATIO, detection_medians
 from squeezefilm.measure.recordings.kinds import DetectionThresholds
 from squeezefilm.measure.recordings.read import read_recording
 from squeezefilm.physics.perception.observer import Observer, load_observer

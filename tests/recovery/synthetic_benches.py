@@ -14,7 +14,7 @@ from squeezefilm.measure.calibration.friction_posterior import (
     friction_of_points,
     weighted,
 )
-from squeezefilm.measure.calibration.next_measurement import (
+from squeezefilm.measure.calibration.identified import (
     FRICTION_ACCURACY,
     friction_candidate,
     ranked,

@@ -18,8 +18,7 @@ from squeezefilm.measure.fits.ceramic.bar import bar_constants
 from squeezefilm.measure.fits.ceramic.disc import disc_by_mass, disc_constants
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.sweep_reading import sweep_peaks
-from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
-from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep
 
 from .measured_data import measured_file, traces_4294a
 

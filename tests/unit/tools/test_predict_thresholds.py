@@ -11,7 +11,7 @@ import pytest
 
 from predict_disc import is_sealed, sealed
 from predict_thresholds import FILE, PERIODS, text
-from squeezefilm.measure.fits.friction.detection import METHOD_RATIO, RIVALS, detection_medians
+from squeezefilm.measure.fits.friction.populations import METHOD_RATIO, RIVALS, detection_medians
 from squeezefilm.physics.perception.observer import load_observer
 from threshold_fit import fitted, method_ratio, published
 

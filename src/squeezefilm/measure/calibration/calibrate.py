@@ -17,7 +17,6 @@ from squeezefilm.measure.calibration.calibration import (
     Calibration,
     FrictionInterval,
     Joint,
-    NextMeasurement,
 )
 from squeezefilm.measure.calibration.compared import compared
 from squeezefilm.measure.calibration.friction_likelihood import FrictionLikelihood, Touching
@@ -30,10 +29,12 @@ from squeezefilm.measure.calibration.friction_posterior import (
     friction_of_points,
     friction_posterior,
 )
-from squeezefilm.measure.calibration.identified import Identification, identification
-from squeezefilm.measure.calibration.next_measurement import (
+from squeezefilm.measure.calibration.identified import (
+    Identification,
+    NextMeasurement,
     candidates,
     friction_candidate,
+    identification,
     ranked,
 )
 from squeezefilm.measure.calibration.plate_fit import WORKING, PlateFit, fitted_plate

@@ -12,7 +12,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.calibration_record import ComparedAnswer
 from squeezefilm.core.results import to_json
 from squeezefilm.measure.calibration.discrepancy import Misfit
-from squeezefilm.measure.calibration.identified import Identification
+from squeezefilm.measure.calibration.identified import Identification, NextMeasurement
 from squeezefilm.measure.calibration.solved_answers import Asked
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.display import Display
@@ -57,24 +57,6 @@ class FrictionInterval:
     def width(self) -> si.Dimensionless:
         """High less low."""
         return self.interval[1] - self.interval[0]
-
-
-@dataclass(frozen=True)
-class NextMeasurement:
-    """A measurement that could be made next: what, how well (in its own unit, in words), and what
-    share of friction's interval it is expected to leave."""
-
-    name: str
-    accuracy: str
-    left: si.Dimensionless
-
-    @property
-    def sentence(self) -> str:
-        """As one says it."""
-        return (
-            f"{self.name} (to {self.accuracy}) is expected to leave {si.percent(self.left)} of the "
-            "interval of friction"
-        )
 
 
 @dataclass(frozen=True, eq=False)

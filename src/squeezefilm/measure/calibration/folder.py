@@ -6,7 +6,6 @@ import dataclasses
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -29,8 +28,10 @@ from squeezefilm.measure.calibration.solved_answers import (
     asked_by,
 )
 from squeezefilm.measure.calibration.written_display import calibrated_display, write_calibrated
+from squeezefilm.measure.fits.by_kind import fit_recording, response_fit
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.measure.recordings.kinds import FrictionCurve
+from squeezefilm.measure.recordings.read import check_folder
 from squeezefilm.physics.display import Display, NamedDisplay
 
 
@@ -135,9 +136,7 @@ def folder_observations(
 
     Raises `InputError` for what is no folder, or one without recordings.
     """
-    # Readers and fits are imported when there is something to read: some take a second.
-    check = import_module("squeezefilm.measure.recordings.read").check_folder(folder)
-    by_kind = import_module("squeezefilm.measure.fits.by_kind")
+    check = check_folder(folder)
     observations: list[Observation] = []
     recordings: list[UsedRecording] = []
     left_out = [f"{one.file.name}: {one.why}" for one in check.refused]
@@ -145,8 +144,8 @@ def folder_observations(
         name = one.file.name
         tell(f"fit of {name}")
         try:
-            fit = by_kind.fit_recording(one.recording, display)
-            fit = by_kind.response_fit(fit) or fit
+            fit = fit_recording(one.recording, display)
+            fit = response_fit(fit) or fit
         except SqueezefilmError as error:
             left_out.append(f"{name}: {error}")
             continue

@@ -2,44 +2,34 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from types import ModuleType
-from typing import Annotated, Any, Protocol, cast
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Protocol
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.from_text import ReadBy, reads_text
+from squeezefilm.measure.fits.ceramic.bar import bar_constants
+from squeezefilm.measure.fits.ceramic.disc import disc_constants
+from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.estimate import Adequacy, Observation
+from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
+from squeezefilm.measure.fits.friction.friction_curve import compare_friction_curve
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
+from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
+from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan, shapes_at
+from squeezefilm.measure.fits.vibration.line_scan import fit_line_scan
+from squeezefilm.measure.fits.vibration.raw_signals import fit_raw_signals
+from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
+from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings import kinds
-from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.read import read_recording
 from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 from squeezefilm.physics.plate.solid.solve import solve_modes
 from squeezefilm.physics.plate.solid.working import solid_mode
 
 OF_MANY_PEOPLE = kinds.FrictionDecays | kinds.FingertipImpedances | kinds.DetectionThresholds
 """What is compared, and not fitted."""
-# The module of `measure.fits` and its function; imported when a recording of the kind is fitted.
-FITS: dict[type, tuple[str, str]] = {
-    kinds.ImpedanceSweep: ("circuit.impedance", "fit_impedance"),
-    kinds.FrequencyResponse: ("vibration.frequency_response", "fit_frequency_response"),
-    kinds.LineScan: ("vibration.line_scan", "fit_line_scan"),
-    kinds.GridScan: ("vibration.grid_scan", "fit_grid_scan"),
-    kinds.RingDown: ("vibration.ring_down", "fit_ring_down"),
-    kinds.VoltageSweeps: ("vibration.voltage_sweeps", "fit_voltage_sweeps"),
-    kinds.RawSignals: ("vibration.raw_signals", "fit_raw_signals"),
-    kinds.FrictionBench: ("friction.friction_bench", "fit_friction_bench"),
-    kinds.FrictionCurve: ("friction.friction_curve", "compare_friction_curve"),
-}
-
-CERAMICS: dict[type, tuple[str, str]] = {
-    CeramicBar: ("ceramic.bar", "bar_constants"),
-    CeramicDisc: ("ceramic.disc", "disc_constants"),
-}
-"""The same for a sweep of a bare ceramic, by its body."""
 
 _NEAR: si.Dimensionless = 0.1
 """How far from a scan's frequency (of it) modes may take part in what is seen."""
@@ -67,7 +57,7 @@ class Fit(Protocol):
 
 @reads_text
 def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None) -> Fit:
-    """What goes with the kind of a recording: a circuit with an impedance (constants of the
+    """The fit that goes with the kind of a recording: a circuit with an impedance (constants of the
     material with that of a bare ceramic bar or disc, whose shape its description names), modes with
     a frequency response, models of friction with a friction curve; a frozen dataclass whose numbers
     are `Estimate`s, with its `adequacy` and the `observations` for a calibration.
@@ -77,23 +67,18 @@ def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None
     display's; no other kind is given it. Raises what `read_recording` raises, and `InputError` for
     a recording that its fit refuses.
     """
-    known = FITS.get(type(recording))
     if isinstance(recording, OF_MANY_PEOPLE):
         raise InputError(
             f"'{recording.told.name}' holds numbers of many people, which are compared and not "
             "fitted: squeezefilm reproduce --data FOLDER"
         )
-    if known is None:
+    fit = FITS.get(type(recording))
+    if fit is None:
         raise InputError(
             f"{type(recording).__name__} is no kind of recording; give the path of a file, or what "
             "read_recording returned"
         )
-    body = recording.body if isinstance(recording, kinds.ImpedanceSweep) else None
-    module, name = known if body is None else CERAMICS[type(body)]
-    fits = import_module(f"squeezefilm.measure.fits.{module}")
-    if body is not None:
-        return cast(Fit, getattr(fits, name)(recording, body))
-    return cast(Fit, getattr(fits, name)(recording, **_of_display(recording, display, fits)))
+    return fit(recording, display)
 
 
 def response_fit(fit: Fit) -> Fit | None:
@@ -103,28 +88,53 @@ def response_fit(fit: Fit) -> Fit | None:
     return fit_recording(response) if isinstance(response, kinds.FrequencyResponse) else None
 
 
-def _of_display(
-    recording: kinds.Recording, display: Display | None, fits: ModuleType
-) -> dict[str, Any]:
-    """What a fit is given of the display, by name. Raises `InputError` for a grid scan without a
-    plate."""
-    if isinstance(recording, kinds.FrictionCurve):
-        return {"display": None if recording.display else display}
-    if not isinstance(recording, kinds.GridScan | kinds.LineScan):
-        return {}
+def _swept(sweep: kinds.ImpedanceSweep, _: Display | None) -> Fit:
+    """A circuit, or the constants of a bare ceramic."""
+    if sweep.body is None:
+        return fit_impedance(sweep)
+    if isinstance(sweep.body, kinds.CeramicBar):
+        return bar_constants(sweep, sweep.body)
+    return disc_constants(sweep, sweep.body)
+
+
+def _line(scan: kinds.LineScan, display: Display | None) -> Fit:
+    """A wave along a line, beside the shape of a plate that resonates near the scan's frequency."""
     plate = None if display is None else display.actuator
-    if isinstance(recording, kinds.LineScan) and not isinstance(plate, RectangularPlate):
-        return {}
+    if isinstance(plate, RectangularPlate):
+        mode = solid_mode(plate)
+        if abs(scan.frequency / mode.frequency - 1) <= _SAME:
+            return fit_line_scan(scan, DrivenShape.of(mode))
+    return fit_line_scan(scan)
+
+
+def _grid(scan: kinds.GridScan, display: Display | None) -> Fit:
+    """A scan of a face beside the plate's solved shapes."""
+    plate = None if display is None else display.actuator
     if not isinstance(plate, RectangularPlate):
         raise InputError(
             "a grid scan is compared with a plate's solved shapes; name its display, a rectangular "
             "plate: display biet2008-plate, or a TOML file",
             quantity="display",
         )
-    mode = solid_mode(plate)
-    if isinstance(recording, kinds.LineScan):
-        other = abs(recording.frequency / mode.frequency - 1) > _SAME
-        return {} if other else {"shape": DrivenShape.of(mode)}
-    band = (recording.frequency * (1 - _NEAR), recording.frequency * (1 + _NEAR))
+    band = (scan.frequency * (1 - _NEAR), scan.frequency * (1 + _NEAR))
     modes = solve_modes(plate, band=band, tolerance=_TOLERANCE)
-    return {"shapes": fits.shapes_at(modes, recording.x, recording.y, DrivenShape.of(mode))}
+    driven = DrivenShape.of(solid_mode(plate))
+    return fit_grid_scan(scan, shapes_at(modes, scan.x, scan.y, driven))
+
+
+def _curve(curve: kinds.FrictionCurve, display: Display | None) -> Fit:
+    return compare_friction_curve(curve, display=None if curve.display else display)
+
+
+FITS: Mapping[type, Callable[[Any, Display | None], Fit]] = {
+    kinds.ImpedanceSweep: _swept,
+    kinds.FrequencyResponse: lambda response, _: fit_frequency_response(response),
+    kinds.LineScan: _line,
+    kinds.GridScan: _grid,
+    kinds.RingDown: lambda decay, _: fit_ring_down(decay),
+    kinds.VoltageSweeps: lambda sweeps, _: fit_voltage_sweeps(sweeps),
+    kinds.RawSignals: lambda signals, _: fit_raw_signals(signals),
+    kinds.FrictionBench: lambda bench, _: fit_friction_bench(bench),
+    kinds.FrictionCurve: _curve,
+}
+"""The fit of each kind of recording, which is given the display where one was named."""

@@ -10,14 +10,20 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.measure.recordings import assembled_friction, kinds
-from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES, Fixture
 from squeezefilm.measure.recordings.described import Column
 from squeezefilm.measure.recordings.description import Description, ImpedanceColumns
 from squeezefilm.measure.recordings.files.raw_table import RawTable
+from squeezefilm.measure.recordings.kinds import CeramicBar
 from squeezefilm.measure.recordings.motions import moment_by_moment, motion_of, motion_per_volt
-from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity
-from squeezefilm.measure.recordings.rows import both_rows, require_rising, rising_order
+from squeezefilm.measure.recordings.quantities_read import (
+    QUANTITIES,
+    Reading,
+    both_rows,
+    quantity,
+    require_rising,
+    rising_order,
+)
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
 _HZ, _S = si.Unit("Hz"), si.Unit("s")

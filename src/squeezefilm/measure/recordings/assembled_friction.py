@@ -8,8 +8,13 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.measure.recordings import kinds
-from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
-from squeezefilm.measure.recordings.rows import require_rising
+from squeezefilm.measure.recordings.quantities_read import (
+    QUANTITIES,
+    Reading,
+    quantity,
+    require_rising,
+    words,
+)
 
 
 def bench(reading: Reading) -> kinds.FrictionBench:

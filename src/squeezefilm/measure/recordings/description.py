@@ -17,15 +17,18 @@ from squeezefilm.core.config.scan import require_quick_toml
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.hard_limits import DESCRIPTION_BYTES, FREQUENCY, PLACE, RESISTANCE
 from squeezefilm.core.regular_file import read_regular_text
-from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
-from squeezefilm.measure.recordings.described import Band, Column, Described, Given
-from squeezefilm.measure.recordings.described_friction import (
+from squeezefilm.measure.recordings.described import (
+    Band,
+    Column,
+    Described,
     DescribedBench,
     DescribedCurve,
     DescribedDecays,
     DescribedDetection,
     DescribedTouches,
+    Given,
 )
+from squeezefilm.measure.recordings.kinds import CeramicBar
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
 
@@ -164,7 +167,7 @@ class TimeColumns:
 
 
 @dataclass(frozen=True)
-class DecayColumns(TimeColumns):
+class RingDownColumns(TimeColumns):
     """Time, and a motion or any `signal` that follows it."""
 
     signal: Column | None = None
@@ -176,7 +179,7 @@ class DescribedRingDown(Described):
     """Motion against time after the drive was switched off, or a signal that follows it."""
 
     kind: Literal["ring-down"]
-    columns: DecayColumns
+    columns: RingDownColumns
 
 
 @si.checked_numbers

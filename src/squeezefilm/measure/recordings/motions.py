@@ -6,8 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.measure.recordings.quantities_read import Reading
-from squeezefilm.measure.recordings.rows import require_rising
+from squeezefilm.measure.recordings.quantities_read import Reading, require_rising
 
 # Less drives nothing that an instrument sees.
 _LEAST_VOLTAGE: si.Volt = 1e-9

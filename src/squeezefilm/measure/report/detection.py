@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.core.kit import style
-from squeezefilm.measure.fits.friction.detection import (
+from squeezefilm.measure.fits.friction.populations import (
     MEAN_FRICTION,
     RIVALS,
     DetectionComparison,

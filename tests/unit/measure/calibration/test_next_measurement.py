@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.measure.calibration.next_measurement import (
+from squeezefilm.measure.calibration.identified import (
     Candidate,
     candidates,
     friction_candidate,

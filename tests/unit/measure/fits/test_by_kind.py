@@ -3,11 +3,10 @@ path."""
 
 from __future__ import annotations
 
-import sys
 import typing
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,19 +15,18 @@ from tests.unit.measure.recordings.bench_files import IMPEDANCE, impedance_text,
 
 import squeezefilm as sf
 from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.measure.fits import by_kind
 from squeezefilm.measure.fits.by_kind import FITS, OF_MANY_PEOPLE, fit_recording, response_fit
 from squeezefilm.measure.recordings import kinds
-from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
+from squeezefilm.measure.recordings.kinds import CeramicBar
 from squeezefilm.measure.recordings.read import check_recording
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
 
-def stand_in(monkeypatch: pytest.MonkeyPatch, module: str, **functions: Any) -> None:
-    """A module of fits in the real one's place."""
-    name = f"squeezefilm.measure.fits.{module}"
-    made = ModuleType(name)
-    vars(made).update(functions)
-    monkeypatch.setitem(sys.modules, name, made)
+def stand_in(monkeypatch: pytest.MonkeyPatch, **functions: Any) -> None:
+    """Fits in the real ones' place."""
+    for name, function in functions.items():
+        monkeypatch.setattr(by_kind, name, function)
 
 
 def test_every_kind_of_recording_has_its_fit() -> None:
@@ -43,7 +41,7 @@ def test_every_kind_of_recording_has_its_fit() -> None:
 def test_a_recording_or_its_path_reaches_the_fit(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    stand_in(monkeypatch, "circuit.impedance", fit_impedance=lambda sweep: sweep.told.name)
+    stand_in(monkeypatch, fit_impedance=lambda sweep: sweep.told.name)
     path = written(tmp_path, impedance_text())
     assert fit_recording(path) == fit_recording(str(path)) == "synthetic resonator"
     assert fit_recording(sf.read_recording(path)) == "synthetic resonator"
@@ -69,7 +67,6 @@ def test_a_grid_scan_meets_the_solved_modes_near_its_frequency(
 ) -> None:
     stand_in(
         monkeypatch,
-        "vibration.grid_scan",
         shapes_at=lambda modes, x, y, driven: (modes, x, y, driven.lobe),
         fit_grid_scan=lambda scan, shapes: shapes,
     )
@@ -84,9 +81,9 @@ def test_a_grid_scan_meets_the_solved_modes_near_its_frequency(
 def test_a_bare_ceramic_is_fitted_by_its_shape(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    stand_in(monkeypatch, "circuit.impedance", fit_impedance=lambda sweep: "a circuit")
-    stand_in(monkeypatch, "ceramic.bar", bar_constants=lambda sweep, bar: bar)
-    stand_in(monkeypatch, "ceramic.disc", disc_constants=lambda sweep, disc: disc)
+    stand_in(monkeypatch, fit_impedance=lambda sweep: "a circuit")
+    stand_in(monkeypatch, bar_constants=lambda sweep, bar: bar)
+    stand_in(monkeypatch, disc_constants=lambda sweep, disc: disc)
     bar = '[bar]\nlength = "12 mm"\nwidth = "3 mm"\nthickness = "1 mm"\ndensity = "7850 kg/m3"\n'
     disc = '[disc]\ndiameter = "35 mm"\nthickness = "2 mm"\ndensity = "7743 kg/m3"\n'
     text = impedance_text()
@@ -108,10 +105,9 @@ def test_a_bare_ceramic_is_fitted_by_its_shape(
 def test_a_line_scan_is_given_the_shape_of_a_plate_and_a_curve_its_display(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    stand_in(monkeypatch, "vibration.line_scan", fit_line_scan=lambda scan, shape=None: shape)
+    stand_in(monkeypatch, fit_line_scan=lambda scan, shape=None: shape)
     stand_in(
         monkeypatch,
-        "friction.friction_curve",
         compare_friction_curve=lambda curve, display=None: display,
     )
     scan = kinds.LineScan(np.linspace(0, 0.08, 30), np.ones(30) + 0j, 33.6e3)
@@ -129,7 +125,6 @@ def test_signals_are_fitted_by_the_response_that_they_give(
 ) -> None:
     stand_in(
         monkeypatch,
-        "vibration.frequency_response",
         fit_frequency_response=lambda one: one.frequency,
     )
     f = np.linspace(1e4, 2e4, 5)

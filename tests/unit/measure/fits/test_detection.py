@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.core import presets
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.friction.detection import (
+from squeezefilm.measure.fits.friction.populations import (
     METHOD_RATIO,
     RIVALS,
     compare_detection,

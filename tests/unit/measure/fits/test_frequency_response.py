@@ -7,8 +7,10 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration import frequency_response
-from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
-from squeezefilm.measure.fits.vibration.modal_circle import modal_circle
+from squeezefilm.measure.fits.vibration.frequency_response import (
+    fit_frequency_response,
+    modal_circle,
+)
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
 
 F = np.linspace(29e3, 31.5e3, 200)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squeezefilm.measure.fits.vibration.line_waves import LineWaves
+from squeezefilm.measure.fits.vibration.line_points import LineWaves
 
 X = np.linspace(0, 80e-3, 4001)
 

@@ -12,7 +12,7 @@ from tests.unit.measure.recordings.test_read import described
 from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.measure.recordings import assembled_friction, kinds
-from squeezefilm.measure.recordings.described_friction import DescribedDecays, DescribedTouches
+from squeezefilm.measure.recordings.described import DescribedDecays, DescribedTouches
 from squeezefilm.measure.recordings.description import KINDS
 from squeezefilm.measure.recordings.read import check_folder, check_recording, read_recording
 from squeezefilm.physics.display import load_display

@@ -16,11 +16,11 @@ from squeezefilm.measure.recordings.files.instruments import held_by, recognised
 from squeezefilm.measure.recordings.files.sound import read_wav
 from squeezefilm.measure.recordings.files.touchstone import read_touchstone
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep, RawSignals, RingDown
-from squeezefilm.measure.recordings.proposed import proposed
 from squeezefilm.measure.recordings.read import (
     check_folder,
     check_recording,
     propose_description,
+    proposed,
     read_recording,
     write_description,
 )

@@ -19,8 +19,15 @@ from squeezefilm.measure.recordings.files.analysers import is_4294a, read_4294a
 from squeezefilm.measure.recordings.files.raw_table import RawTable
 from squeezefilm.measure.recordings.files.text_table import decoded, read_text_table
 from squeezefilm.measure.recordings.motions import motion_of, moved_quantity
-from squeezefilm.measure.recordings.quantities_read import QUANTITIES, Reading, quantity, words
-from squeezefilm.measure.recordings.rows import both_rows, require_rising, rising_order
+from squeezefilm.measure.recordings.quantities_read import (
+    QUANTITIES,
+    Reading,
+    both_rows,
+    quantity,
+    require_rising,
+    rising_order,
+    words,
+)
 
 LINE = """\
 kind = "line scan"

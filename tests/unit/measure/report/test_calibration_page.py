@@ -20,11 +20,15 @@ from squeezefilm.measure.calibration.calibration import (
     Calibration,
     FrictionInterval,
     Joint,
-    NextMeasurement,
 )
 from squeezefilm.measure.calibration.discrepancy import Misfit
 from squeezefilm.measure.calibration.folder import FolderCalibration
-from squeezefilm.measure.calibration.identified import Combination, Identification, Known
+from squeezefilm.measure.calibration.identified import (
+    Combination,
+    Identification,
+    Known,
+    NextMeasurement,
+)
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.measure.report.calibration_figures import FIGURES, deviation, values_figure
 from squeezefilm.measure.report.calibration_page import value_rows, write_calibration

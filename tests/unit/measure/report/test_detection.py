@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.unit.drawn import words
 
-from squeezefilm.measure.fits.friction.detection import RIVALS, DetectionComparison
+from squeezefilm.measure.fits.friction.populations import RIVALS, DetectionComparison
 from squeezefilm.measure.recordings.kinds import DetectionThresholds, Told
 from squeezefilm.measure.report.detection import (
     DETECTION_HEAD,

@@ -18,8 +18,7 @@ from squeezefilm.measure.fits.ceramic.constants import (
 from squeezefilm.measure.fits.complex_fit import fit_complex
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.sweep_reading import require_passive
-from squeezefilm.measure.recordings.ceramic_bar import CeramicBar
-from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep
 
 
 @dataclass(frozen=True, eq=False)

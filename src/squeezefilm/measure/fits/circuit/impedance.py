@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
@@ -12,39 +10,24 @@ import numpy as np
 from scipy import optimize
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import ConvergenceError, InputError
-from squeezefilm.measure.fits.circuit.branches import (
-    Layout,
-    circuit_curve,
-    poles,
-    relative_motion,
-    start_at,
+from squeezefilm.measure.fits.circuit.branches import Layout, circuit_curve
+from squeezefilm.measure.fits.circuit.choice import (
+    CORRECTIONS,
+    MOST_BRANCHES,
+    chosen_circuit,
+    sweep_motion,
 )
-from squeezefilm.measure.fits.complex_fit import ComplexFit, fit_complex, sweep_adequacy
+from squeezefilm.measure.fits.complex_fit import ComplexFit, sweep_adequacy
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 
-MOST_BRANCHES = 8
-# So many richer circuits in a row that are no better, and no more are tried: two modes of five that
-# are told only together take three steps.
-_PATIENCE = 6
-# A branch that is flatter than this is no resonance but what a band shows of other things.
-_LEAST_QUALITY = 4.0
-_LEAST_RISE = 1e-3
-# A further branch must lower the Bayesian information criterion by this: "very strong" evidence
-# (Kass and Raftery 1995, 10.1080/01621459.1995.10476572), and take a fifth of what was left.
-_EVIDENCE, _LESS_LEFT = 10.0, 0.8
-# ... and be told from the others: to that standard error of ln Q and ln C.
-_TOLD_APART = 0.35
-
-
-# What may stand beside the branches.
-_CORRECTIONS = ("coupling_loss", "leads", "drift")
-_WORDS = {"coupling_loss": "a loss of the coupling", "leads": "leads in series",
-          "drift": "a drift of the analyser"}  # fmt: skip
-_Fitted = tuple[ComplexFit, Layout]
+_WORDS = {
+    "coupling_loss": "a loss of the coupling",
+    "leads": "leads in series",
+    "drift": "a drift of the analyser",
+}
 
 
 @dataclass(frozen=True)
@@ -162,7 +145,7 @@ def fit_impedance(
     require_passive(sweep)
     if branches is not None:
         si.require("branches", branches, at_least=1, at_most=MOST_BRANCHES)
-    (fit, layout), rivals = _settled(sweep, _chosen(sweep, branches, drift), drift)
+    (fit, layout), rivals = chosen_circuit(sweep, branches, drift)
     told = _told(sweep, fit, layout)
     for rival in rivals:
         told = _holding(told, _told(sweep, *rival))
@@ -189,8 +172,8 @@ def _holding(told: ImpedanceFit, rival: ImpedanceFit) -> ImpedanceFit:
 def _alike(told: ImpedanceFit, rival: Layout) -> ImpedanceFit:
     """The same, and its adequacy names the corrections that the sweep does not tell apart."""
     either = told.layout, rival
-    found = [name for name in _CORRECTIONS if any(getattr(layout, name) for layout in either)]
-    names = " and ".join(_WORDS[name] for name in found)
+    corrections = [name for name in CORRECTIONS if any(getattr(layout, name) for layout in either)]
+    names = " and ".join(_WORDS[name] for name in corrections)
     said = (
         f"{told.adequacy.sentence} {names.capitalize()} describe this sweep alike: intervals hold "
         "what either makes of it. Write compensated = true if leads were compensated, or false if "
@@ -205,212 +188,6 @@ def _wider(ours: Estimate, theirs: Estimate) -> Estimate:
     more = error / ours.standard_error if ours.standard_error > 0 else 1.0
     low, high = (ours.value + more * (end - ours.value) for end in ours.interval)
     return replace(ours, standard_error=error, interval=(low, high))
-
-
-def _chosen(sweep: ImpedanceSweep, branches: int | None, drift: bool) -> _Fitted:
-    """The fit of as many branches as were asked for, or as the sweep asks for."""
-    counts = range(1, MOST_BRANCHES + 1) if branches is None else (branches,)
-    best: _Fitted | None = None
-    since = 0
-    for count in counts:
-        for step in _layouts(count, _corrections(sweep, drift)):
-            if best is not None and (best[0].correlation == 1.0 or since == _PATIENCE):
-                return best
-            tried = [_fitted(sweep, layout) for layout in step] + [_one_more(sweep, step[0], best)]
-            told = [one for one in tried if one is not None and (not best or _better(one, best))]
-            if told:
-                best, since = min(told, key=_criterion), 0
-            else:
-                since += 1
-    if best is None:
-        raise _no_resonance(sweep, branches or 1)
-    return best
-
-
-def _corrections(sweep: ImpedanceSweep, drift: bool) -> tuple[frozenset[str], ...]:
-    """What may stand beside the branches, the plainer first: what was told stands in all."""
-    told = {"drift"} if drift else set()
-    told |= {"leads"} if sweep.compensated is False else set()
-    free = [one for one in _CORRECTIONS if one not in told]
-    if sweep.compensated:
-        free.remove("leads")
-    return tuple(
-        frozenset(told | set(one))
-        for size in range(3)
-        for one in itertools.combinations(free, size)
-    )
-
-
-def _layouts(count: int, corrections: Sequence[frozenset[str]]) -> Iterator[tuple[Layout, ...]]:
-    """Circuits of that many branches, the plainer first, those of one step beside each other; only
-    one branch can soften."""
-    made = [Layout(count, **dict.fromkeys(one, True)) for one in corrections]
-    for _, step in itertools.groupby(made, _corrected):
-        yield tuple(step)
-    if count == 1:
-        yield (replace(made[0], coupling_loss=True, softening=True),)
-
-
-def _corrected(layout: Layout) -> int:
-    """How many corrections a circuit has."""
-    return sum(getattr(layout, one) for one in _CORRECTIONS)
-
-
-def _settled(sweep: ImpedanceSweep, best: _Fitted, drift: bool) -> tuple[_Fitted, list[_Fitted]]:
-    """The fit with the corrections that are told, though what is left looked like noise (leads far
-    too small to be seen there move Q by more than its interval); and its rivals: as many
-    corrections of another kind, which the sweep does not tell from them."""
-    if best[1].softening:
-        return best, []
-    corrected = _corrected(best[1])
-    tried = [
-        _fitted(sweep, layout)
-        for step in _layouts(best[1].branches, _corrections(sweep, drift))
-        for layout in step
-        if corrected <= _corrected(layout) <= corrected + 1
-        and (not layout.softening or best[0].correlation > 1.0)
-    ]
-    fits = [one for one in tried if one is not None]
-    least = min(fits, key=_criterion, default=best)
-    best = least if _criterion(least) < _criterion(best) - _EVIDENCE else best
-    return best, [
-        one
-        for one in fits
-        if one[1] != best[1]
-        and _corrected(one[1]) == _corrected(best[1])
-        and _deviance(one) < _deviance(best) + _EVIDENCE
-    ]
-
-
-def _deviance(fit: _Fitted) -> float:
-    """What a fit leaves: twice the logarithm of a likelihood, but for a constant."""
-    return 2 * fit[0].residual.size * math.log(fit[0].left ** 2)
-
-
-def _criterion(fit: _Fitted) -> float:
-    """The Bayesian information criterion of a fit."""
-    return _deviance(fit) + fit[1].size * math.log(2 * fit[0].residual.size)
-
-
-def _better(more: _Fitted, best: _Fitted) -> bool:
-    """Whether the richer circuit is asked for by the data, and each of its branches is told."""
-    fit, layout = more
-    for k in range(layout.branches):
-        if np.any(np.sqrt(np.diag(fit.covariance)[layout.branch(k)]) > _TOLD_APART):
-            return False
-    # Under much noise a neighbour takes less, and leaves nothing but noise.
-    explains = fit.left < _LESS_LEFT * best[0].left or fit.correlation == 1.0
-    return _criterion(best) - _criterion(more) > _EVIDENCE and explains
-
-
-def _no_resonance(sweep: ImpedanceSweep, branches: int) -> InputError:
-    f = sweep.frequency
-    wanted = "a resonance" if branches == 1 else f"{branches} resonances"
-    return InputError(
-        f"{wanted} could not be found between {f[0] / 1e3:.5g} and {f[-1] / 1e3:.5g} kHz; give a "
-        "sweep that holds the conductance's maximum and the parallel resonance above it, with "
-        "some points within the maximum's width",
-        quantity="admittance",
-    )
-
-
-def _one_more(sweep: ImpedanceSweep, layout: Layout, best: _Fitted | None) -> _Fitted | None:
-    """A branch more than the best fit has, where that leaves most: poles of all the sweep do not
-    find a small one under noise."""
-    if best is None or layout.branches != best[1].branches + 1:
-        return None
-    rows = [best[0].parameters[best[1].branch(k)] for k in range(best[1].branches)]
-    own, quality = np.exp(np.array(rows)[:, :2]).T
-    width = max(sweep.frequency.size // 16, 3)
-    left = np.convolve(best[0].residual.real, np.ones(width) / width, mode="same")
-    there = float(sweep.frequency[int(np.argmax(left))])
-    more = np.append(own, there), np.append(quality, float(np.median(quality)))
-    order = np.argsort(more[0])
-    return _fitted(sweep, layout, more[0][order], more[1][order])
-
-
-def _fitted(
-    sweep: ImpedanceSweep,
-    layout: Layout,
-    own: si.HertzArray | None = None,
-    quality: si.DimensionlessArray | None = None,
-) -> _Fitted | None:
-    """The fit of a layout, branches rising in frequency, from frequencies (Hz) and Q of branches or
-    from the poles of the sweep; None where there are not so many."""
-    f, y, count = sweep.frequency, sweep.admittance, layout.branches
-    if 2 * y.size < layout.size + 8:
-        return None
-    if own is None:
-        own, quality = _starts(f, y, count)
-    if own is None or quality is None:
-        return None
-    start = start_at(layout, f, y, own, quality)
-    motion = _motion(sweep, start)
-    try:
-        fit = fit_complex(lambda p: circuit_curve(layout, p, f, motion), start, y)
-    except ConvergenceError:
-        return None
-    logs = np.array([fit.parameters[layout.branch(k)] for k in range(count)])
-    frequency, quality = np.exp(np.clip(logs[:, :2], -30, 30)).T
-    inside = (frequency > f[0]) & (frequency < f[-1])
-    # Narrower than the points are apart is no resonance that these points can tell.
-    step = np.interp(frequency, f, np.gradient(f))
-    sharp = (quality > _LEAST_QUALITY) & (frequency / quality > step)
-    # How far the branch rises above the static capacitance, at its resonance.
-    strong = quality * np.exp(np.clip(logs[:, 2] - fit.parameters[0], -60, 30)) > _LEAST_RISE
-    if not np.all(inside & sharp & strong) or not np.all(np.diag(fit.covariance) > 0):
-        return None
-    if layout.leads:
-        ohms, henries = fit.parameters[layout.lead :][:2]
-        # A coil within the sweep's own reactance; leads give no power.
-        error = math.sqrt(fit.covariance[layout.lead, layout.lead])
-        least = float(np.min(np.abs(1 / y)))
-        if ohms < -2 * error or ohms > least or 2 * math.pi * f[-1] * abs(henries) > 10 * least:
-            return None
-    # Softer by a third is no correction of a linear circuit any more.
-    if layout.softening and np.any(np.abs(fit.parameters[layout.soft :][:2]) > [0.3, 0.95]):
-        return None
-    return _in_order(fit, layout, frequency), layout
-
-
-def _motion(sweep: ImpedanceSweep, p: si.FloatArray) -> si.DimensionlessArray:
-    """The motion at each point over the largest, with the static branch of parameters `p`."""
-    held = 2j * np.pi * sweep.frequency * math.exp(p[0]) * (1 - 1j * p[1])
-    return relative_motion(held, sweep.frequency, sweep.admittance)
-
-
-def _starts(
-    f: si.HertzArray, y: si.ComplexArray, count: int
-) -> tuple[si.HertzArray | None, si.DimensionlessArray]:
-    """Where to begin: poles of a rational function with one or more too many, of which those with
-    the strongest residues inside the band are kept."""
-    for spare in (0, 1, 2):
-        own, quality = poles(f, y, count + spare)
-        good = (own > f[0]) & (own < f[-1]) & (quality > _LEAST_QUALITY)
-        own, quality = own[good], quality[good]
-        if own.size < count:
-            continue
-        strength = start_at(Layout(own.size), f, y, own, quality)[4::3]
-        keep = np.sort(np.argsort(strength)[-count:])
-        return own[keep], quality[keep]
-    if count == 1:
-        peak = int(np.argmax(y.real))
-        return f[peak : peak + 1], np.array([30.0])
-    return None, np.zeros(0)
-
-
-def _in_order(fit: ComplexFit, layout: Layout, frequency: si.HertzArray) -> ComplexFit:
-    """The same fit with its branches rising in frequency."""
-    order = np.arange(layout.size)
-    for k, at in enumerate(np.argsort(frequency)):
-        order[layout.branch(k)] = np.arange(layout.size)[layout.branch(int(at))]
-    both = np.ix_(order, order)
-    return replace(
-        fit,
-        parameters=fit.parameters[order],
-        covariance=fit.covariance[both],
-        information=fit.information[both],
-    )
 
 
 def _told(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> ImpedanceFit:
@@ -433,7 +210,7 @@ def _told(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> ImpedanceFi
         layout=layout,
         fit=fit,
         frequency=sweep.frequency,
-        motion=_motion(sweep, p),
+        motion=sweep_motion(sweep, p),
     )
 
 

@@ -11,7 +11,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import to_json
-from squeezefilm.measure.fits.friction.detection import DetectionComparison, compare_detection
 from squeezefilm.measure.fits.friction.friction_curve import (
     LEVELS,
     CurveComparison,
@@ -24,8 +23,10 @@ from squeezefilm.measure.fits.friction.friction_scores import (
     total_scores,
 )
 from squeezefilm.measure.fits.friction.populations import (
+    DetectionComparison,
     PopulationComparison,
     compare_decays,
+    compare_detection,
     compare_impedances,
 )
 from squeezefilm.measure.recordings.kinds import (

@@ -13,8 +13,7 @@ from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation, g
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
-from squeezefilm.measure.fits.vibration.line_points import LinePoints
-from squeezefilm.measure.fits.vibration.line_waves import LineWaves
+from squeezefilm.measure.fits.vibration.line_points import LinePoints, LineWaves
 from squeezefilm.measure.recordings.kinds import LineScan
 
 _FEWEST_POINTS = 12

@@ -12,7 +12,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation, guarded_fit
 from squeezefilm.measure.fits.least_squares import fit_separable
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.fits.vibration.modal_circle import modal_circle
+from squeezefilm.measure.fits.vibration.frequency_response import modal_circle
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, RawSignals
 
 _FEWEST_POINTS = 256
