@@ -52,7 +52,7 @@ _NAMES = {
     "check_recording": "measure.recordings.read",
     "fit_recording": "measure.fits.by_kind",
     "calibrate_display": "measure.calibration.folder",
-    "predict_measurement": "measure.calibration.questions",
+    "predict_measurement": "measure.calibration.blind",
     "score_prediction": "measure.calibration.folder",
     # Built
     "fabricate": "design.fabrication.fabricate",

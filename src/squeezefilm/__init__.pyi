@@ -381,7 +381,7 @@ if TYPE_CHECKING:
     def fit_recording(
         recording: NamedRecording | str | Path, display: NamedDisplay | str | Path | None = ...
     ) -> Fit:
-        """What goes with the kind of a recording: a circuit with an impedance (constants of the"""
+        """The fit that goes with the kind of a recording: a circuit with an impedance (constants of the"""
     def calibrate_display(
         display: NamedDisplay | str | Path,
         folder: str | Path,

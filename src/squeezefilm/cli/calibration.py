@@ -68,7 +68,8 @@ def predict_unseen(
 ) -> None:
     """Write what will be measured, with its interval and a hash, before it is."""
     from squeezefilm.core.results import to_json
-    from squeezefilm.measure.calibration.questions import predict_measurement, question
+    from squeezefilm.measure.calibration.blind import predict_measurement
+    from squeezefilm.measure.calibration.solved_answers import question
     from squeezefilm.measure.report.calibrated import prediction_lines
 
     for one in ask:

@@ -83,7 +83,7 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
         compared = compare_folder(presets.friction_folder() if published else data, step)
         written = None if out is None else write_comparisons(compared, out)
     if write_docs:
-        from squeezefilm.measure.report.friction_docs import write_friction_docs
+        from squeezefilm.measure.report.curves import write_friction_docs
 
         typer.echo(f"wrote {write_friction_docs(compared)}", err=True)
     if as_json:

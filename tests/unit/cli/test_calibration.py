@@ -86,7 +86,7 @@ def test_a_calibration_is_written_into_a_folder_with_a_page(
 
 
 def test_a_prediction_is_told_with_its_hash(stands_in: StandsIn, tmp_path: Path) -> None:
-    asked = stands_in("measure.calibration.questions:predict_blind", BLIND)
+    asked = stands_in("measure.calibration.blind:predict_blind", BLIND)
     out = tmp_path / "p.json"
     ask = ("--ask", "relative_friction: vibration_amplitude=1.7 um", "--ask", "mass")
     done = run("measure", "predict", PLATE, *ask, "--out", str(out))

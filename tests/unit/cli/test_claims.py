@@ -103,7 +103,7 @@ def test_without_a_checkout_no_curve_is_compared_for_its_page(
 ) -> None:
     compared = stands_in("measure.fits.friction.friction_folder:compare_folder", [])
     stands_in("measure.report.curves:show_comparisons")
-    page = stands_in("measure.report.friction_docs:write_friction_docs", "docs/friction.md")
+    page = stands_in("measure.report.curves:write_friction_docs", "docs/friction.md")
     done = run("reproduce", "--data", "published", "--write-docs")
     assert done.returncode == 0, done.stderr
     assert len(claims.checkout.calls) == len(page.calls) == len(compared.calls) == 1

@@ -18,6 +18,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.regular_file import read_json, read_regular_text
@@ -32,11 +33,16 @@ from squeezefilm.measure.calibration.priors import (
     calibration_parameters,
     with_calibrated,
 )
-from squeezefilm.measure.calibration.solved_answers import FRICTION, asked_by, solved_answers
+from squeezefilm.measure.calibration.solved_answers import (
+    FRICTION,
+    asked_by,
+    question,
+    solved_answers,
+)
 from squeezefilm.measure.calibration.written_display import calibrated_display
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import predict
-from squeezefilm.physics.display import Display
+from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.uncertainty.intervals import LEVEL
 from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
@@ -123,6 +129,30 @@ def predict_blind(
         )
     write_whole(target, sealed(predicted(source, what, seed=seed, progress=progress)))
     return load_prediction(target)
+
+
+@reads_text
+def predict_measurement(
+    display: NamedDisplay,
+    ask: str | Sequence[str],
+    out: str | Path,
+    *,
+    seed: int = 1,
+    progress: SayProgress | None = None,
+) -> BlindPrediction:
+    """Write what will be measured of a display, with its interval and a SHA-256, before it is.
+
+    `ask` names answers and their conditions as `question` reads them, such as
+    "resonance_frequency" or "relative_friction: vibration_amplitude=1.7 um". `out` is a JSON file
+    in SI units that is never overwritten; `score_prediction` compares it with recordings later.
+    Plates are drawn from the display's own spreads (a calibrated display: the posterior's) and
+    solved: a minute or so. See `measure.calibration.blind.predict_blind`.
+
+    Raises `InputError` for a question that cannot be read or answered, where nothing is asked, and
+    for a file that is there already.
+    """
+    asked = [question(one) for one in ([ask] if isinstance(ask, str) else ask)]
+    return predict_blind(display, asked, out, seed=seed, progress=progress)
 
 
 def predicted(

@@ -10,7 +10,7 @@ Gaussian Processes for Machine Learning (2006), sections 2.7, 4.2 and 5.4.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,15 +34,11 @@ def least_points(parameters: int) -> int:
 class Emulator:
     """Answers (logarithms) over coordinates, by `emulator_of`.
 
-    `errors` are root mean square differences of the logarithms (so relative errors) at `held_out`
-    points that it was not shown, shape (answers,); `worst` are the largest. Valid where its
-    `points` are: within ±1 in every coordinate.
+    `errors` are root mean square differences of the logarithms (so relative errors) at points
+    that it was not shown, shape (answers,). Valid within ±1 in every coordinate.
     """
 
     errors: si.DimensionlessArray
-    worst: si.DimensionlessArray
-    points: int
-    held_out: int
     _shown: si.FloatArray
     _trends: si.FloatArray
     _lengths: si.FloatArray
@@ -74,19 +70,9 @@ def emulator_of(
     shown = x[: len(x) - held_out]
     columns = [_fitted(shown, y[: len(shown), k]) for k in range(y.shape[1])]
     trends, lengths, weights = (np.stack([column[part] for column in columns]) for part in range(3))
-    nothing = np.zeros(y.shape[1])
-    found = Emulator(nothing, nothing, len(shown), held_out, shown, trends.T, lengths, weights.T)
-    off = np.abs(found(x[len(shown) :]) - y[len(shown) :])
-    return Emulator(
-        np.sqrt(np.mean(off**2, axis=0)),
-        np.max(off, axis=0),
-        len(shown),
-        held_out,
-        shown,
-        trends.T,
-        lengths,
-        weights.T,
-    )
+    unjudged = Emulator(np.zeros(y.shape[1]), shown, trends.T, lengths, weights.T)
+    off = unjudged(x[len(shown) :]) - y[len(shown) :]
+    return replace(unjudged, errors=np.sqrt(np.mean(off**2, axis=0)))
 
 
 def _logarithms(ends: tuple[float, float]) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from squeezefilm.measure.fits.by_kind import Fit
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import RecordingCheck
-from squeezefilm.measure.report.curves import comparison_figure
+from squeezefilm.measure.report.beside import comparison_figure
 from squeezefilm.measure.report.figures import scattered
 
 if TYPE_CHECKING:

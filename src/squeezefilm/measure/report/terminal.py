@@ -14,7 +14,7 @@ from squeezefilm.measure.fits.by_kind import Fit
 from squeezefilm.measure.fits.estimate import LEVEL, Adequacy, Estimate
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
-from squeezefilm.measure.report.curves import MODELS_HEAD, inside_words, model_rows
+from squeezefilm.measure.report.beside import MODELS_HEAD, inside_words, model_rows
 
 _KNOWN = ("m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "S", "H", "m/V", "m/s", "N/m")
 

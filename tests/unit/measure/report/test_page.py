@@ -21,12 +21,8 @@ from squeezefilm.measure.fits.friction.friction_scores import ModelScore, TotalS
 from squeezefilm.measure.fits.friction.populations import PopulationComparison
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck, Refused
-from squeezefilm.measure.report.curves import (
-    coverage_figure,
-    coverage_rows,
-    show_comparisons,
-    write_comparisons,
-)
+from squeezefilm.measure.report.beside import coverage_figure, coverage_rows
+from squeezefilm.measure.report.curves import show_comparisons, write_comparisons
 from squeezefilm.measure.report.figures import recording_figure
 from squeezefilm.measure.report.fit_figures import fit_figure, modelled
 from squeezefilm.measure.report.page import fit_summary, write_checks, write_fit

@@ -37,12 +37,10 @@ class Stroke(NamedTuple):
 
 @dataclass(frozen=True)
 class Strokes:
-    """The strokes of a recording in order of time, and the shares of its points that are in them
-    and that were in none because the amplitude changed on the way."""
+    """The strokes of a recording in order of time, and the share of its points that are in them."""
 
     rows: tuple[Stroke, ...]
     used: si.Dimensionless
-    changing: si.Dimensionless
 
     def column(self, name: str) -> si.FloatArray:
         """One number of every stroke, by its name."""
@@ -72,12 +70,11 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
     gap = np.diff(t) > 10 * np.median(np.diff(t))
     edges = np.flatnonzero((np.diff(which) != 0) | gap) + 1
     tolerated = _SAME_AMPLITUDE * max(float(np.max(amplitude)), 1e-12)
-    rows, used, changing = [], 0, 0
+    rows, used = [], 0
     for part in np.split(np.arange(t.size), edges):
         if which[part[0]] == 0 or t[part[-1]] - t[part[0]] < _SHORTEST:
             continue
         even = _even_part(part, amplitude, tolerated)
-        changing += part.size - 2 * int(_TRIMMED * part.size) - even.size
         if even.size >= _FEWEST_OF_A_STROKE:
             used += even.size
             rows.append((even, which[part[0]]))
@@ -98,7 +95,7 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
         )
         for part, way in rows
     )
-    return Strokes(strokes, used / t.size, changing / t.size)
+    return Strokes(strokes, used / t.size)
 
 
 def _finite(recording: FrictionBench) -> tuple[si.FloatArray, ...]:

@@ -33,7 +33,7 @@ class GridScanFit:
     `likeness` is the modal assurance criterion of the scan with every shape: 1 for the same, 0 for
     an orthogonal one; noise alone would leave `attainable` of a perfect one. `amplitude` (m, zero
     to peak) and `phase` (rad) are the label's part in the scan where its shape is 1, `parts` the
-    amplitudes of all shapes that the places tell apart. `phase_recorded` is False for real data.
+    amplitudes of all shapes that the places tell apart.
     """
 
     recording: GridScan
@@ -45,7 +45,6 @@ class GridScanFit:
     parts: Mapping[str, Estimate]
     model: si.Array
     residual: si.Array
-    phase_recorded: bool
     adequacy: Adequacy
 
     @property
@@ -120,7 +119,6 @@ def fit_grid_scan(
         parts=parts,
         model=model,
         residual=w - model,
-        phase_recorded=recorded,
         adequacy=_adequacy(w, fit.residual * size, (x, y), label, likeness[label], alike),
     )
 

@@ -43,7 +43,6 @@ class RawSignalsFit:
     recording: RawSignals
     response: FrequencyResponse
     standard_error: si.MetrePerVoltArray
-    averages: si.Dimensionless
     scale: Estimate | None
     delay: Estimate | None
     adequacy: Adequacy
@@ -119,7 +118,7 @@ def _averaged(
     error = np.abs(H) * np.sqrt((1 - coherence) / (2 * np.maximum(coherence, 1e-12) * averages))
     response = FrequencyResponse(f[driven], H, coherence=coherence, told=recording.told)
     unknown = Adequacy(False, float("nan"), float("nan"), "", "")
-    return RawSignalsFit(recording, response, error, averages, None, None, unknown)
+    return RawSignalsFit(recording, response, error, None, None, unknown)
 
 
 def _resolution(found: RawSignalsFit) -> float:

@@ -45,8 +45,7 @@ class RingDownFit:
     `frequency_rise` (1/m²) how the frequency does, f = f0 (1 + s a²); both None where what was
     recorded does not tell them from zero, and then frequency and Q are those of all of the decay.
     Otherwise they are those of the smallest amplitudes. `second` is a second mode that beats with
-    the first, where one was asked for. `envelope` (m) at `envelope_time` (s) is the decay's size
-    in blocks. `model` and `residual` (m) are at `time` (s).
+    the first, where one was asked for. `model` and `residual` (m) are at `time` (s).
     """
 
     recording: RingDown
@@ -59,8 +58,6 @@ class RingDownFit:
     damping_rise: Estimate | None
     frequency_rise: Estimate | None
     second: tuple[Estimate, Estimate] | None
-    envelope_time: si.SecondArray
-    envelope: si.MetreArray
     adequacy: Adequacy
 
     @property
@@ -327,8 +324,6 @@ class _FittedDecay:
             damping_rise=bent.estimate(4, f"1/{unit}", 1 / size) if bent is not None else None,
             frequency_rise=bent.estimate(5, f"1/{unit}2", size**-2) if bent is not None else None,
             second=self._straight(1)[:2] if self.two else None,
-            envelope_time=self.blocks.time,
-            envelope=np.abs(w),
             adequacy=adequacy,
         )
 

@@ -1,4 +1,4 @@
-"""Sweeps at several voltages: a resonance and losses that change with the amplitude, and jumps."""
+"""Sweeps at several voltages: a resonance and losses that change with the amplitude."""
 
 from __future__ import annotations
 
@@ -29,25 +29,8 @@ BACKBONE_LAWS: tuple[BackboneLaw, ...] = get_args(BackboneLaw)
 """How the frequency follows the amplitude: with its square (Duffing), or in proportion."""
 
 _FEWEST_POINTS = 30
-# A step of the amplitude between neighbours is a jump from this share of the sweep's largest, and
-# where it is so many times as large as the steps next to it.
-_JUMP = 0.2
-_ABRUPT = 3.0
-_ABOVE_NOISE = 6.0
 # Near a fold of the curve a small noise moves a point far: such points say little and bend much.
 _FOLD = 0.15
-
-
-@dataclass(frozen=True)
-class Jump:
-    """Where a sweep jumped: the frequency (Hz) in the middle of the step, and the amplitudes (m)
-    before and after, in the direction of the sweep."""
-
-    voltage: si.Volt
-    direction: str
-    frequency: si.Hertz
-    before: si.Metre
-    after: si.Metre
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +56,6 @@ class VoltageSweepsFit:
     damping_rise: Estimate
     warming: Estimate | None
     critical_amplitude: si.Metre | None
-    jumps: tuple[Jump, ...]
     phase_reversed: bool
     model: si.ComplexArray
     residual: si.ComplexArray
@@ -316,7 +298,6 @@ class _Fitted:
             damping_rise=estimate(3, 1 / size, "1/m"),
             warming=estimate(8, 1.0, "1") if self.duffing.drift else None,
             critical_amplitude=_critical(backbone, float(fit.numbers[1]), power),
-            jumps=_jumps(recording, size * float(np.sqrt(np.mean(np.abs(left) ** 2)))),
             phase_reversed=points.phase_reversed,
             model=(points.u - step) * size,
             residual=step * size,
@@ -388,27 +369,3 @@ def _critical(backbone: Estimate, loss: float, power: int) -> si.Metre | None:
     if power != 2 or low <= 0 <= high:
         return None
     return math.sqrt(4 * abs(loss) / (3 * math.sqrt(3) * abs(backbone.value)))
-
-
-def _jumps(recording: VoltageSweeps, noise: si.Metre) -> tuple[Jump, ...]:
-    """The largest step of each sweep where it is a jump, and none that noise (m) may make."""
-    found = []
-    for sweep, direction in zip(recording.sweeps, recording.directions, strict=True):
-        f, H = np.asarray(sweep.frequency), np.abs(sweep.displacement_per_volt)
-        good = np.isfinite(f) & np.isfinite(H)
-        order = np.argsort(f[good], kind="stable")
-        if direction == "down":
-            order = order[::-1]
-        volts = float(sweep.voltage or 0.0)
-        f, a = f[good][order], H[good][order] * volts
-        if f.size < 5:
-            continue
-        rise = np.abs(np.diff(a))
-        at = int(np.argmax(rise))
-        beside = np.delete(rise[max(at - 2, 0) : at + 3], min(at, 2))
-        if rise[at] > max(_JUMP * a.max(), _ABOVE_NOISE * noise) and rise[at] > _ABRUPT * np.median(
-            beside
-        ):
-            middle = float((f[at] + f[at + 1]) / 2)
-            found.append(Jump(volts, direction, middle, float(a[at]), float(a[at + 1])))
-    return tuple(found)
