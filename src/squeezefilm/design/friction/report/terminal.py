@@ -19,11 +19,11 @@ from squeezefilm.design.analysis.report.point_rows import (
     reduction_row,
     speed_row,
 )
+from squeezefilm.design.plate.report.heat_and_sound import heat_rows
 
 if TYPE_CHECKING:
     from squeezefilm.design.friction.command import FrictionAnalysis
-    from squeezefilm.design.plate.report.heat_and_sound import heat_rows
-from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
+    from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
 _RANKED = 6
 
