@@ -64,17 +64,30 @@ static void departures(
     *detuning = clamped(across, -LARGEST_LOAD, LARGEST_LOAD);
 }
 
+/* size / (size + soft^2), 2^16. */
+static int64_t belief(int64_t size, int64_t soft)
+{
+    int64_t whole = size + soft * soft;
+    while (whole >= (int64_t)1 << 46) {
+        whole >>= 2;
+        size >>= 2;
+    }
+    return size * ONE / whole;
+}
+
 /* Follows what was seen; returns a flag for a limit of the frequency. */
 static int64_t track(const sf_loop_gains *g, sf_loop_state *s, int64_t re, int64_t im, int64_t free)
 {
-    int64_t floor = g->floor * 16, size = s->re * s->re + s->im * s->im, extra, error;
+    int64_t floor = g->floor * 16, size = s->re * s->re + s->im * s->im;
     int64_t low = g->lowest_frequency * 256, high = g->highest_frequency * 256;
+    int64_t extra, error, share;
     if (size >= floor * floor) {
         departures(g, s, re, im, free, size, &extra, &s->detuning);
-        error = scaled(g->half_bandwidth * s->detuning, 8);
-        s->rate -= scaled(g->rate_share * error, 24);
+        share = belief(size, g->soft * 16);
+        error = scaled(scaled(g->half_bandwidth * s->detuning, 8) * share, 16);
+        s->rate -= scaled(scaled(g->rate_share * share, 16) * error, 24);
         s->frequency += s->rate - scaled(g->track_share * error, 24);
-        s->load += scaled(g->load_share * (extra * 16 - s->load), 24);
+        s->load += scaled(scaled(g->load_share * share, 16) * (extra * 16 - s->load), 24);
     }
     if (low <= s->frequency && s->frequency <= high)
         return 0;
@@ -160,15 +173,14 @@ static int64_t hold(
         s->held++;
     if (s->wrong > g->patience) {
         s->mode = SF_SEARCHING;
+        s->frequency = g->highest_frequency * 256;
         s->rate = s->load = s->wrong = 0;
+        s->ready = 1;
         level = g->search_level;
-        if (strange && !missing) {
+        if (strange && !missing)
             s->false_locks++;
-        } else {
+        else
             s->lost++;
-            s->frequency = g->highest_frequency * 256;
-            s->ready = 1;
-        }
     }
     return level;
 }

@@ -18,7 +18,7 @@ typedef struct {
     int64_t half_bandwidth, track_share, rate_share, load_share;
     int64_t lowest_frequency, highest_frequency, sweep;
     int64_t turn, reference, turn_per_mhz;
-    int64_t lowest_level, highest_level, search_level, floor, heaviest, patience;
+    int64_t lowest_level, highest_level, search_level, floor, soft, heaviest, patience;
 } sf_loop_gains;
 
 typedef struct {

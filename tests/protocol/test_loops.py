@@ -78,6 +78,7 @@ def some_gains(pick: np.random.Generator) -> LoopGains:
         100.0,
         20.0,
         lowest_voltage=-float(pick.choice([0, 100])),
+        noise=float(pick.choice([0, 10 ** pick.uniform(-6, 0)])),
         floor=float(10 ** pick.uniform(-6, 0)),
         heaviest_load=float(pick.uniform(0, 60)),
     )

@@ -16,6 +16,8 @@ _SHARE = 1 << 24
 _TURN = 1 << 32
 _SWEEP_STEPS = 3  # of a half-bandwidth while the plate answers, in time constants
 _FASTEST_SWEEP = 20e3  # Hz/s
+_JITTER = 0.2  # of a half-bandwidth; noise moves the frequency by half of that at most
+_MOST_SOFT = 16.0  # V, what the step can square
 
 
 @si.checked_numbers
@@ -67,6 +69,9 @@ class LoopAims:
         amplitude_time: time constant of the amplitude (s); 95 % of a step takes three of it.
         load_bandwidth: of what is believed of a finger's load (Hz).
         floor: amplitude of the pickup below which it tells nothing (V).
+        noise: standard deviation of each quadrature of the pickup in a step (V). The bandwidths
+            fall at small amplitudes, so that it moves the frequency by at most a tenth of the
+            half-bandwidth.
         heaviest_load: the largest loss of a finger over the plate's own.
 
     Raises:
@@ -83,6 +88,7 @@ class LoopAims:
     amplitude_time: Annotated[si.Second, si.Above(0.0)] = 1.5e-3
     load_bandwidth: Annotated[si.Hertz, si.Above(0.0)] = 100.0
     floor: Annotated[si.Volt, si.AtLeast(1e-6), si.AtMost(10.0)] = 1e-3
+    noise: Annotated[si.Volt, si.AtLeast(0.0), si.AtMost(1.0)] = 0.0
     heaviest_load: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(60.0)] = 15.0
 
     def __post_init__(self) -> None:
@@ -184,7 +190,8 @@ def loop_gains(plate: IdentifiedPlate, aims: LoopAims) -> LoopGains:
         lowest_level=round(aims.lowest_voltage * 1e6),
         highest_level=round(aims.highest_voltage * 1e6),
         search_level=round(aims.search_voltage * 1e6),
-        floor=round(aims.floor * 1e6),
+        floor=round(max(aims.floor, 5 * aims.noise) * 1e6),
+        soft=round(min(track * aims.noise / (_JITTER * (1 - keep)), _MOST_SOFT) * 1e6),
         heaviest=round(aims.heaviest_load * ONE),
         patience=50 + math.ceil(3 * plate.time_constant / step),
     )

@@ -12,6 +12,7 @@ D being what a finger adds to the loss, over the plate's own. Over a step a = e^
 gives D and δ of each step, whatever amplitude is being played. Of these
 
 - the frequency follows δ by a loop of second order, which a steady drift leaves no error in;
+- what a small amplitude shows is mostly noise, and moves both less: z²/(z² + soft²) of it;
 - D is smoothed, and the drive gets what it takes: K u = w + κ (w − Re z) + D Re z makes the
   amplitude follow the wanted one, w, with a pole of its own. Nothing is integrated that winds up.
 
@@ -53,8 +54,9 @@ class LoopGains(NamedTuple):
     1/(1 − a), `inverse` 1/K, `correction` κ, `heaviest` the largest D of a finger. In mHz:
     `half_bandwidth`, `lowest_frequency`, `highest_frequency`, `reference`; `sweep` in mHz/256 a
     step. `turn` (2^32 a turn) is the pickup's phase at `reference`, `turn_per_mhz` (2^40 a turn)
-    its slope. `lowest_level`, `highest_level`, `search_level` and `floor` are in µV; below the last
-    a pickup tells nothing. `patience` is how many steps something must be wrong.
+    its slope. `lowest_level`, `highest_level`, `search_level`, `floor` and `soft` are in µV:
+    a pickup below `floor` tells nothing, one at `soft` is believed half. `patience` is how many
+    steps something must be wrong.
     """
 
     keep: int
@@ -77,6 +79,7 @@ class LoopGains(NamedTuple):
     highest_level: int
     search_level: int
     floor: int
+    soft: int
     heaviest: int
     patience: int
 
@@ -229,12 +232,12 @@ def _held(
     mode, ready = LOCKED, 0
     lost, false, held = state.lost, state.false, state.held + (1 if flags else 0)
     if wrong > gains.patience:
-        # What is false is passed by; what was lost is looked for from above again.
-        mode, level, rate, load, wrong = SEARCHING, gains.search_level, 0, 0, 0
+        mode, ready, level = SEARCHING, 1, gains.search_level
+        frequency, rate, load, wrong = gains.highest_frequency << _FINE, 0, 0, 0
         if strange and not missing:
             false += 1
         else:
-            lost, frequency, ready = lost + 1, gains.highest_frequency << _FINE, 1
+            lost += 1
     new = LoopState(mode, frequency, rate, load, detuning, re, im, ready, wrong, lost, false, held)
     return new, LoopCommand(level, scaled(frequency, _FINE), flags)
 
@@ -249,14 +252,24 @@ def _tracked(
     size = state.re * state.re + state.im * state.im
     if size >= floor * floor:
         extra, detuning = _departures(gains, state, re, im, free, size)
-        error = scaled(gains.half_bandwidth * detuning, 8)
-        rate -= scaled(gains.rate_share * error, 24)
+        belief = _belief(size, gains.soft << 4)
+        error = scaled(scaled(gains.half_bandwidth * detuning, 8) * belief, 16)
+        rate -= scaled(scaled(gains.rate_share * belief, 16) * error, 24)
         frequency += rate - scaled(gains.track_share * error, 24)
-        load += scaled(gains.load_share * ((extra << 4) - load), 24)
+        load += scaled(scaled(gains.load_share * belief, 16) * ((extra << 4) - load), 24)
     low, high = gains.lowest_frequency << _FINE, gains.highest_frequency << _FINE
     if low <= frequency <= high:
         return frequency, rate, load, detuning, 0
     return clamped(frequency, low, high), 0, load, detuning, FREQUENCY_HELD
+
+
+@compiled()
+def _belief(size: int, soft: int) -> int:
+    """`size` / (`size` + `soft`²), 2^16."""
+    whole = size + soft * soft
+    while whole >= 1 << 46:
+        whole, size = whole >> 2, size >> 2
+    return quotient(size << 16, whole)
 
 
 @compiled()

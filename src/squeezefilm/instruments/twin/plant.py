@@ -18,10 +18,17 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.control.plate_loop import (
+    LoopCommand,
+    LoopGains,
+    LoopState,
+    first_state,
+)
 from squeezefilm.instruments.twin import plant_kernel as k
 from squeezefilm.instruments.twin.envelope_step import Fingers
 from squeezefilm.instruments.twin.friction_rows import FrictionTables
 from squeezefilm.instruments.twin.hand import Hand
+from squeezefilm.instruments.twin.held import advance_held, heard, hearing
 from squeezefilm.instruments.twin.settings import TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
@@ -30,7 +37,6 @@ from squeezefilm.physics.plate.heat.states import cooling_of, heat_capacity
 from squeezefilm.physics.plate.heat.thermal import driven_thickness, thermal_body
 
 _BUFFER = 2000  # rows between two visits to Python
-_PICKUP_RE, _PICKUP_IM = 11, 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,8 +118,12 @@ class Plant:
     """Plate and finger. Not thread-safe. Advance it to a time; read what it does there.
 
     `hand` None leaves the plate alone. The truth is appended to `truth_file` where one is named.
-    Raises `InputError` for static friction that falls over a speed (`settings.dry`) on a display
-    whose law says itself what friction does with speed, as `slide` does.
+    Under `loops` (`control.gains.loop_gains`, for steps of the settings' tick) a level is the one
+    that a free plate would need, and level and carrier on the plate are theirs.
+
+    Raises `InputError` for loops without a pickup, and for static friction that falls over a speed
+    (`settings.dry`) on a display whose law says itself what friction does with speed, as `slide`
+    does.
     """
 
     def __init__(
@@ -122,8 +132,17 @@ class Plant:
         settings: TwinSettings,
         hand: Hand | None = None,
         truth_file: Path | None = None,
+        loops: LoopGains | None = None,
     ) -> None:
         self.point, self.settings, self.hand = point, settings, hand
+        if loops is not None and (loops.lowest_level < 0 or settings.pickup.kind == "none"):
+            raise InputError(
+                "the twin's loops need a pickup, and its amplifier turns no phase: give the "
+                "settings a pickup and the loops a lowest_voltage of 0"
+            )
+        self._loops, self._ear = loops, hearing(settings.pickup)
+        if loops is not None:
+            self._held = first_state(loops), LoopCommand(0, loops.highest_frequency, 0)
         self.truth = TruthRecord(settings.truth_rows, truth_file)
         friction = _friction(point)
         self._c = _constants(point, settings, hand, friction)
@@ -155,14 +174,31 @@ class Plant:
         return int(self._n[k.NOW])
 
     def advance(self, until: int, level: int, carrier: int) -> None:
-        """Advance to a time (µs) at an amplitude (µV) and a carrier frequency (mHz).
+        """Advance to a time (µs) at an amplitude (µV) and a carrier frequency (mHz), which loops
+        choose themselves.
 
         Raises `InputError` for a time that has passed.
         """
         if until < self.now:
             raise InputError(f"the plant is at {self.now} us and was asked to go to {until} us")
-        while k.advance(until, level, carrier, *self._rest) < until:
-            self.drain()
+        reached = self.now
+        while reached < until:
+            if self._loops is None:
+                reached = k.advance(until, level, carrier, *self._rest)
+            else:
+                tick = self.settings.tick_us
+                reached, self._held = advance_held(
+                    until, level, tick, self._loops, self._held, self._ear, *self._rest
+                )
+            if reached < until:
+                self.drain()
+
+    @property
+    def loop_state(self) -> LoopState:
+        """What the loops remember. Raises `InputError` for a plant without loops."""
+        if self._loops is None:
+            raise InputError("this plant has no loops; give it some")
+        return self._held[0]
 
     def drain(self) -> None:
         """Hand the rows of truth made so far to `truth`."""
@@ -222,22 +258,9 @@ class Plant:
 
     def pickup_level(self) -> int:
         """The amplitude at the pickup's input now (µV), with its noise; 0 without a pickup."""
-        pickup, z = self.settings.pickup, self.envelope
-        if pickup.kind == "none":
+        if self.settings.pickup.kind == "none":
             return 0
-        if pickup.kind == "sensing_patch":
-            signal = pickup.sensitivity * z
-        else:
-            carrier = int(self._n[k.CARRIER])
-            omega = 2 * math.pi * (carrier * 1e-3 if carrier else self.resonance_frequency)
-            leak = 1j * pickup.feedthrough * self.point.capacitance * self.voltage
-            factor = self.point.force_factor * float(self._s[k.CHARGE])
-            signal = omega * pickup.shunt * (factor * z + leak)
-        seed, now = self.settings.seed, self.now
-        signal += pickup.noise * complex(
-            k.gaussian(seed, _PICKUP_RE, now), k.gaussian(seed, _PICKUP_IM, now)
-        )
-        return round(abs(signal) * 1e6)
+        return round(abs(heard(self._rest[0], self._ear)) * 1e6)
 
 
 def _path(hand: Hand | None, tick: int) -> tuple[si.FloatArray, NDArray[np.int64]]:
