@@ -13,8 +13,8 @@ import pytest
 import squeezefilm as sf
 from squeezefilm.core.calibration_record import UsedRecording
 from squeezefilm.core.errors import InputError
+from squeezefilm.measure.calibration import blind
 from squeezefilm.measure.calibration import folder as calibrated_folder
-from squeezefilm.measure.calibration import questions
 from squeezefilm.measure.calibration.folder import FolderObservations, folder_observations
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.display import Display, load_display
@@ -94,7 +94,7 @@ def test_a_folder_without_anything_to_use_is_refused(
 def test_a_measurement_is_predicted_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
     monkeypatch.setattr(
-        questions, "predict_blind", lambda *given, **named: asked.append((given, named))
+        blind, "predict_blind", lambda *given, **named: asked.append((given, named))
     )
     sf.predict_measurement(STATOR, "relative_friction: vibration_amplitude=1.7 um", "p.json")
     sf.predict_measurement(STATOR, ["mass", "quality_factor"], "p.json", seed=4)
