@@ -14,7 +14,6 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.actuators.control.force_law import ForceLaw
-from squeezefilm.actuators.motor.assembled import Working
 from squeezefilm.actuators.motor.description import Motor
 from squeezefilm.core.quantities import unit_of
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
@@ -148,15 +147,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "actuators.motor.curves.motor_map": {
         "preloads": np.array([5.0]),
         "amplitudes": np.array([1e-6]),
-    },
-    "actuators.motor.curves.models_compared": {
-        "preloads": np.array([5.0]),
-        "amplitudes": np.array([1e-6]),
-        "periods": 10,
-    },
-    "actuators.motor.curves.over_frequency": {
-        "working": Working(voltage=5.0),
-        "frequencies": np.array([34.6e3]),
     },
     "actuators.motor.curves.over_foot_position": {
         "shifts": np.array([0.0]),

@@ -54,8 +54,7 @@ NOT_CALLED = {
     "a record of what was computed, which only the package makes": """
     actuators.motor.averaged.AveragedMotor actuators.motor.in_time.MotorMotion
     actuators.motor.plane.PlaneMotion
-    actuators.motor.curves.MotorMap actuators.motor.curves.ModelsCompared
-    actuators.motor.curves.ModelsCompared.difference
+    actuators.motor.curves.MotorMap
     actuators.motor.closed_loop.TrackedForce actuators.motor.closed_loop.TrackedForce.mean_error
     actuators.motor.stator.FaceMode
     physics.plate.electronics.Amplifier

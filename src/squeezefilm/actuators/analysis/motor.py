@@ -19,7 +19,6 @@ from squeezefilm.actuators.motor.averaged import (
     no_load_speed,
     stall_force,
 )
-from squeezefilm.actuators.motor.causal import CausalGraph, averaged_graph
 from squeezefilm.actuators.motor.closed_loop import TrackedForce, inverted_law, track_force
 from squeezefilm.actuators.motor.curves import (
     MotorMap,
@@ -72,7 +71,6 @@ class MotorAnalysis(Result):
         motion: resolved in time at the speed of `best`.
         resolved: speed (m/s) and force left for a load (N) of the motor resolved in time, from
             rest to no load, shape (speeds, 2).
-        graph: what makes what.
         tracked: the force law's answer to a step, at that speed; None where a force cannot be
             commanded.
         effects: what each assumed value does to stall force and speed without a load.
@@ -93,7 +91,6 @@ class MotorAnalysis(Result):
     map: MotorMap
     motion: MotorMotion
     resolved: si.FloatArray
-    graph: CausalGraph
     tracked: TrackedForce | None
     effects: tuple[Effect, ...]
     drawn: DrawnAnswers
@@ -256,7 +253,6 @@ def analyze_motor(
         over,
         motion,
         resolved,
-        averaged_graph(motor),
         tracked,
         moved,
         sure,

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
-from scipy.optimize import brentq, root
+from scipy.optimize import brentq
 
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.average_kernel import MEANS, Swing, settled_height
@@ -293,42 +293,3 @@ def no_load_speed(motor: AssembledMotor, working: Working) -> si.MetrePerSecond:
     if left(tiny) <= 0:
         return 0.0
     return way * float(brentq(left, tiny, far, xtol=1e-7 * far))
-
-
-@si.checked_numbers
-def no_load_velocity(
-    motor: AssembledMotor, working: Working
-) -> tuple[si.MetrePerSecond, si.MetrePerSecond]:
-    """The velocity (m/s, along and sideways) at which a slider that is free in the plane is pushed
-    no more, but for the guide's friction against its motion.
-
-    Raises `ConvergenceError` where none is found, and as `stall_force`.
-    """
-    rest = averaged(motor, working)
-    require_moving(motor, rest)
-    held = working
-    if working.voltage is not None:
-        share = rest.second_amplitude / rest.amplitude
-        held = replace(working, voltage=None, amplitude=rest.amplitude, second=share)
-    preload = motor.slider(working, imposed=True).preload
-    reach = np.max(np.abs(motor.feet.along) + np.abs(motor.sideways))
-    fastest = float(reach * np.max(motor.stator(held).omega) * rest.amplitude)
-    guide = motor.motor.cradle.friction
-
-    def left(scaled: si.FloatArray) -> si.FloatArray:
-        velocity = fastest * scaled
-        there = averaged(motor, held, speed=velocity[0], sideways_speed=velocity[1])
-        thrust = np.array([there.thrust, there.sideways_thrust])
-        moving = float(np.hypot(*velocity))
-        return np.asarray((thrust - guide * velocity / max(moving, 1e-9 * fastest)) / preload)
-
-    start = np.array([rest.thrust, rest.sideways_thrust])
-    found = root(left, 0.2 * start / max(float(np.hypot(*start)), 1e-30), tol=1e-7)
-    if not found.success:
-        raise ConvergenceError(
-            "no velocity was found at which nothing pushes the slider in the plane; resolve it in "
-            "time",
-            partial=fastest * found.x,
-            iterations=int(found.nfev),
-        )
-    return float(fastest * found.x[0]), float(fastest * found.x[1])

@@ -15,7 +15,6 @@ from squeezefilm.actuators.motor.averaged import (
     require_moving,
 )
 from squeezefilm.actuators.motor.description import Motor
-from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.stator import FaceMode
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError
@@ -83,57 +82,6 @@ def motor_map(
             if progress is not None:
                 progress(i * amplitudes.size + j + 1, found[0].size)
     return MotorMap(preloads, amplitudes, *found)
-
-
-@dataclass(frozen=True, eq=False)
-class ModelsCompared:
-    """The averaged motor beside the one resolved in time, over preload × amplitude.
-
-    Arrays (preloads, amplitudes): both thrusts at one speed (N), both shares of contact.
-    """
-
-    preload: si.NewtonArray
-    amplitude: si.MetreArray
-    speed: si.MetrePerSecond
-    averaged_thrust: si.NewtonArray
-    resolved_thrust: si.NewtonArray
-    averaged_contact: si.FloatArray
-    resolved_contact: si.FloatArray
-
-    def difference(self, friction_coefficient: si.Dimensionless) -> si.FloatArray:
-        """Averaged less resolved thrust, over µ times the preload (1)."""
-        return np.asarray(
-            (self.averaged_thrust - self.resolved_thrust)
-            / (friction_coefficient * self.preload[:, None])
-        )
-
-
-@si.checked_numbers
-def models_compared(
-    motor: AssembledMotor,
-    preloads: Annotated[si.NewtonArray, si.Above(0.0)],
-    amplitudes: Annotated[si.MetreArray, si.Above(0.0)],
-    *,
-    speed: si.MetrePerSecond = 0.0,
-    periods: Annotated[int, si.AtLeast(10)] = 600,
-    progress: CountProgress | None = None,
-) -> ModelsCompared:
-    """Both models at each preload (N) and held amplitude (m), at one speed of the slider (m/s).
-
-    Raises as `simulate`.
-    """
-    si.require("preloads", preloads, si.Unit("N"), axes=1)
-    si.require("amplitudes", amplitudes, si.Unit("m"), axes=1)
-    found = np.zeros((4, preloads.size, amplitudes.size))
-    for i, preload in enumerate(preloads.tolist()):
-        for j, amplitude in enumerate(amplitudes.tolist()):
-            working = Working(amplitude=amplitude, preload=preload)
-            mean = averaged(motor, working, speed=speed)
-            there = simulate(motor, working, speed=speed, periods=periods, traced=0)
-            found[:, i, j] = (mean.thrust, there.thrust, mean.contact_share, there.contact_share)
-            if progress is not None:
-                progress(i * amplitudes.size + j + 1, found[0].size)
-    return ModelsCompared(preloads, amplitudes, speed, *found)
 
 
 @si.checked_numbers

@@ -134,7 +134,6 @@ def _figures(found: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
             "The way of a foot",
             motor_figures.foot_figure((found.motion, feet.across[0], feet.along[0])),
         ),
-        "causal": ("What makes what", motor_figures.causal_figure(found.graph)),
     }
     if found.plane is not None:
         figures["plane"] = ("Free in the plane", motor_figures.plane_figure(found.plane))

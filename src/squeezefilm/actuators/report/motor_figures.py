@@ -1,4 +1,4 @@
-"""Figures of a standing-wave motor: its causal ordering graph, its curves and how a foot moves."""
+"""Figures of a standing-wave motor: its curves and how a foot moves."""
 
 from __future__ import annotations
 
@@ -10,112 +10,14 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from squeezefilm.actuators.analysis.motor import MotorAnalysis
     from squeezefilm.actuators.motor.averaged import AveragedMotor
-    from squeezefilm.actuators.motor.causal import CausalGraph
     from squeezefilm.actuators.motor.closed_loop import TrackedForce
     from squeezefilm.actuators.motor.curves import MotorMap
     from squeezefilm.actuators.motor.in_time import MotorMotion
     from squeezefilm.actuators.motor.plane import PlaneMotion
-
-
-def _floors(graph: CausalGraph) -> dict[str, int]:
-    """How far each element stands from the first quantity that comes from outside; the others
-    stand before what they go into."""
-    first, *others = graph.sources
-    floors = {first: 0}
-    waiting = [first]
-    while waiting:
-        name = waiting.pop(0)
-        for source, target, _ in graph.edges:
-            if source == name and target not in floors:
-                floors[target] = floors[name] + 1
-                waiting.append(target)
-    for name in others:
-        floors[name] = min(floors[to] for source, to, _ in graph.edges if source == name) - 1
-    return floors
-
-
-@style.drawn
-def causal_figure(graph: CausalGraph) -> Figure:
-    """The elements of a motor and what goes from one to the next, drawn from the graph's data."""
-    floors = _floors(graph)
-    rows: dict[int, list[str]] = {}
-    for name, floor in floors.items():
-        rows.setdefault(floor, []).append(name)
-    tallest = max(len(names) for names in rows.values())
-    figure = style.new_figure(
-        "What makes what in this motor",
-        "double frame: stores energy, is inverted by a loop; single: a function, inverted at once",
-        1.6 + 0.75 * tallest,
-    )
-    axes = figure.subplots()
-    axes.set_axis_off()
-    places = {
-        name: (float(floor), (len(names) - 1) / 2 - number + (0.25 if floor % 2 else 0.0))
-        for floor, names in rows.items()
-        for number, name in enumerate(names)
-    }
-    causal = {one.name: one.causal for one in graph.elements}
-    xs, ys = np.array(list(places.values())).T
-    axes.set(xlim=(xs.min() - 0.6, xs.max() + 0.6), ylim=(ys.min() - 0.8, ys.max() + 0.8))
-    figure.draw_without_rendering()
-    for source, target, quantity in graph.edges:
-        (x0, y0), (x1, y1) = places[source], places[target]
-        back = x1 <= x0
-        bend = 0.35 if back else 0.08
-        axes.annotate(
-            "",
-            (x1, y1),
-            (x0, y0),
-            zorder=1,
-            arrowprops={
-                "arrowstyle": "->",
-                "connectionstyle": f"arc3,rad={bend}",
-                "shrinkA": 26,
-                "shrinkB": 26,
-                "color": style.ORANGE if back else style.BLUE,
-                "lw": 1.0,
-            },
-        )
-        start, end = axes.transData.transform([(x0, y0), (x1, y1)])
-        across = np.array([end[1] - start[1], start[0] - end[0]])
-        # Nearer to where it comes from: lines that cross halfway keep their words apart.
-        along = start + 0.36 * (end - start)
-        on_it = axes.transData.inverted().transform(along + 0.46 * bend * across)
-        axes.text(
-            float(on_it[0]),
-            float(on_it[1]),
-            style.plain(quantity),
-            fontsize=7,
-            ha="center",
-            va="center",
-            zorder=2,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
-        )
-    for name, (x, y) in places.items():
-        _box(axes, name, (x, y), causal.get(name))
-    return figure
-
-
-def _box(axes: Axes, name: str, place: tuple[float, float], causal: bool | None) -> None:
-    """An element in its frame, double where it stores energy; what is from outside (None) bare."""
-    shape = "round" if causal is None else "square"
-    words = style.plain(name).replace(" of ", "\nof ").replace(", ", ",\n")
-    frame = {"facecolor": "white", "edgecolor": "none" if causal is None else "black", "lw": 0.9}
-    for pad in (0.0, 0.18) if causal else (0.0,):
-        axes.text(
-            *place,
-            words,
-            ha="center",
-            va="center",
-            fontsize=8,
-            zorder=4 - pad,
-            bbox=frame | {"boxstyle": f"{shape},pad={0.35 + pad}"},
-        )
 
 
 @style.drawn

@@ -1,4 +1,4 @@
-"""Figures of a motor: the graph has every element and quantity, the curves their ends."""
+"""Figures of a motor: the curves have their ends, the step says where it ends."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -6,13 +6,11 @@ from matplotlib.text import Text
 from tests.unit import drawn
 from tests.unit.actuators.test_motor import WORKING, motor
 
-from squeezefilm.actuators.motor.causal import averaged_graph, causal_graph
 from squeezefilm.actuators.motor.closed_loop import TrackedForce
 from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
 from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.plane import simulate_plane
 from squeezefilm.actuators.report.motor_figures import (
-    causal_figure,
     foot_figure,
     force_step_figure,
     map_figure,
@@ -23,15 +21,6 @@ from squeezefilm.actuators.report.motor_figures import (
 
 def words(figure: Figure) -> str:
     return " ".join(drawn.words(one.get_text()) for one in figure.findobj(Text))
-
-
-def test_the_graph_draws_every_element_and_what_goes_between() -> None:
-    for graph in (averaged_graph(motor()), causal_graph(motor())):
-        said = words(causal_figure(graph))
-        for one in graph.elements:
-            assert one.name in said
-        for name in graph.sources:
-            assert name in said
 
 
 def test_curves_map_and_foot_are_drawn() -> None:
