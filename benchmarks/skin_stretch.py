@@ -20,7 +20,7 @@ import numpy as np
 
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
-from squeezefilm.actuators.skin_stretch.patterns import pattern_voltages
+from squeezefilm.actuators.skin_stretch.cradle import pattern_voltages
 from squeezefilm.physics.render.texture.shapes import SineWave
 
 RATE, SPEED, REPEATS = 1e3, 0.05, 300
@@ -41,7 +41,7 @@ def main() -> None:
     """Measure and print."""
     array: SkinStretchArray = load_actuator("biet2008-skin-stretch").skin_stretch  # type: ignore[attr-defined]
     volts, wave = array.actuator.largest_voltage, SineWave(4.8e-3)
-    _, _, per_volt = array.strain_per_volt()
+    per_volt = array.strain_per_force()[2] @ array.force_per_volt
     matrix = np.ascontiguousarray(per_volt.reshape(-1, array.cradle.count))
     times = np.arange(100) / RATE
     rows = pattern_voltages(wave, array.cradle, times, (SPEED, 0.0), volts)

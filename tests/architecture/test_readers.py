@@ -43,7 +43,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "measure/recordings/files/sound.py": {"wave.open": "bytes that `read_regular` read"},
     "measure/recordings/description.py": {"tomllib.loads": TOML},
     "physics/texture_files/pictures.py": {"Pillow.open": CHILD},
-    "actuators/report/skin_stretch_figures.py": {"Image.open": "bytes that Matplotlib just drew"},
+    "actuators/report/skin_stretch.py": {"Image.open": "bytes that Matplotlib just drew"},
     "design/textures/report/gallery.py": {
         "read_text": PACKAGE,
         "read_bytes": "a figure of the checkout's documentation",

@@ -13,8 +13,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squeezefilm.actuators.control.force_law import ForceLaw
 from squeezefilm.actuators.motor.description import Motor
+from squeezefilm.actuators.motor.force_law import ForceLaw
 from squeezefilm.core.quantities import unit_of
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.physics.contact.sharing.pad import PadPoints
@@ -124,8 +124,8 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "radius_along": 20e-3,
         "radius_across": 9e-3,
     },
-    "actuators.skin_stretch.patterns.pattern_voltages": {"times": np.array([0.0, 0.01])},
-    "actuators.skin_stretch.solid_bender.solid_bender": {"more": 0},
+    "actuators.skin_stretch.cradle.pattern_voltages": {"times": np.array([0.0, 0.01])},
+    "actuators.skin_stretch.bimorph.solid_bender": {"more": 0},
     "actuators.skin_stretch.tissue.influence_matrix": {
         "x": np.array([0.0, 3e-3]),
         "y": np.array([0.0, 0.0]),
@@ -140,7 +140,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "actuators.motor.assembled.Working": {"amplitude": 1e-6},
     "actuators.motor.description.FootContact.stiffnesses": {"inclination": 0.1},
     "actuators.motor.description.Foot": {"x": 0.03, "y": 0.02},
-    "actuators.motor.stator.FaceMode.at": {"place": np.linspace(0.01, 0.07, 5)},
+    "actuators.motor.assembled.FaceMode.at": {"place": np.linspace(0.01, 0.07, 5)},
     "actuators.motor.averaged.averaged": {"samples": 64},
     "actuators.motor.in_time.simulate": {"periods": 4, "traced": 1},
     "actuators.motor.plane.simulate_plane": {"periods": 4, "velocity": (0.01, 0.0)},
@@ -158,7 +158,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "actuators.motor.closed_loop.track_force": {"wanted": np.array([0.5, 0.5]), "speed": 0.01},
     "actuators.motor.description.Motor": Later(lambda: fields_of(made(Motor))),
-    "actuators.control.force_law.ForceLaw": Later(lambda: fields_of(made(ForceLaw))),
+    "actuators.motor.force_law.ForceLaw": Later(lambda: fields_of(made(ForceLaw))),
     "physics.plate.electronics.amplifier_check": {"slew_rate": 1e6, "current": 0.01},
     "physics.contact.finger.load.finger_impedance": {"stiffness_per_area": 1e10 + 1e9j},
     "physics.contact.sliding.dry_friction.SpeedFriction": {
@@ -292,7 +292,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "physics.plate.sound.RadiatingSurface": Later(lambda: fields_of(made(RadiatingSurface))),
     "physics.plate.solid.response.HarmonicResponse.motion": {"at": 0},
-    "actuators.skin_stretch.slip.held_forces": {
+    "actuators.skin_stretch.array.held_forces": {
         "compliance": np.eye(3) * 1e-3,
         "wanted": np.array([1e-4, 1e-3, 0.0]),
         "held": np.array([0.5, 0.5, 0.0]),

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.actuators.control.force_law import ForceLaw, ForceState
-from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
+from squeezefilm.actuators.motor.assembled import AssembledMotor, FaceMode, Working, assembled
 from squeezefilm.actuators.motor.description import Cradle, Foot, FootContact, Motor
-from squeezefilm.actuators.motor.stator import FaceMode
+from squeezefilm.actuators.motor.force_law import ForceLaw, ForceState
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
 from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip
@@ -188,7 +187,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     ForceLaw: some_force_law,
     ForceState: ForceState,
     Bimorph: lambda: Bimorph(20e-3, 1e-3, PZT, 0.3e-3, BRASS),
-    Bender: lambda: MADE[Bimorph]().as_strip,
+    Bender: lambda: Bender(4.6e-7, 1.8e3, 900.0, 5e-9),
     FingerCradle: lambda: FingerCradle(3, 2, 1.2e-3, 1.8e-3, 1e-3, 1.6e-3, 4e-3, 4e-3, 9e-3, 22e-3),
     Fingertip: Fingertip,
     Tissue: Tissue,

@@ -31,7 +31,6 @@ ROOMS = {
     "physics.chain.pad_place",
     "actuators.skin_stretch",
     "actuators.motor",
-    "actuators.control",
     "core.materials",
     "physics.texture_files",
     "core.quantities",
@@ -56,7 +55,7 @@ NOT_CALLED = {
     actuators.motor.plane.PlaneMotion
     actuators.motor.curves.MotorMap
     actuators.motor.closed_loop.TrackedForce actuators.motor.closed_loop.TrackedForce.mean_error
-    actuators.motor.stator.FaceMode
+    actuators.motor.assembled.FaceMode
     physics.plate.electronics.Amplifier
     physics.plate.electronics.ElectricalLoad physics.plate.electronics.RingAdmittance
     physics.film.periodic.solution.Asked physics.film.periodic.solution.Found

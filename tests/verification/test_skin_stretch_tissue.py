@@ -7,11 +7,6 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from squeezefilm.actuators.skin_stretch.bonded_layer import (
-    layer_compliances,
-    normal_correction,
-    tangential_correction,
-)
 from squeezefilm.actuators.skin_stretch.cradle import (
     FingerCradle,
     Fingertip,
@@ -19,7 +14,13 @@ from squeezefilm.actuators.skin_stretch.cradle import (
     radii_that_touch_all,
     seat,
 )
-from squeezefilm.actuators.skin_stretch.half_space import normal_patch, tangential_patch
+from squeezefilm.actuators.skin_stretch.elastic_layer import (
+    layer_compliances,
+    normal_correction,
+    normal_patch,
+    tangential_correction,
+    tangential_patch,
+)
 from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, strain_matrices
 
 SIZE = (1.0e-3, 1.6e-3)

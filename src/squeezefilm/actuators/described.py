@@ -6,33 +6,31 @@ A kind is a dataclass with `name`, `title`, `provenance` and one field that is n
 
 from __future__ import annotations
 
-import importlib
 import re
 import tomllib
 from pathlib import Path
 from typing import Any
 
+from squeezefilm.actuators.motor.description import MotorDescription
+from squeezefilm.actuators.skin_stretch.array import SkinStretchDescription
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.load import load_text
 from squeezefilm.core.config.scan import require_quick_toml
 from squeezefilm.core.errors import ConfigError, SqueezefilmError
 from squeezefilm.core.regular_file import read_toml_text
-from squeezefilm.core.results import Result
 
-KINDS: dict[str, tuple[str, str]] = {
-    "motor": ("squeezefilm.actuators.motor.description", "MotorDescription"),
-    "skin_stretch": (
-        "squeezefilm.actuators.skin_stretch.description",
-        "SkinStretchDescription",
-    ),
+Described = MotorDescription | SkinStretchDescription
+KINDS: dict[str, type[Described]] = {
+    "motor": MotorDescription,
+    "skin_stretch": SkinStretchDescription,
 }
-"""By the table that a file has: the module and the dataclass that it is read into. What `analyze`
-says of a kind is in modules of this name, see `actuators.report.dispatch`."""
+"""By the table that a file has: the dataclass that it is read into. What `analyze` says of each is
+in `actuators.report.dispatch`."""
 
 
 def is_actuator(name_or_path: str | Path) -> bool:
-    """Whether a preset's name or a TOML file is that of an actuator: it has the table of one of
+    """True where a preset's name or a TOML file is that of an actuator: with the table of one of
     `KINDS`. False for what cannot be read, which whoever reads it next says."""
     text, path = str(name_or_path), Path(name_or_path)
     if path.suffix != ".toml":
@@ -44,7 +42,7 @@ def is_actuator(name_or_path: str | Path) -> bool:
     return re.search(rf"^\s*\[+\s*({'|'.join(KINDS)})\b", said, re.MULTILINE) is not None
 
 
-def load_actuator(name_or_path: str | Path) -> Result:
+def load_actuator(name_or_path: str | Path) -> Described:
     """The actuator of a preset's name or of a TOML file: the dataclass of its kind.
 
     Raises `ConfigError`, with file, line and key, for a file that cannot be read, one that has the
@@ -55,14 +53,12 @@ def load_actuator(name_or_path: str | Path) -> Result:
     return load_text(actuator_class(text, path), text, file=path)
 
 
-def actuator_class(text: str, file: str | Path | None = None) -> type[Result]:
+def actuator_class(text: str, file: str | Path | None = None) -> type[Described]:
     """The dataclass that the TOML text of an actuator is read into.
 
     Raises `ConfigError` as `actuator_kind` does.
     """
-    module, name = KINDS[actuator_kind(text, file)]
-    described: type[Result] = getattr(importlib.import_module(module), name)
-    return described
+    return KINDS[actuator_kind(text, file)]
 
 
 def actuator_kind(text: str, file: str | Path | None = None) -> str:
@@ -76,19 +72,19 @@ def actuator_kind(text: str, file: str | Path | None = None) -> str:
         tree: dict[str, Any] = tomllib.loads(text)
     except (ValueError, RecursionError):
         return next(iter(KINDS))
-    found = [kind for kind in KINDS if kind in tree]
+    kinds = [kind for kind in KINDS if kind in tree]
     tables = " or ".join(f"[{kind}]" for kind in KINDS)
-    if len(found) > 1:
+    if len(kinds) > 1:
         raise ConfigError(
-            f"has the tables {' and '.join(f'[{kind}]' for kind in found)}; an actuator is one of "
+            f"has the tables {' and '.join(f'[{kind}]' for kind in kinds)}; an actuator is one of "
             "them: write two files",
             file=file,
         )
-    if not found:
+    if not kinds:
         near = next((hint for key in tree if (hint := si.did_you_mean(key, list(KINDS)))), "")
         raise ConfigError(
             f"has no table of an actuator; one needs {tables}.{near} It has: "
             f"{', '.join(tree) or 'nothing'}",
             file=file,
         )
-    return found[0]
+    return kinds[0]

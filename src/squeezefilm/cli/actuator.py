@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, get_args, get_type_hints
+from typing import Any, get_args, get_type_hints
 
 from typer.models import OptionInfo
 
@@ -12,14 +12,11 @@ from squeezefilm.cli.app import answer, read_option, working
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.folder import require_folder
 
-if TYPE_CHECKING:
-    from squeezefilm.cli.describe import AnalyzeOptions
-
 _TAKEN = ("target", "voltage", "out", "as_json")
 
 
-def analyze_actuator(asked: AnalyzeOptions) -> None:
-    """Analyse an actuator. Raises `InputError` for options that only a display has."""
+def analyze_actuator(asked: Any) -> None:
+    """Analyse an actuator with the options of `analyze` (a record of them). Raises `InputError` for options that only a display has."""
     usual = type(asked)(asked.target)
     other = [
         _flag(type(asked), field.name)
@@ -35,12 +32,12 @@ def analyze_actuator(asked: AnalyzeOptions) -> None:
     if asked.out is not None:
         require_folder(asked.out)
     with working(asked.as_json) as step:
-        one = dispatch.analyze_actuator(asked.target, voltage, step)
+        analyzed = dispatch.analyze_actuator(asked.target, voltage, step)
         written = None
         if asked.out is not None:
             step("figures")
-            written = one.write(one.found, asked.out)
-    answer(asked.as_json, one.found, one.show, report=written)
+            written = analyzed.write(analyzed.analysis, asked.out)
+    answer(asked.as_json, analyzed.analysis, analyzed.show, report=written)
 
 
 def _flag(options: type, name: str) -> str:

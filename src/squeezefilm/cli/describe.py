@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -158,7 +157,9 @@ def analyze(asked: AnalyzeOptions) -> None:
     from squeezefilm.actuators.described import is_actuator
 
     if is_actuator(asked.target):
-        import_module("squeezefilm.cli.actuator").analyze_actuator(asked)
+        from squeezefilm.cli.actuator import analyze_actuator
+
+        analyze_actuator(asked)
         return
     from squeezefilm.core.blas_threads import one_blas_thread
 

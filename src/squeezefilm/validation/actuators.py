@@ -18,7 +18,7 @@ _PRINTED_SURFACE = 10e-6
 
 
 def _array() -> SkinStretchArray:
-    described: SkinStretchArray = load_actuator("biet2008-skin-stretch").skin_stretch  # type: ignore[attr-defined]
+    described: SkinStretchArray = load_actuator("biet2008-skin-stretch").skin_stretch  # type: ignore[union-attr]
     return described
 
 
@@ -70,7 +70,7 @@ def _() -> ClaimValue:
 
 @value_of("motor-tangential")
 def _() -> ClaimValue:
-    motor = assembled(load_actuator("biet2008-motor").motor)  # type: ignore[attr-defined]
+    motor = assembled(load_actuator("biet2008-motor").motor)  # type: ignore[union-attr]
     small, large = (Working(amplitude=one) for one in _AMPLITUDES)
     faster = no_load_speed(motor, large) - no_load_speed(motor, small)
     # Where feet hardly leave the slider, they drag it back after they pushed it.
@@ -85,7 +85,7 @@ def _() -> ClaimValue:
 
 @value_of("motor-contact")
 def _() -> ClaimValue:
-    motor = assembled(load_actuator("biet2008-motor").motor)  # type: ignore[attr-defined]
+    motor = assembled(load_actuator("biet2008-motor").motor)  # type: ignore[union-attr]
 
     def share(preload: float, amplitude: float) -> float:
         return averaged(motor, Working(amplitude=amplitude, preload=preload)).contact_share

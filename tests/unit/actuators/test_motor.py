@@ -11,7 +11,7 @@ import pytest
 
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor import average_kernel, kernel
-from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
+from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled, face_mode
 from squeezefilm.actuators.motor.averaged import (
     AveragedMotor,
     averaged,
@@ -28,7 +28,6 @@ from squeezefilm.actuators.motor.description import (
 )
 from squeezefilm.actuators.motor.in_time import MotorMotion, simulate
 from squeezefilm.actuators.motor.parts import Feet, Slider, Stator
-from squeezefilm.actuators.motor.stator import face_mode
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
 from squeezefilm.physics.display import load_display

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.actuators.described import load_actuator
-from squeezefilm.actuators.skin_stretch import budget, cradle, load_line, patterns
-from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
-from squeezefilm.actuators.skin_stretch.description import SkinStretchDescription
+from squeezefilm.actuators.skin_stretch import budget, cradle, load_line
+from squeezefilm.actuators.skin_stretch.array import SkinStretchArray, SkinStretchDescription
 from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.render.texture.shapes import SineWave
@@ -124,7 +123,8 @@ def test_strain_of_voltages_is_the_strain_of_their_forces(array: SkinStretchArra
     # Little, so that all stick.
     voltages = np.random.default_rng(4).uniform(-20, 20, 60)
     assert array.answer(voltages).slipping == 0
-    edges_x, edges_y, per_volt = array.strain_per_volt(0.6e-3)
+    edges_x, edges_y, per_force = array.strain_per_force(0.6e-3)
+    per_volt = per_force @ array.force_per_volt
     assert per_volt.shape == (3, edges_x.size - 1, edges_y.size - 1, 60)
     # The strain along a row of cells adds up to how far its ends came apart.
     forces, (px, py) = array.answer(voltages).forces, array.cradle.places
@@ -140,18 +140,18 @@ def test_strain_of_voltages_is_the_strain_of_their_forces(array: SkinStretchArra
 
 def test_a_wave_moves_over_the_contactors_as_the_finger_does(array: SkinStretchArray) -> None:
     wave, times = SineWave(6e-3), np.array([0.0, 0.012, 0.024])
-    found = patterns.pattern_voltages(wave, array.cradle, times, (0.1, 0.0), 100.0)
+    found = cradle.pattern_voltages(wave, array.cradle, times, (0.1, 0.0), 100.0)
     assert found.shape == (3, 60)
     # In 12 ms at 100 mm/s the finger goes on by one pitch: each column feels what the next felt.
     assert found[1, :54] == pytest.approx(found[0, 6:], abs=1e-9)
     x, y = array.cradle.places
     assert found[0] == pytest.approx(100 * (2 * wave(x, y, 0.1, 0.0) - 1), abs=1e-9)
     # A grating of one pitch is a pull of all together, and another phase is another pull.
-    blind = patterns.pattern_voltages(SineWave(1.2e-3), array.cradle, times[:1], (0.1, 0.0), 100.0)
+    blind = cradle.pattern_voltages(SineWave(1.2e-3), array.cradle, times[:1], (0.1, 0.0), 100.0)
     assert np.ptp(blind) < 1e-6
-    assert patterns.finest_period(array.cradle) == pytest.approx(2.4e-3)
+    assert cradle.finest_period(array.cradle) == pytest.approx(2.4e-3)
     with pytest.raises(InputError, match="times is empty"):
-        patterns.pattern_voltages(wave, array.cradle, np.zeros(0), (0.1, 0.0), 100.0)
+        cradle.pattern_voltages(wave, array.cradle, np.zeros(0), (0.1, 0.0), 100.0)
 
 
 def test_what_cannot_be_is_refused_in_words(array: SkinStretchArray) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squeezefilm.actuators.skin_stretch.slip import held_forces
+from squeezefilm.actuators.skin_stretch.array import held_forces
 
 
 def test_two_contactors_by_hand() -> None:

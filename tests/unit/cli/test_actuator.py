@@ -25,8 +25,8 @@ def test_options_of_displays_are_refused_of_actuators() -> None:
 def test_an_actuator_is_analysed_as_one(kind: str, tmp_path: Path) -> None:
     name = f"biet2008-{kind.replace('_', '-')}"
     # What is computed of each is asked in its own tests.
-    analysis = shared(name, lambda: analyze_actuator(name)).found
-    drawn = "squeezefilm.actuators.report.skin_stretch_figures.wave_animation"
+    analysis = shared(name, lambda: analyze_actuator(name)).analysis
+    drawn = "squeezefilm.actuators.report.skin_stretch.wave_animation"
     with (
         mock.patch(f"squeezefilm.actuators.analysis.{kind}.analyze_{kind}") as analyze,
         mock.patch(drawn, return_value=b""),

@@ -1,4 +1,4 @@
-"""How sure an actuator's answers are: all values that nobody knows drawn together."""
+"""How sure an actuator's answers are, and of what: all that nobody knows drawn together."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-from scipy.stats import qmc
+from scipy.stats import qmc, spearmanr
 
+from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.distributions import Uniform
 from squeezefilm.core.errors import SqueezefilmError
@@ -39,10 +40,12 @@ class DrawnAnswers:
 
     `intervals` have the quantiles `LEVELS` of each answer, of the draws in which the actuator
     works; `refused` is in how many it does not, most often because of `reason`. `drawn` are the
-    values and their ranges.
+    values and their ranges; `shares` say of each answer how much of its spread follows each of
+    them: squares of Spearman's rank correlation, which some 0.05 of chance are in.
     """
 
     intervals: Mapping[str, tuple[float, float, float]]
+    shares: Mapping[str, tuple[float, ...]]
     count: int
     refused: int
     reason: str
@@ -67,25 +70,39 @@ def drawn_answers(
     """
     drawn = tuple(_parameters(described, provenance, usual))
     points = qmc.Sobol(len(drawn), scramble=True, rng=SEED).random(COUNT)
-    columns = [one.drawn(points[:, k]) for k, one in enumerate(drawn)]
-    found: list[Mapping[str, float]] = []
+    columns = [np.array(value.drawn(points[:, k])) for k, value in enumerate(drawn)]
+    answered: list[Mapping[str, float]] = []
+    worked: list[int] = []
     reasons: collections.Counter[str] = collections.Counter()
     for row in range(COUNT):
-        values = {one.path: column[row] for one, column in zip(drawn, columns, strict=True)}
+        values = {
+            value.path: float(column[row]) for value, column in zip(drawn, columns, strict=True)
+        }
         try:
-            found.append(answers(with_values(described, values)))
+            answered.append(answers(with_values(described, values)))
+            worked.append(row)
         except SqueezefilmError as error:
             # Of one cause the numbers differ from draw to draw.
             reasons[str(error).split(":", 1)[0].split(" is ", 1)[0]] += 1
         if progress is not None:
             progress(row + 1, COUNT)
-    intervals = {}
-    if len(found) > COUNT // 2:
-        for name in found[0]:
-            low, middle, high = np.quantile([one[name] for one in found], LEVELS).tolist()
+    intervals, shares = {}, {}
+    if len(answered) > COUNT // 2:
+        for name in answered[0]:
+            values_of = np.array([answer[name] for answer in answered])
+            low, middle, high = np.quantile(values_of, LEVELS).tolist()
             intervals[name] = (low, middle, high)
+            shares[name] = tuple(_share(column[worked], values_of) for column in columns)
     reason = reasons.most_common(1)[0][0] if reasons else ""
-    return DrawnAnswers(intervals, COUNT, COUNT - len(found), reason, SEED, drawn)
+    refused = COUNT - len(answered)
+    return DrawnAnswers(intervals, shares, COUNT, refused, reason, SEED, drawn)
+
+
+def _share(drawn: si.FloatArray, answers: si.FloatArray) -> float:
+    """The share of the answers' spread that follows one drawn value."""
+    if np.ptp(answers) <= 1e-12 * np.max(np.abs(answers)):
+        return 0.0
+    return float(spearmanr(drawn, answers).statistic ** 2)
 
 
 def _parameters(

@@ -10,7 +10,6 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers, Usual, drawn_answers
-from squeezefilm.actuators.analysis.effects import Effect, effects
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
 from squeezefilm.actuators.motor.averaged import (
     AveragedMotor,
@@ -73,8 +72,7 @@ class MotorAnalysis(Result):
             rest to no load, shape (speeds, 2).
         tracked: the force law's answer to a step, at that speed; None where a force cannot be
             commanded.
-        effects: what each assumed value does to stall force and speed without a load.
-        drawn: those two where what is uncertain is drawn together.
+        drawn: stall force and speed without a load where what is uncertain is drawn together.
         tuned: at rest, at frequencies about the resonance.
         shifts, shifted: of all feet along the wave (m), and the motor at rest there; None over a
             node, or beside the plate.
@@ -92,7 +90,6 @@ class MotorAnalysis(Result):
     motion: MotorMotion
     resolved: si.FloatArray
     tracked: TrackedForce | None
-    effects: tuple[Effect, ...]
     drawn: DrawnAnswers
     tuned: tuple[AveragedMotor, ...]
     shifts: si.MetreArray
@@ -175,7 +172,6 @@ class MotorAnalysis(Result):
                 {"speed_m_per_s": one.speed, "force_N": one.force, "efficiency": one.efficiency}
                 for one in self.curve
             ],
-            "effects": to_json(self.effects),
             "drawn": to_json(self.drawn),
             "over_frequency": [
                 {
@@ -234,8 +230,6 @@ def analyze_motor(
     shifts, shifted = _shifted(motor, amplitude)
     tell("force law")
     tracked, why_not = _step(motor, best.speed, amplitude)
-    tell("what assumed values do")
-    moved = effects(described, described.provenance, lambda one: _answers(one, volts), _tried)
     tell("how sure that is")
     sure = drawn_answers(
         described,
@@ -254,7 +248,6 @@ def analyze_motor(
         motion,
         resolved,
         tracked,
-        moved,
         sure,
         tuned,
         shifts,
@@ -339,25 +332,12 @@ def _drawn(
     return _answered(assembled(drawn.motor, modes=modes), voltage)
 
 
-def _answers(described: MotorDescription, voltage: si.Volt) -> Mapping[str, float]:
-    return _answered(assembled(described.motor), voltage)
-
-
 def _answered(motor: AssembledMotor, voltage: si.Volt) -> Mapping[str, float]:
     working = Working(voltage=voltage)
     return {
         "stall_force_N": stall_force(motor, working),
         "no_load_speed_m_per_s": no_load_speed(motor, working),
     }
-
-
-def _tried(path: str) -> bool:
-    """Feet would leave the wave, and each of the plate's own values is a solve: but for its Q they
-    are for an analysis of the plate as a display."""
-    in_plate = path.startswith(("motor.plate.", "motor.second_plate."))
-    return not path.startswith("motor.feet.") and (
-        not in_plate or path == "motor.plate.quality_factor"
-    )
 
 
 def _warnings(found: MotorAnalysis, why_no_force: str) -> list[str]:

@@ -9,8 +9,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers, Usual, drawn_answers
-from squeezefilm.actuators.analysis.effects import Effect, effects
-from squeezefilm.actuators.skin_stretch.array import Pull, SkinStretchArray
+from squeezefilm.actuators.skin_stretch.array import Pull, SkinStretchArray, SkinStretchDescription
 from squeezefilm.actuators.skin_stretch.budget import (
     Lines,
     charging_power,
@@ -19,13 +18,13 @@ from squeezefilm.actuators.skin_stretch.budget import (
 )
 from squeezefilm.actuators.skin_stretch.cradle import (
     Seating,
+    finest_period,
     force_for_all,
+    pattern_voltages,
     radii_that_touch_all,
     seat,
 )
-from squeezefilm.actuators.skin_stretch.description import SkinStretchDescription
 from squeezefilm.actuators.skin_stretch.load_line import LoadedTip, loaded_tip, tip_motion
-from squeezefilm.actuators.skin_stretch.patterns import finest_period, pattern_voltages
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import UnreachableError
 from squeezefilm.core.progress import SayProgress
@@ -86,7 +85,6 @@ class SkinStretchAnalysis(Result):
         least_force: under which all contactors touch; None where some never do.
         radii: across, of cradles on which all touch under the finger's force; None where none.
         wave: a texture that moves over the finger.
-        effects: what each assumed value does.
         drawn: deflections, forces and crosstalk where what is uncertain is drawn together.
         warnings: in sentences.
     """
@@ -102,7 +100,6 @@ class SkinStretchAnalysis(Result):
     least_force: si.Newton | None
     radii: tuple[si.Metre, si.Metre] | None
     wave: ShownWave
-    effects: tuple[Effect, ...]
     drawn: DrawnAnswers
     warnings: tuple[str, ...]
     _shown: ClassVar[str] = "described.name voltage free_deflection blocked_force"
@@ -170,7 +167,6 @@ class SkinStretchAnalysis(Result):
             "heat_at_100_Hz_W": heat,
             "driver_power_at_100_Hz_W": driven,
             "lines": self.lines,
-            "effects": to_json(self.effects),
             "drawn": to_json(self.drawn),
             "warnings": list(self.warnings),
         }
@@ -207,8 +203,6 @@ def analyze_skin_stretch(
     least, radii = _cradle(array)
     tell("a texture")
     wave = _wave(array, volts)
-    tell("what assumed values do")
-    moved = effects(described, described.provenance, lambda one: _answers(one, volts), _tried)
     tell("how sure that is")
     sure = drawn_answers(
         described,
@@ -219,9 +213,20 @@ def analyze_skin_stretch(
     )
     warnings = tuple(_warnings(array, together, wave, seating, least))
     return SkinStretchAnalysis(
-        described, volts, skin, tip, frequencies, motion, together, seating, least, radii, wave,
-        moved, sure, warnings,
-    )  # fmt: skip
+        described,
+        volts,
+        skin,
+        tip,
+        frequencies,
+        motion,
+        together,
+        seating,
+        least,
+        radii,
+        wave,
+        sure,
+        warnings,
+    )
 
 
 def _cradle(
@@ -247,12 +252,6 @@ def _wave(array: SkinStretchArray, voltage: si.Volt) -> ShownWave:
     strain = np.moveaxis(per_force[0] @ np.array([one.forces for one in pulls]).T, -1, 0)
     moved, slips = np.array([one.displacements for one in pulls]), [one.slips for one in pulls]
     return ShownWave(period, _SHOWN_SPEED, times, x, y, strain, moved, np.array(slips), pulls[0])
-
-
-def _tried(path: str) -> bool:
-    """Constants of materials of the library are asked of their makers; numbers of contactors are
-    whole."""
-    return ".ceramic." not in path and ".shim." not in path
 
 
 def _answers(described: SkinStretchDescription, voltage: si.Volt) -> Mapping[str, float]:

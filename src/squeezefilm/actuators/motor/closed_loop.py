@@ -7,10 +7,10 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm.actuators.control.force_law import ForceLaw, ForceState, force_step
 from squeezefilm.actuators.motor import kernel
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.averaged import averaged
+from squeezefilm.actuators.motor.force_law import ForceLaw, ForceState, force_step
 from squeezefilm.actuators.motor.in_time import STEPS, require_no_pull, resting
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, InputError

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
+from squeezefilm.actuators.motor.assembled import AssembledMotor, FaceMode, Working, assembled
 from squeezefilm.actuators.motor.averaged import (
     AveragedMotor,
     averaged,
@@ -15,7 +15,6 @@ from squeezefilm.actuators.motor.averaged import (
     require_moving,
 )
 from squeezefilm.actuators.motor.description import Motor
-from squeezefilm.actuators.motor.stator import FaceMode
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.progress import CountProgress

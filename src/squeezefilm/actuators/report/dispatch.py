@@ -1,15 +1,17 @@
-"""The analysis and the report that go with an actuator, by the table of its file: of a kind `motor`
-the functions `analyze_motor`, `show_motor` and `write_motor` of modules of that name."""
+"""The analysis and the report that go with an actuator's kind."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from squeezefilm.actuators.described import KINDS, load_actuator
+from squeezefilm.actuators.analysis import motor, skin_stretch
+from squeezefilm.actuators.described import load_actuator
+from squeezefilm.actuators.motor.description import MotorDescription
+from squeezefilm.actuators.report.motor import show_motor, write_motor
 from squeezefilm.actuators.report.page import ActuatorAnalysis
+from squeezefilm.actuators.report.skin_stretch import show_skin_stretch, write_skin_stretch
 from squeezefilm.core import quantities as si
 from squeezefilm.core.progress import SayProgress
 
@@ -17,7 +19,7 @@ from squeezefilm.core.progress import SayProgress
 class AnalyzedActuator(NamedTuple):
     """An actuator's analysis, what prints it and what writes its page."""
 
-    found: ActuatorAnalysis
+    analysis: ActuatorAnalysis
     show: Callable[[Any], None]
     write: Callable[[Any, Path], Path]
 
@@ -25,15 +27,12 @@ class AnalyzedActuator(NamedTuple):
 def analyze_actuator(
     target: str | Path, voltage: si.Volt | None = None, progress: SayProgress | None = None
 ) -> AnalyzedActuator:
-    """The analysis of a motor or an array, by a preset's name or the path of its file, at a voltage
-    (V, zero-to-peak; its own if None). Raises what `load_actuator` and the kind's analysis raise.
+    """Analyse a motor or an array, by a preset's name or the path of its file, at a voltage (V,
+    zero-to-peak; its own if None). Raises what `load_actuator` and the kind's analysis raise.
     """
     described = load_actuator(target)
-    # A kind is named alike wherever it is: as the table of its file.
-    kind = next(one for one in KINDS if hasattr(described, one))
-    analysis = import_module(f"squeezefilm.actuators.analysis.{kind}")
-    report = import_module(f"squeezefilm.actuators.report.{kind}")
-    found = getattr(analysis, f"analyze_{kind}")(described, voltage=voltage, progress=progress)
-    return AnalyzedActuator(
-        found, getattr(report, f"show_{kind}"), getattr(report, f"write_{kind}")
-    )
+    if isinstance(described, MotorDescription):
+        of_motor = motor.analyze_motor(described, voltage=voltage, progress=progress)
+        return AnalyzedActuator(of_motor, show_motor, write_motor)
+    of_array = skin_stretch.analyze_skin_stretch(described, voltage=voltage, progress=progress)
+    return AnalyzedActuator(of_array, show_skin_stretch, write_skin_stretch)

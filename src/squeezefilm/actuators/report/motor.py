@@ -6,17 +6,30 @@ import functools
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from squeezefilm.actuators.analysis.motor import MotorAnalysis
-from squeezefilm.actuators.report import motor_figures
-from squeezefilm.actuators.report.effect_rows import EFFECTS, effect_head, effect_rows
-from squeezefilm.actuators.report.how_sure import drawn_words, how_sure, with_interval
-from squeezefilm.actuators.report.page import assumed_words, write_page
+from squeezefilm.actuators.report.page import (
+    assumed_words,
+    drawn_words,
+    how_sure,
+    with_interval,
+    write_page,
+)
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, Row, V, W, shown
-from squeezefilm.core.kit.page_style import section, text_table
 from squeezefilm.core.kit.terminal import bullets, show_rows
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from squeezefilm.actuators.analysis.motor import MotorAnalysis
+    from squeezefilm.actuators.motor.averaged import AveragedMotor
+    from squeezefilm.actuators.motor.closed_loop import TrackedForce
+    from squeezefilm.actuators.motor.curves import MotorMap
+    from squeezefilm.actuators.motor.in_time import MotorMotion
+    from squeezefilm.actuators.motor.plane import PlaneMotion
 
 _ANSWERS = {"stall_force_N": "stall force", "no_load_speed_m_per_s": "speed without a load"}
 
@@ -99,17 +112,12 @@ def show_motor(found: MotorAnalysis) -> None:
 def write_motor(found: MotorAnalysis, folder: Path) -> Path:
     """Write result.json, the figures and report.html into `folder`; the path of the page. Raises
     `InputError` where the folder cannot be written to."""
-    nominal = {name: found.summary()[name] for name in _ANSWERS}
-    rows = effect_rows(found.effects, nominal, _ANSWERS)
-    moved = f"<p>{EFFECTS}</p>" + text_table(
-        "Change of the answers, at the lower value; at the higher one", effect_head(_ANSWERS), rows
-    )
     return write_page(
         found,
         folder,
         key_numbers=motor_rows(found),
         figures=_figures(found),
-        more=how_sure(found.drawn) + section("What each assumed value does", moved),
+        more=how_sure(found.drawn, _ANSWERS),
     )
 
 
@@ -118,28 +126,167 @@ def _figures(found: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
     figures = {
         "speed-force": (
             "Speed against force",
-            motor_figures.speed_force_figure((found.curve, found.resolved)),
+            speed_force_figure((found.curve, found.resolved)),
         ),
         "map": (
             "Preload and amplitude",
-            motor_figures.map_figure(
-                (found.map, found.motor.motor.cradle.preload, found.rest.amplitude)
-            ),
+            map_figure((found.map, found.motor.motor.cradle.preload, found.rest.amplitude)),
         ),
         "frequency-and-place": (
             "Frequency, and the place of the feet",
-            motor_figures.tuning_figure(found),
+            tuning_figure(found),
         ),
         "foot": (
             "The way of a foot",
-            motor_figures.foot_figure((found.motion, feet.across[0], feet.along[0])),
+            foot_figure((found.motion, feet.across[0], feet.along[0])),
         ),
     }
     if found.plane is not None:
-        figures["plane"] = ("Free in the plane", motor_figures.plane_figure(found.plane))
+        figures["plane"] = ("Free in the plane", plane_figure(found.plane))
     if found.tracked is not None:
         figures["force-step"] = (
             "A force that is commanded",
-            motor_figures.force_step_figure(found.tracked),
+            force_step_figure(found.tracked),
         )
     return figures
+
+
+@style.drawn
+def speed_force_figure(known: tuple[tuple[AveragedMotor, ...], si.FloatArray]) -> Figure:
+    """Speed and efficiency over the force, from rest to no load: the averaged motor, and the speeds
+    and forces of the one resolved in time."""
+    curve, resolved = known
+    figure = style.new_figure(
+        f"Stalls at {curve[0].force:.3g} N, runs {1e3 * curve[-1].speed:.3g} mm/s without a load",
+        "line: averaged; crosses: resolved in time, the slider moved at that speed",
+        4.0,
+    )
+    left, right = figure.subplots(1, 2)
+    force = [one.force for one in curve]
+    left.plot(force, [1e3 * one.speed for one in curve], color=style.BLUE)
+    left.plot(resolved[:, 1], 1e3 * resolved[:, 0], "x", color=style.ORANGE, ms=8)
+    left.set(xlabel="force on the load (N)", ylabel="speed (mm/s)")
+    right.plot(force, [100 * one.efficiency for one in curve], color=style.BLUE)
+    right.set(xlabel="force on the load (N)", ylabel="efficiency (%)")
+    return figure
+
+
+@style.drawn
+def force_step_figure(tracked: TrackedForce) -> Figure:
+    """A commanded force and what came of it, and the voltage that the law took."""
+    error = 100 * (tracked.force[-1] / tracked.wanted[-1] - 1)
+    figure = style.new_figure(
+        f"The force law ends {abs(error):.2g} % from the force that is wanted",
+        "the slider moved at the best load's speed; each point a mean over one step of the law",
+        4.0,
+    )
+    left, right = figure.subplots(1, 2)
+    # At first the plate swings up and the law finds its way; that is no answer to a step.
+    seen = slice(tracked.time.size // 3, None)
+    time = 1e3 * tracked.time[seen]
+    left.step(time, tracked.wanted[seen], where="pre", color="black", label="wanted")
+    left.plot(time, tracked.force[seen], color=style.BLUE, label="in time")
+    left.set(xlabel="time (ms)", ylabel="force (N)")
+    style.legend_below(left, columns=2)
+    right.step(time, tracked.voltage[seen], where="pre", color=style.ORANGE)
+    right.set(xlabel="time (ms)", ylabel="voltage (V)")
+    return figure
+
+
+@style.drawn
+def map_figure(known: tuple[MotorMap, si.Newton, si.Metre]) -> Figure:
+    """Stall force, no-load speed and efficiency over preload and amplitude, white where it stalls;
+    a mark at the preload (N) and amplitude (m) that the motor has."""
+    found, preload, amplitude = known
+    figure = style.new_figure(
+        "Preload and amplitude",
+        "averaged model; white: the feet never leave, the motor stalls; mark: the motor as it is",
+        3.6,
+    )
+    x, y = 1e6 * found.amplitude, found.preload
+    for axes, values, label in zip(
+        figure.subplots(1, 3, sharey=True),
+        (found.stall_force, 1e3 * found.no_load_speed, 100 * found.efficiency),
+        ("stall force (N)", "no-load speed (mm/s)", "best efficiency (%)"),
+        strict=True,
+    ):
+        drawn = axes.pcolormesh(x, y, np.ma.masked_invalid(values), shading="nearest")
+        figure.colorbar(drawn, ax=axes)
+        axes.set_title(label, fontsize="medium")
+        style.mark(axes, 1e6 * amplitude, preload, 6)
+        axes.set(xlabel="amplitude (µm)", yscale="log")
+        style.plain_log(axes.yaxis)
+    figure.axes[0].set_ylabel("preload (N)")
+    return figure
+
+
+@style.drawn
+def foot_figure(motion: tuple[MotorMotion, si.FloatArray, si.FloatArray]) -> Figure:
+    """The way of the first foot's tip over a few periods, across against along, and when it is in
+    contact: a motion, and what a foot moves across and along for 1 m of each mode."""
+    moved, across, along = motion
+    w, u = moved.deflection @ across, moved.deflection @ along
+    figure = style.new_figure("The way of a foot", moved.model, 4.0)
+    left, right = figure.subplots(1, 2)
+    touching = moved.contact[:, 0] > 0
+    left.plot(1e6 * u, 1e6 * w, color=style.BLUE, lw=0.8)
+    left.plot(
+        1e6 * u[touching], 1e6 * w[touching], ".", ms=3, color=style.ORANGE, label="in contact"
+    )
+    left.set(xlabel="along the face (µm)", ylabel="across it (µm)")
+    time = 1e6 * (moved.time - moved.time[0])
+    right.plot(time, 1e6 * w, color=style.BLUE, label="foot")
+    right.plot(time, 1e6 * moved.height, color="black", label="slider")
+    right.plot(time[touching], 1e6 * w[touching], ".", ms=3, color=style.ORANGE)
+    right.set(xlabel="time (µs)", ylabel="height (µm)")
+    style.legend_below(right, columns=2)
+    return figure
+
+
+@style.drawn
+def plane_figure(found: PlaneMotion) -> Figure:
+    """The way and the velocity of a slider that is free in the plane, from rest on."""
+    along, sideways = found.final_velocity.tolist()
+    figure = style.new_figure(
+        f"Free in the plane it ends at {1e3 * along:.3g} mm/s along and {1e3 * sideways:.3g} mm/s "
+        "sideways",
+        found.model,
+        4.0,
+    )
+    left, right = figure.subplots(1, 2)
+    path = 1e6 * found.path
+    left.plot(path[:, 0], path[:, 1], color=style.BLUE, lw=1)
+    left.plot(*path[-1], "o", color=style.ORANGE)
+    left.set(xlabel="along (µm)", ylabel="sideways (µm)")
+    time = 1e3 * found.time[-1] * np.arange(1, len(found.period_velocity) + 1)
+    time = time / len(found.period_velocity)
+    for k, (name, colour) in enumerate((("along", style.BLUE), ("sideways", style.ORANGE))):
+        right.plot(time, 1e3 * found.period_velocity[:, k], color=colour, lw=1, label=name)
+    right.set(xlabel="time (ms)", ylabel="velocity (mm/s)")
+    style.legend_below(right, columns=2)
+    return figure
+
+
+@style.drawn
+def tuning_figure(found: MotorAnalysis) -> Figure:
+    """The force at rest over the frequency of the drive (with the resonance without a slider), and
+    over the shift of all feet along the wave."""
+    motors, resonance = found.tuned, found.motor.resonance_frequency
+    shifts, shifted = found.shifts, found.shifted
+    figure = style.new_figure(
+        "The force at rest by the frequency of the drive, and by the place of the feet",
+        "averaged; left at the voltage, right at the amplitude that the motor has; gaps: nodes",
+        4.0,
+    )
+    left, right = figure.subplots(1, 2)
+    at = [1e-3 * (one.working.frequency or resonance) for one in motors]
+    left.plot(at, [one.force for one in motors], color=style.BLUE)
+    left.axvline(1e-3 * resonance, color=style.ORANGE, lw=1, label="resonance without a slider")
+    left.set(xlabel="frequency (kHz)", ylabel="force at rest (N)")
+    style.legend_below(left)
+    forces = [np.nan if one is None else one.force for one in shifted]
+    right.plot(1e3 * shifts, forces, color=style.BLUE)
+    right.axvline(0.0, color=style.ORANGE, lw=1, label="where they stand")
+    right.set(xlabel="shift of the feet along the wave (mm)", ylabel="force at rest (N)")
+    style.legend_below(right)
+    return figure

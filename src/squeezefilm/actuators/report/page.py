@@ -7,10 +7,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from squeezefilm.actuators.analysis.drawn import DrawnAnswers
+from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
-from squeezefilm.core.kit.numbers import Row
+from squeezefilm.core.kit.numbers import Row, shown
 from squeezefilm.core.kit.page_style import (
     as_html,
     bullets,
@@ -109,3 +111,53 @@ def _sources(provenance: Mapping[str, Provenance]) -> str:
     ]
     head = ("value", "evidence", "source")
     return section("Where the values come from", text_table("As the file says", head, table))
+
+
+def with_interval(found: DrawnAnswers, value: float, name: str, unit: si.Unit) -> str:
+    """A value (in its unit) and what lies between 5 and 95 % of the draws of the answer `name`."""
+    interval = found.intervals.get(name)
+    said = shown(value, unit, 3)
+    if interval is None:
+        return said
+    return f"{said} ({shown(interval[0], unit, 2)} to {shown(interval[2], unit, 2)})"
+
+
+def drawn_words(found: DrawnAnswers) -> str:
+    """What the intervals are, in sentences."""
+    given = sum(value.origin == "given" for value in found.drawn)
+    guessed = len(found.drawn) - given
+    many = "all" if guessed == len(found.drawn) else f"{guessed} of them"
+    ranges = "from ranges of the file"
+    if guessed:
+        ranges = f"{many} from ranges that are themselves assumed"
+    said = (
+        f"In brackets, 5 to 95 % of {found.count} draws (seed {found.seed}) of {len(found.drawn)} "
+        f"uncertain values together, {ranges}."
+    )
+    if found.refused:
+        said += (
+            f" In {found.refused} of the draws the actuator does not work (most often: "
+            f"{found.reason}); they are left out."
+        )
+    if not found.intervals:
+        said += " Fewer than half work, and no interval is given."
+    return said
+
+
+def how_sure(found: DrawnAnswers, answers: Mapping[str, str]) -> str:
+    """Section of a page: what was drawn, from where and why, and how much of the spread of each of
+    the `answers` (in words, by name) follows it."""
+    known = {name: words for name, words in answers.items() if name in found.shares}
+    rows = [
+        (
+            value.path.split(".", 1)[-1].replace("_", " "),
+            " to ".join(value.spread),
+            *(si.percent(found.shares[name][k]) for name in known),
+            value.source if value.origin == "given" else f"assumed: {value.source}",
+        )
+        for k, value in enumerate(found.drawn)
+    ]
+    head = ("value", "range", *(f"of the {words}" for words in known.values()), "why")
+    table = text_table("Drawn evenly, and the share of each spread that follows it", head, rows)
+    said = f"{drawn_words(found)} What has the largest share is worth measuring first."
+    return section("How sure that is", f"<p>{as_html(said)}</p>{table}")

@@ -3,22 +3,36 @@
 from __future__ import annotations
 
 import functools
+import io
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis
-from squeezefilm.actuators.report import skin_stretch_figures as drawn
-from squeezefilm.actuators.report.effect_rows import EFFECTS, effect_head, effect_rows
-from squeezefilm.actuators.report.how_sure import drawn_words, how_sure, with_interval
-from squeezefilm.actuators.report.page import assumed_words, write_page
+from squeezefilm.actuators.report.page import (
+    assumed_words,
+    drawn_words,
+    how_sure,
+    with_interval,
+    write_page,
+)
 from squeezefilm.actuators.skin_stretch.load_line import (
     PUBLISHED_BLOCKED,
     PUBLISHED_FREE,
     PUBLISHED_LOADED,
 )
 from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, M, N, Row, V, W, shown
-from squeezefilm.core.kit.page_style import section, text_table
+from squeezefilm.core.kit.page_style import section
 from squeezefilm.core.kit.terminal import bullets, show_rows
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from squeezefilm.actuators.analysis.skin_stretch import ShownWave, SkinStretchAnalysis
 
 _ANSWERS = {
     "deflection_on_skin_m": "deflection on the skin",
@@ -103,12 +117,6 @@ def show_skin_stretch(found: SkinStretchAnalysis) -> None:
 def write_skin_stretch(found: SkinStretchAnalysis, folder: Path) -> Path:
     """Write result.json, the figures, the moving texture and report.html into `folder`; the path of
     the page. Raises `InputError` where the folder cannot be written to."""
-    summary = found.summary()
-    nominal = {name: summary[name] for name in _ANSWERS}
-    rows = effect_rows(found.effects, nominal, _ANSWERS)
-    moved = f"<p>{EFFECTS}</p>" + text_table(
-        "Change of the answers, at the lower value; at the higher one", effect_head(_ANSWERS), rows
-    )
     moving = section(
         "The texture as it moves",
         f'<figure><img src="{_MOVING}" alt="The skin while a texture moves past"></figure>',
@@ -118,11 +126,209 @@ def write_skin_stretch(found: SkinStretchAnalysis, folder: Path) -> Path:
         folder,
         key_numbers=skin_stretch_rows(found),
         figures={
-            "actuator": ("One actuator", drawn.actuator_figure(found)),
-            "load-line": ("One actuator against the skin", drawn.load_line_figure(found)),
-            "strain": ("The skin under the array", drawn.strain_figure(found)),
-            "crosstalk": ("Crosstalk and seat", drawn.crosstalk_figure(found)),
+            "actuator": ("One actuator", actuator_figure(found)),
+            "load-line": ("One actuator against the skin", load_line_figure(found)),
+            "strain": ("The skin under the array", strain_figure(found)),
+            "crosstalk": ("Crosstalk and seat", crosstalk_figure(found)),
         },
-        more=moving + how_sure(found.drawn) + section("What each assumed value does", moved),
-        pictures={_MOVING: drawn.wave_animation(found)},
+        more=moving + how_sure(found.drawn, _ANSWERS),
+        pictures={_MOVING: wave_animation(found)},
     )
+
+
+_FRAME_MS = 60
+_DRAWN_TIMES = 10
+
+
+@style.drawn
+def load_line_figure(found: SkinStretchAnalysis) -> Figure:
+    """An actuator's load line and the skin's, and where they meet; and its answer to a sine."""
+    um, mn = 1e6, 1e3
+    tip = found.tip
+    figure = style.new_figure(
+        f"{um * tip.deflection:.3g} µm and {mn * tip.force:.3g} mN against the skin",
+        "actuator as a solid, linear skin under one contactor alone; right: one mode",
+        4.0,
+    )
+    left, right = figure.subplots(1, 2)
+    free = um * found.free_deflection
+    left.plot([0, free], [mn * found.blocked_force, 0], color=style.BLUE, label="actuator")
+    reach = min(free, um * found.blocked_force / found.skin.stiffness)
+    left.plot([0, reach], [0, reach * mn / um * found.skin.stiffness], color="black", label="skin")
+    _intervals(left, found, free)
+    left.plot(um * tip.deflection, mn * tip.force, "o", color=style.ORANGE)
+    left.set(xlabel="deflection (µm)", ylabel="force (mN)", xlim=(0, None), ylim=(0, None))
+    style.legend_below(left, columns=3)
+    right.plot(found.frequencies, um * np.abs(found.motion), color=style.BLUE)
+    right.axvline(tip.bandwidth, color=style.ORANGE, lw=1, label="within 3 dB up to here")
+    right.set(xlabel="frequency (Hz)", ylabel="deflection on the skin (µm)", xscale="log")
+    style.plain_log(right.xaxis)
+    style.legend_below(right)
+    return figure
+
+
+def _intervals(axes: Axes, found: SkinStretchAnalysis, free: float) -> None:
+    """Between which lines the skin lies in 5 to 95 % of the draws, and how far deflection and force
+    do."""
+    drawn = found.drawn.intervals
+    if not drawn:
+        return
+    um, mn = 1e6, 1e3
+    low, _, high = (mn / um * one for one in drawn["skin_stiffness_N_per_m"])
+    axes.fill_between(
+        [0, free], [0, free * low], [0, free * high], color="black", alpha=0.12, lw=0,
+        label="skin, 5 to 95 %",
+    )  # fmt: skip
+    x, y = um * found.tip.deflection, mn * found.tip.force
+    (left, _, right), (below, _, above) = drawn["deflection_on_skin_m"], drawn["force_on_skin_N"]
+    axes.errorbar(
+        x, y, xerr=[[max(0, x - um * left)], [max(0, um * right - x)]],
+        yerr=[[max(0, y - mn * below)], [max(0, mn * above - y)]], color=style.ORANGE, capsize=3,
+    )  # fmt: skip
+    axes.set_ylim(0, 1.05 * mn * found.blocked_force)
+
+
+@style.drawn
+def actuator_figure(found: SkinStretchAnalysis) -> Figure:
+    """One actuator's cross-section, and its line of deflection: free, on the skin, and blocked."""
+    from matplotlib.patches import Rectangle
+
+    one, tip, um, mm = found.array.actuator, found.tip, 1e6, 1e3
+    figure = style.new_figure(
+        f"An actuator {mm * one.length:.3g} mm long, {mm * one.width:.3g} mm wide and "
+        f"{mm * one.thickness:.3g} mm thick",
+        "right: a slender beam clamped at 0, drawn through the tip's deflection",
+        3.6,
+    )
+    left, right = figure.subplots(1, 2)
+    layers = [
+        ("ceramic", one.ceramic_thickness, style.BLUE),
+        ("shim", one.shim_thickness, "0.55"),
+        ("ceramic", one.ceramic_thickness, style.BLUE),
+    ]
+    bottom = -mm * sum(thickness for _, thickness, _ in layers) / 2
+    for number, (name, thickness, colour) in enumerate(layers):
+        left.add_patch(
+            Rectangle(
+                (-mm * one.width / 2, bottom), mm * one.width, mm * thickness,
+                facecolor=colour, alpha=0.55, edgecolor="black", lw=0.8,
+                label=name if number < 2 else None,
+            )
+        )  # fmt: skip
+        bottom += mm * thickness
+    half = mm * one.width / 2
+    left.set(
+        xlabel="across (mm)", ylabel="height (mm)", aspect="equal", xlim=(-1.15 * half, 1.15 * half)
+    )
+    left.set_ylim(1.25 * -bottom, 1.25 * bottom)
+    style.legend_below(left, columns=2)
+    share = np.linspace(0, 1, 200)
+    bent, pushed = share**2, 1.5 * share**2 - 0.5 * share**3
+    free = um * found.free_deflection
+    back = {"free": 0.0, "on the skin": free - um * tip.deflection, "blocked": free}
+    for (name, less), colour in zip(back.items(), (style.BLUE, style.ORANGE, "black"), strict=True):
+        right.plot(mm * one.length * share, free * bent - less * pushed, color=colour, label=name)
+    right.set(xlabel="from the clamp (mm)", ylabel=f"deflection at {found.voltage:.3g} V (µm)")
+    style.legend_below(right, columns=3)
+    return figure
+
+
+@style.drawn
+def strain_figure(found: SkinStretchAnalysis) -> Figure:
+    """The strain along the finger at the wave's first instant, and what the contactors do."""
+    wave = found.wave
+    figure = style.new_figure(
+        f"A wave of {1e3 * wave.period:.3g} mm strains the skin by up to "
+        f"{100 * np.max(np.abs(wave.strain)):.2g} %",
+        "elastic layer on bone, quasi-static, contactors held by friction; means over cells",
+        4.4,
+    )
+    left, right = figure.subplots(1, 2)
+    _strain_map(figure, left, wave, 0)
+    _contactors(right, found, 0)
+    style.legend_below(right, columns=2)
+    return figure
+
+
+def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
+    """Where each contactor's skin has gone, drawn larger, and which slip."""
+    slips = found.wave.slips[frame]
+    x, y = (1e3 * one for one in found.array.cradle.places)
+    moved = _DRAWN_TIMES * 1e3 * found.wave.displacements[frame]
+    axes.quiver(
+        x, y, moved, np.zeros(moved.size), color=style.BLUE, angles="xy", scale_units="xy",
+        scale=1, width=0.006,
+    )  # fmt: skip
+    axes.plot(x[~slips], y[~slips], "o", ms=3, color="black", label="sticks")
+    axes.plot(x[slips], y[slips], "o", ms=3, mfc="white", color=style.ORANGE, label="slips")
+    side = found.array.cradle.pitch_along * 1e3
+    axes.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
+    axes.set_xlim(x.min() - side, x.max() + side)
+    axes.set_title(f"the skin's way under contactors, {_DRAWN_TIMES} times", fontsize="medium")
+
+
+def _strain_map(figure: Figure, axes: Axes, wave: ShownWave, frame: int) -> None:
+    most = 100 * float(np.max(np.abs(wave.strain)))
+    drawn = axes.pcolormesh(
+        1e3 * wave.edges_x, 1e3 * wave.edges_y, 100 * wave.strain[frame].T,
+        cmap="RdBu_r", vmin=-most, vmax=most,
+    )  # fmt: skip
+    figure.colorbar(drawn, ax=axes, shrink=0.8)
+    axes.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
+    axes.set_title("strain along the finger (%)", fontsize="medium")
+
+
+@style.drawn
+def crosstalk_figure(found: SkinStretchAnalysis) -> Figure:
+    """How far the skin moves with distance from the one contactor that pulls."""
+    array = found.array
+    x, y = array.cradle.places
+    middle = int(np.argmin(np.hypot(x, y)))
+    moved = array.influence @ array.force_per_volt[:, middle]
+    share = 100 * np.abs(moved / moved[middle])
+    apart = 1e3 * np.hypot(x - x[middle], y - y[middle])
+    others = apart > 0
+    figure = style.new_figure(
+        f"Crosstalk: a neighbour's skin moves by at most {100 * array.crosstalk:.3g} %",
+        "one actuator driven, all others hold still as the springs they are",
+        4.0,
+    )
+    left, right = figure.subplots(1, 2)
+    along = np.abs(y - y[middle]) < 1e-9
+    left.plot(apart[others & along], share[others & along], "o", ms=4, label="along the pull")
+    left.plot(
+        apart[others & ~along], share[others & ~along], "s", ms=4, mfc="none", label="elsewhere"
+    )
+    left.set(xlabel="distance (mm)", ylabel="of its own displacement (%)", ylim=(0, None))
+    style.legend_below(left, columns=2)
+    forces = 1e3 * found.seating.forces
+    drawn = right.scatter(1e3 * x, 1e3 * y, c=forces, s=60, cmap="viridis")
+    figure.colorbar(drawn, ax=right, shrink=0.8)
+    right.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
+    right.set_title("finger's force on each contactor (mN)", fontsize="medium")
+    return figure
+
+
+def wave_animation(found: SkinStretchAnalysis) -> bytes:
+    """The strain and the contactors while the texture moves past, slowed, as an animated PNG."""
+    from PIL import Image
+
+    wave, frames = found.wave, []
+    for number in range(wave.times.size):
+        with style.rc():
+            figure = style.new_figure(
+                f"A texture of {1e3 * wave.period:.3g} mm moves under the finger",
+                "elastic layer on bone, quasi-static, contactors held by friction",
+                4.2,
+            )
+            left, right = figure.subplots(1, 2)
+            _strain_map(figure, left, wave, number)
+            _contactors(right, found, number)
+            style.legend_below(right, columns=2)
+        frames.append(Image.open(io.BytesIO(style.png(figure, 80))).convert("RGB"))
+    stream = io.BytesIO()
+    first, *others = frames
+    first.save(
+        stream, format="PNG", save_all=True, append_images=others, duration=_FRAME_MS, loop=0
+    )
+    return stream.getvalue()

@@ -2,26 +2,87 @@
 
 Actuator i gives x_i = δ V_i − F_i/k, the skin x = C F with the tissue's influence C; where every
 contactor sticks, (C + 1/k) F = δ V. Linear and quasi-static: what comes of 60 voltages is a product
-with a matrix that is made once. Contactors that ask for more than their friction slip (`slip`).
+with a matrix that is made once.
+
+Contactors that ask for more than their friction h slip. With s how far each has slid, sticking asks
+A F = w − s for A = C + 1/k and w = δ V; among forces within ±h those of least energy
+½ Fᵀ A F − Fᵀ (w − s) stick where they can and slip in their own direction where they cannot
+(Coulomb's law with the normal forces known, which the pull sideways is taken not to change).
 """
 
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
 
 import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.optimize import lsq_linear
 
-from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph
+from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph, solid_bender
 from squeezefilm.actuators.skin_stretch.budget import Budget, budget
 from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip, seat
-from squeezefilm.actuators.skin_stretch.slip import held_forces
-from squeezefilm.actuators.skin_stretch.solid_bender import solid_bender
 from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, strain_matrices
 from squeezefilm.core import hard_limits as hard
+from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import GeometryError, InputError
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.config.references import References
+from squeezefilm.core.errors import ConvergenceError, GeometryError, InputError
+from squeezefilm.core.results import Result
+
+# Friction below this share of the largest holds nothing.
+_HELD = 1e-9
+
+
+@si.checked_numbers
+def held_forces(
+    compliance: Annotated[si.FloatArray, si.Unit("m/N")],
+    wanted: si.MetreArray,
+    held: Annotated[si.NewtonArray, si.AtLeast(0.0)],
+) -> si.NewtonArray:
+    """The forces (N) of contactors that friction holds with at most `held` (N).
+
+    `compliance` (contactors × contactors, m/N, symmetric and positive definite) is A, `wanted` (m)
+    the way that sticking asks for. Raises `InputError` for shapes that do not fit,
+    `OutOfRangeError` for a compliance that is not positive definite, and `ConvergenceError` where
+    no forces are found.
+    """
+    si.require_alike(wanted=wanted, held=held)
+    if compliance.shape != (wanted.size, wanted.size):
+        raise InputError(
+            f"compliance has the shape {compliance.shape}; {wanted.size} contactors have "
+            f"{(wanted.size, wanted.size)}",
+            quantity="compliance",
+        )
+    forces = np.asarray(np.linalg.solve(compliance, wanted), dtype=float)
+    if np.all(np.abs(forces) <= held):
+        return forces
+    touching = held > _HELD * float(np.max(held, initial=0.0))
+    forces = np.zeros(wanted.size)
+    if not touching.any():
+        return forces
+    lower = np.linalg.cholesky(compliance[np.ix_(touching, touching)])
+    limit = held[touching]
+    # As least squares |Lᵀ F − L⁻¹ w|, in shares of each limit.
+    found = lsq_linear(
+        lower.T * limit,
+        solve_triangular(lower, wanted[touching], lower=True),
+        bounds=(-1.0, 1.0),
+        method="bvls",
+        tol=1e-12,
+    )
+    if not found.success:
+        raise ConvergenceError(
+            f"the forces of {touching.sum()} contactors that stick and slip were not found: "
+            f"{found.message}",
+            iterations=int(found.nit),
+        )
+    forces[touching] = found.x * limit
+    return forces
+
 
 _M = si.Unit("m")
 # Frozen, so that every array may share them.
@@ -38,8 +99,7 @@ class SkinStretchArray:
     stiff skin on soft pulp is softer to a broad push than to a local pull, and one modulus will not
     do for both (20 kPa assumed, an order of magnitude). `normal_force` is that of the finger;
     `friction_coefficient` that of contactors on skin, which decides whether they stick (assumed).
-    `theory` of the actuators: "solid" or "strip". Raises `GeometryError` for actuators thicker or
-    wider than the pitch leaves room for.
+    Raises `GeometryError` for actuators thicker or wider than the pitch leaves room for.
     """
 
     actuator: Bimorph
@@ -49,7 +109,6 @@ class SkinStretchArray:
     finger: Fingertip = _FINGERTIP
     normal_force: Annotated[si.Newton, hard.FORCE] = 2.0
     friction_coefficient: Annotated[si.Dimensionless, si.Above(0), si.AtMost(20)] = 1.0
-    theory: Literal["solid", "strip"] = "solid"
 
     def __post_init__(self) -> None:
         for name, side, pitch in (
@@ -66,8 +125,8 @@ class SkinStretchArray:
 
     @property
     def bender(self) -> Bender:
-        """What one actuator does, by the theory chosen."""
-        return solid_bender(self.actuator) if self.theory == "solid" else self.actuator.as_strip
+        """Deflection, stiffness and resonance of one actuator."""
+        return solid_bender(self.actuator)
 
     @functools.cached_property
     def influence(self) -> si.FloatArray:
@@ -93,14 +152,6 @@ class SkinStretchArray:
         per newton on each contactor, shape (3, cells x, cells y, contactors)."""
         x, y = self.cradle.places
         return strain_matrices(self.tissue, x, y, self.cradle.size, cell)
-
-    @si.checked_numbers
-    def strain_per_volt(
-        self, cell: Annotated[si.Metre, hard.SIDE] = 0.3e-3
-    ) -> tuple[si.MetreArray, si.MetreArray, si.FloatArray]:
-        """As `strain_per_force`, per volt on each actuator where all stick."""
-        edges_x, edges_y, per_force = self.strain_per_force(cell)
-        return edges_x, edges_y, per_force @ self.force_per_volt
 
     @si.checked_numbers
     def answer(self, voltages: Annotated[si.FloatArray, si.Unit("V")]) -> Pull:
@@ -187,3 +238,40 @@ class Pull:
     def slipping(self) -> int:
         """How many those are."""
         return int(np.count_nonzero(self.slips))
+
+
+@dataclass(frozen=True, repr=False)
+class SkinStretchDescription(Result):
+    """What a file with the table ``[skin_stretch]`` says; read one with `described.load_actuator`.
+
+    Ceramic, shim and electrode may be named as materials of the library.
+    """
+
+    references: ClassVar[References] = References(
+        original=lambda name: _preset(name),
+        parts={
+            "skin_stretch.actuator.ceramic": functools.partial(
+                presets.materials.table, kind="ceramic"
+            ),
+            "skin_stretch.actuator.shim": functools.partial(
+                presets.materials.table, kind="substrate"
+            ),
+            "skin_stretch.actuator.electrode": functools.partial(
+                presets.materials.table, kind="substrate"
+            ),
+        },
+    )
+
+    name: str
+    title: str
+    skin_stretch: SkinStretchArray
+    provenance: Mapping[str, Provenance] = field(
+        default_factory=dict, metadata={"loader": True}, compare=False, repr=False
+    )
+    _shown: ClassVar[str] = "name title skin_stretch.cradle.count skin_stretch.normal_force"
+
+
+def _preset(name: str) -> SkinStretchDescription:
+    from squeezefilm.core import config
+
+    return config.load(SkinStretchDescription, presets.resolve_actuator(name))

@@ -7,13 +7,11 @@ from typing import Annotated
 
 import numpy as np
 
-from squeezefilm.actuators.skin_stretch.bonded_layer import (
-    normal_correction,
-    tangential_correction,
-)
-from squeezefilm.actuators.skin_stretch.half_space import (
+from squeezefilm.actuators.skin_stretch.elastic_layer import (
     Places,
+    normal_correction,
     normal_patch,
+    tangential_correction,
     tangential_patch,
 )
 from squeezefilm.core import hard_limits as hard

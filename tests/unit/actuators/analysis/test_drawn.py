@@ -58,6 +58,9 @@ def test_ends_are_the_quantiles_of_what_was_drawn() -> None:
     assert found.intervals["stiffness"] == pytest.approx((55, 100, 145), rel=0.03)
     assert found.intervals["force"] == pytest.approx((1.1, 2.0, 2.9), rel=0.03)
     assert [one.origin for one in found.drawn] == ["assumed", "given"]
+    # The stiffness follows itself alone, and the other value has nothing to do with it.
+    assert found.shares["stiffness"] == pytest.approx((1.0, 0.0), abs=0.06)
+    assert found.shares["force"] == pytest.approx((0.0, 1.0), abs=0.06)
     assert drawn_answers(SPRING, GIVEN, USUAL, stretch).intervals == found.intervals
 
 
@@ -87,7 +90,7 @@ def test_losses_scale_a_drawn_motor_as_its_plate_solved_anew() -> None:
     solved = assembled(described.motor)
     lossy = with_values(described, {"motor.plate.quality_factor": 45.0})
     scaled = motor._drawn(described, solved, lossy, 15.0)
-    anew = motor._answers(lossy, 15.0)
+    anew = motor._answered(assembled(lossy.motor), 15.0)
     for name, value in anew.items():
         # Other modes add a little to the amplitude at the resonance.
         assert scaled[name] == pytest.approx(value, rel=0.02)

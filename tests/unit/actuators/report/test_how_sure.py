@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers
-from squeezefilm.actuators.report.how_sure import drawn_words, how_sure, with_interval
+from squeezefilm.actuators.report.page import drawn_words, how_sure, with_interval
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Uniform
 from squeezefilm.physics.uncertainty.parameters import Parameter
@@ -18,7 +18,8 @@ def drawn(
     intervals: dict[str, tuple[float, float, float]] | None = None,
 ) -> DrawnAnswers:
     found = {"force": (1.0, 2.0, 3.04)} if intervals is None else intervals
-    return DrawnAnswers(found, 64, refused, "preload", 1, parameters)
+    shares = {name: (0.5,) * len(parameters) for name in found}
+    return DrawnAnswers(found, shares, 64, refused, "preload", 1, parameters)
 
 
 def test_a_value_has_its_interval_behind_it() -> None:
@@ -42,6 +43,8 @@ def test_draws_that_do_not_work_are_said() -> None:
 
 
 def test_the_section_lists_what_was_drawn() -> None:
-    said = how_sure(drawn(GIVEN, GUESSED))
+    said = how_sure(drawn(GIVEN, GUESSED), {"force": "stall force", "unknown": "nothing"})
     assert "1 N to 3 N" in said.replace("\N{NO-BREAK SPACE}", " ")
     assert "assumed: a guess" in said
+    assert "of the stall force" in said
+    assert "nothing" not in said

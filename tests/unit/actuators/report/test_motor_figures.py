@@ -10,7 +10,7 @@ from squeezefilm.actuators.motor.closed_loop import TrackedForce
 from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
 from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.plane import simulate_plane
-from squeezefilm.actuators.report.motor_figures import (
+from squeezefilm.actuators.report.motor import (
     foot_figure,
     force_step_figure,
     map_figure,

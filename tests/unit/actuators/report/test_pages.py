@@ -16,7 +16,7 @@ from tests.shared import shared
 
 from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis
 from squeezefilm.actuators.described import is_actuator
-from squeezefilm.actuators.report import motor, skin_stretch, skin_stretch_figures
+from squeezefilm.actuators.report import motor, skin_stretch
 from squeezefilm.actuators.report.dispatch import AnalyzedActuator, analyze_actuator
 from squeezefilm.actuators.report.page import assumed_words
 from squeezefilm.core.config.provenance import Provenance
@@ -37,22 +37,22 @@ def analyzed(request: pytest.FixtureRequest) -> AnalyzedActuator:
 
 @pytest.mark.slow
 def test_all_that_a_page_shows_lies_beside_it(analyzed: AnalyzedActuator, tmp_path: Path) -> None:
-    assert analyzed.write is KINDS[analyzed.found.described.name]
-    page = analyzed.write(analyzed.found, tmp_path / "out")
+    assert analyzed.write is KINDS[analyzed.analysis.described.name]
+    page = analyzed.write(analyzed.analysis, tmp_path / "out")
     said = page.read_text(encoding="utf-8")
     pictures = re.findall(r'<img src="([^"]+)" alt="([^"]+)"', said)
     assert len(pictures) >= 4
-    if isinstance(analyzed.found, SkinStretchAnalysis):
+    if isinstance(analyzed.analysis, SkinStretchAnalysis):
         with Image.open(page.parent / "wave.png") as moving:
-            assert moving.info["duration"] == skin_stretch_figures._FRAME_MS
-            assert getattr(moving, "n_frames", 1) == analyzed.found.wave.times.size
+            assert moving.info["duration"] == skin_stretch._FRAME_MS
+            assert getattr(moving, "n_frames", 1) == analyzed.analysis.wave.times.size
     for name, _ in pictures:
         assert (page.parent / name).stat().st_size > 5000
     assert "http" not in said.replace("http-equiv", "")
-    assert "What each assumed value does" in said
+    assert "the share of each spread that follows it" in said
     told = json.loads((page.parent / "result.json").read_text(encoding="utf-8"))
     assert told["stamp"]["squeezefilm_version"]
-    assert told["actuator"] == analyzed.found.described.name
+    assert told["actuator"] == analyzed.analysis.described.name
 
 
 @pytest.mark.slow
@@ -68,8 +68,8 @@ def test_no_text_lies_on_another_or_is_cut_off(
     for room in (motor, skin_stretch):
         monkeypatch.setattr(room, "write_page", keep)
     # It has no text of its own, and takes as long as all else.
-    monkeypatch.setattr(skin_stretch_figures, "wave_animation", lambda _: b"")
-    analyzed.write(analyzed.found, tmp_path)
+    monkeypatch.setattr(skin_stretch, "wave_animation", lambda _: b"")
+    analyzed.write(analyzed.analysis, tmp_path)
     assert len(drawn) >= 3
     for name, figure in drawn.items():
         boxes: dict[str, Any] = {}
@@ -97,10 +97,10 @@ def test_no_text_lies_on_another_or_is_cut_off(
 def test_the_terminal_says_what_is_assumed(
     analyzed: AnalyzedActuator, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    analyzed.show(analyzed.found)
+    analyzed.show(analyzed.analysis)
     said = " ".join(capsys.readouterr().out.split())
     assert "values with a source are assumed" in said
-    assert analyzed.found.described.name in said
+    assert analyzed.analysis.described.name in said
 
 
 def test_how_many_are_assumed() -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from squeezefilm.actuators.control.force_law import (
+from squeezefilm.actuators.motor.force_law import (
     ForceLaw,
     ForceState,
     amplitude_for_force,

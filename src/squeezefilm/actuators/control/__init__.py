@@ -1,1 +1,0 @@
-"""Pure step functions of controllers: state in, command out; no clock, no files, no physics."""
