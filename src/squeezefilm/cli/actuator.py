@@ -16,7 +16,8 @@ _TAKEN = ("target", "voltage", "out", "as_json")
 
 
 def analyze_actuator(asked: Any) -> None:
-    """Analyse an actuator with the options of `analyze` (a record of them). Raises `InputError` for options that only a display has."""
+    """Analyse an actuator by `analyze`'s options. Raises `InputError` for those that only a display
+    has."""
     usual = type(asked)(asked.target)
     other = [
         _flag(type(asked), field.name)

@@ -20,11 +20,10 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.lab.connections import PageProtocol, TimedProtocol
+from squeezefilm.lab.connections import OpenPage, PageProtocol, Playing, TimedProtocol
 from squeezefilm.lab.door import Connection, Door
 from squeezefilm.lab.guard import CONNECTION, Guard, Places
 from squeezefilm.lab.keys import Keys
-from squeezefilm.lab.pages import OpenPage, Playing
 from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
 from squeezefilm.lab.worker import PAGE, SupersededError, Workers
 from squeezefilm.physics import render

@@ -14,8 +14,8 @@ from squeezefilm.core.config.written import written_values
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.joint_spread import JointSpread
 from squeezefilm.design.analysis.report.described_values import display_values
-from squeezefilm.lab.designing.calibrated import calibration_of
 from squeezefilm.lab.designing.form import edited, form
+from squeezefilm.lab.designing.numbers import calibration_of
 from squeezefilm.physics.display import Display, load_display
 
 STATOR = "biet2008-stator"

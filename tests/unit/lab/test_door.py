@@ -18,7 +18,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Origin
 
-from squeezefilm.lab import connections, pages
+from squeezefilm.lab import connections
 from squeezefilm.lab import door as doors
 from squeezefilm.lab.door import Connection, Door, room_for
 from squeezefilm.lab.guard import Places
@@ -321,8 +321,8 @@ def test_a_page_that_does_not_read_is_dropped_and_delays_nobody(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
     # Each by one of the two reasons for which a page is dropped.
-    monkeypatch.setattr(pages, "SLOWEST_PAGE", 0.2 if kind == "asks" else 600.0)
-    monkeypatch.setattr(pages, "MOST_UNREAD", 10**6 if kind == "asks" else 64)
+    monkeypatch.setattr(connections, "SLOWEST_PAGE", 0.2 if kind == "asks" else 600.0)
+    monkeypatch.setattr(connections, "MOST_UNREAD", 10**6 if kind == "asks" else 64)
     large = "x" * 200_000
 
     async def work() -> None:

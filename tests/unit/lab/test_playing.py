@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from squeezefilm.lab.pages import Playing
+from squeezefilm.lab.connections import Playing
 
 
 def test_pages_are_told_of_every_change_and_a_stop_stops_all() -> None:

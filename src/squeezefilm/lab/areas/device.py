@@ -14,8 +14,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import write_whole
 from squeezefilm.lab import playing_process as device_process
 from squeezefilm.lab.designing.form import name_of
-from squeezefilm.lab.designing.playable import require_playable
-from squeezefilm.lab.designing.program import title_of
+from squeezefilm.lab.designing.program import require_playable, title_of
 from squeezefilm.lab.files import existing
 from squeezefilm.lab.playing_process import DeviceSession
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request

@@ -26,7 +26,7 @@ from squeezefilm.study.conduct.study_device import (
 )
 
 if TYPE_CHECKING:
-    from squeezefilm.lab.pages import Playing
+    from squeezefilm.lab.connections import Playing
 
 T = TypeVar("T")
 

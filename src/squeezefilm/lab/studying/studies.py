@@ -15,9 +15,13 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import to_json
 from squeezefilm.lab.files import existing, fresh, zipped
-from squeezefilm.lab.studying.by_hand import ByHand
-from squeezefilm.lab.studying.conditions import conditions_of
-from squeezefilm.lab.studying.told import confusion_counts, described, shown_sitting
+from squeezefilm.lab.studying.sittings import (
+    ByHand,
+    conditions_of,
+    confusion_counts,
+    described,
+    shown_sitting,
+)
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.again import why_begun_again
 from squeezefilm.study.conduct.run import Response, StudyRun

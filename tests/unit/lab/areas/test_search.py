@@ -14,6 +14,8 @@ from tests.unit.lab.searching.small import TEXT, evaluated, requirements
 
 from squeezefilm.core import config, presets
 from squeezefilm.design.search.candidate import display_of
+from squeezefilm.lab import search_process as process
+from squeezefilm.lab import search_process as shown
 from squeezefilm.lab.areas import search as search_area
 from squeezefilm.lab.areas.search import (
     CheckRequirements,
@@ -22,8 +24,7 @@ from squeezefilm.lab.areas.search import (
     SearchArea,
     StartSearch,
 )
-from squeezefilm.lab.searching import process, shown
-from squeezefilm.lab.searching.process import SearchProcess
+from squeezefilm.lab.search_process import SearchProcess
 from squeezefilm.physics.display import Display
 
 if TYPE_CHECKING:

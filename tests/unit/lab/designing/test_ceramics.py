@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.lab.designing.ceramics import covered, stretched
-from squeezefilm.lab.designing.form import display_of, edited, preset_text
+from squeezefilm.lab.designing.form import covered, display_of, edited, preset_text, stretched
 from squeezefilm.physics.plate.layout import RectangularPlate
 
 PLATE = preset_text("biet2008-plate")

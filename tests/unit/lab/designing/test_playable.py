@@ -6,7 +6,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.lab.designing.form import preset_text
-from squeezefilm.lab.designing.playable import require_playable
+from squeezefilm.lab.designing.program import require_playable
 
 PLATE = preset_text("biet2008-plate")
 STROKE = "60 mm/s over 4 cm"

@@ -14,7 +14,7 @@ from squeezefilm.design.search.criteria import criterion_of
 from squeezefilm.design.search.report.plates import plate_file
 from squeezefilm.lab.designing.form import preset_text
 from squeezefilm.lab.designing.numbers import opened
-from squeezefilm.lab.searching.asked import (
+from squeezefilm.lab.requirements_text import (
     asked_of,
     display_text,
     folder_of,

@@ -15,9 +15,10 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.search import run
 from squeezefilm.design.search.run import Glimpse, SearchRequest
+from squeezefilm.lab import search_process as process
+from squeezefilm.lab import search_process as shown
 from squeezefilm.lab import told_process
-from squeezefilm.lab.searching import process, shown
-from squeezefilm.lab.searching.process import Pace, SearchProcess, search
+from squeezefilm.lab.search_process import Pace, SearchProcess, search
 
 from .small import TEXT
 

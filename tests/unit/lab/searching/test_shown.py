@@ -18,7 +18,7 @@ from squeezefilm.design.search.reasons import (
 )
 from squeezefilm.design.search.run import Glimpse
 from squeezefilm.design.search.tolerance import Made
-from squeezefilm.lab.searching import shown
+from squeezefilm.lab import search_process as shown
 from squeezefilm.lab.wire import as_text
 
 from .small import evaluated, requirements

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.lab.studying.by_hand import ByHand
+from squeezefilm.lab.studying.sittings import ByHand
 
 
 def test_a_surface_is_waited_for_until_it_is_in_place_once() -> None:

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.lab.studying.conditions import conditions_of
+from squeezefilm.lab.studying.sittings import conditions_of
 
 
 def test_typed_conditions_are_read_in_their_units_and_numbers_are_si() -> None:

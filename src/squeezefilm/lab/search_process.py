@@ -1,6 +1,8 @@
-"""A design search in a process of its own, told to the server over a pipe.
+"""A design search in a process of its own, told to the server over a pipe, and what is shown of it.
 
 Stopped by SIGINT, from the page or from the terminal, it answers with what it found until then.
+Plates, fronts and reasons are JSON: numbers in SI where they are drawn, in words where they are
+read.
 """
 
 from __future__ import annotations
@@ -8,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import signal
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,11 +19,111 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.interrupts import hear_interrupts
 from squeezefilm.core.progress import about
+from squeezefilm.design.search.candidate import Evaluated
+from squeezefilm.design.search.criteria import CRITERIA, criterion_of
+from squeezefilm.design.search.found import DesignSearch
+from squeezefilm.design.search.reasons import corner_in_words, limit_in_words
+from squeezefilm.design.search.report.words import setting_words
+from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.run import Glimpse
+from squeezefilm.design.search.tolerance import Made
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare
 
 if TYPE_CHECKING:
     from squeezefilm.design.search.run import Glimpse
+
+MOST_POINTS = 600
+"""Of the screened front that are drawn; of a longer one as many, evenly."""
+_ALL_WORDS = 40
+"""Reasons that are told of one kind; the first are those of most designs."""
+
+
+def plate(requirements: Requirements, one: Evaluated, made: Made | None = None) -> dict[str, Any]:
+    """A plate: name, shape and objectives (SI), what was chosen and what it does in words."""
+    design, space = one.design, requirements.spaces[one.design.shape]
+    chosen = []
+    for variable in space:
+        words = setting_words(variable, design, requirements)
+        chosen.append([variable.name.replace("_", " "), words])
+    objectives = one.objectives(requirements.objectives)
+    return {
+        "name": design.address,
+        "shape": space.shape,
+        "objectives": list(objectives),
+        "words": [
+            criterion_of(name).shown(value)
+            for name, value in zip(requirements.objectives, objectives, strict=True)
+        ],
+        "numbers": numbers(one),
+        "chosen": chosen,
+        "design": {"shape": design.shape, "values": design.settings},
+        "yield": None if made is None else made.kept,
+        "warnings": list(one.warnings),
+    }
+
+
+def numbers(one: Evaluated) -> list[list[str]]:
+    """What a design does: by row a criterion's key, what people call it, and the value in words."""
+    return [
+        [key, CRITERIA[key].said, CRITERIA[key].shown(value)]
+        for key, value in one.numbers.items()
+        if key in CRITERIA and key != "cost"
+    ]
+
+
+def glimpse(requirements: Requirements, seen: Glimpse) -> dict[str, Any]:
+    """What a search has so far."""
+    return {
+        "stage": seen.stage,
+        "screened": seen.screened,
+        "solved": seen.solved,
+        "screened_front": _thinned(seen.screened_front),
+        "front": [plate(requirements, one) for one in seen.front],
+        "reference": reference(requirements, seen.reference),
+    }
+
+
+def _thinned(points: Sequence[Sequence[float]]) -> list[list[float]]:
+    every = max(1, -(-len(points) // MOST_POINTS))
+    return [list(one) for one in sorted(map(tuple, points))[::every]]
+
+
+def reference(requirements: Requirements, one: Evaluated | None) -> dict[str, Any] | None:
+    """The display that the front is set beside, which limits it breaks, and why it could not be
+    judged ("" where it was)."""
+    if one is None:
+        return None
+    return {
+        "name": Path(requirements.compare_with).stem,
+        "objectives": list(one.objectives(requirements.objectives)),
+        "breaks": [breach.sentence for breach in one.broken],
+        "reason": one.reason,
+    }
+
+
+def result(found: DesignSearch) -> dict[str, Any]:
+    """What a search found, or what it had when it was stopped: the front, the plate that it would
+    build, what each limit costs, the empty corners, what it rests on."""
+    asked, chosen = found.requirements, found.chosen
+    return {
+        "screened": len(found.screened),
+        "solved": found.plates_solved,
+        "front": [plate(asked, one.evaluated, one.made) for one in found.front],
+        "reference": reference(asked, found.reference),
+        "chosen": None if chosen is None else chosen.name,
+        "beats": [one.name for one in found.beats_reference],
+        "plates_better": found.plates_better,
+        "limits": [limit_in_words(one, len(found.screened)) for one in found.limits if one.broken],
+        "corners": [corner_in_words(one) for one in found.corners[:_ALL_WORDS]],
+        "hypervolume": found.hypervolume,
+        "ranks": {criterion_of(key).said: value for key, value in found.ranks.items()},
+        "assumed": list(asked.assumed),
+        "computed": found.computed,
+        "kept": found.kept,
+        "stopped": found.stopped,
+    }
+
 
 TELL_EVERY: si.Second = 0.25
 """Between two glimpses that the pages get; a new stage and the end are told at once."""
@@ -124,8 +226,7 @@ def _found(
     stop: _Stop, tell: Tell, text: str, folder: Path, out: Path, how: dict[str, Any]
 ) -> dict[str, Any]:
     from squeezefilm.design.search.run import SearchRequest, search_until_stopped
-    from squeezefilm.lab.searching import shown
-    from squeezefilm.lab.searching.asked import requirements_of
+    from squeezefilm.lab.requirements_text import requirements_of
 
     requirements = requirements_of(text, folder)
     last: tuple[str, float] | None = None
@@ -143,12 +244,12 @@ def _found(
             return
         last = seen.stage, now
         with stop.held():
-            tell({"type": "search found", "left": left, **shown.glimpse(requirements, seen)})
+            tell({"type": "search found", "left": left, **glimpse(requirements, seen)})
 
     found, stopped = search_until_stopped(
         SearchRequest(requirements, out=out, progress=say, watch=watch, **how)
     )
-    return {"failed": False, "message": _ending(stopped), "result": shown.result(found)}
+    return {"failed": False, "message": _ending(stopped), "result": result(found)}
 
 
 def _ending(stopped: str) -> str:

@@ -1,0 +1,141 @@
+"""What a sitting needs beside its study's file: conditions as they are typed, surfaces that
+somebody puts before a participant by hand, and what the experimenter's page is told.
+
+A sitting without a device waits before each surface until it is said to be in place, on the
+experimenter's page or the participant's. Only then the trial counts as presented and the question
+comes, so that no response time includes the swap.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+from typing import Any
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
+from squeezefilm.study.conduct.again import COUNTED
+from squeezefilm.study.conduct.sessions import SessionConditions
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.record.sittings import Sitting
+from squeezefilm.study.record.store import StudyStore
+
+
+class ByHand:
+    """The surfaces of the trials that are presented by hand now, by their sittings."""
+
+    def __init__(self) -> None:
+        self._names: dict[str, tuple[str, ...]] = {}
+        self._waits: dict[str, tuple[str, int]] = {}
+
+    def comes_next(self, sitting: str, names: tuple[str, ...]) -> None:
+        """The surfaces of a sitting's next trial, in their order; none is waited for yet."""
+        self._names[sitting] = names
+        self._waits.pop(sitting, None)
+
+    def wait(self, sitting: str, token: str, place: int) -> None:
+        """Surface number `place` (from 0) of the trial with this token is waited for.
+
+        Raises `InputError` for a place that the trial has not.
+        """
+        count = len(self._names.get(sitting, ()))
+        if not 0 <= place < count:
+            raise InputError(f"the trial has {count} surfaces; asked: {place}")
+        self._waits[sitting] = token, place
+
+    def in_place(self, sitting: str) -> tuple[str, int]:
+        """The token and place of the surface that was waited for, and is in place now.
+
+        Raises `InputError` where none is waited for.
+        """
+        if sitting not in self._waits:
+            raise InputError(
+                "no surface is waited for at this sitting; it is once the participant's page asks "
+                "for it"
+            )
+        return self._waits.pop(sitting)
+
+    def over(self, sitting: str) -> None:
+        """The trial was answered, or the sitting ended."""
+        self._names.pop(sitting, None)
+        self._waits.pop(sitting, None)
+
+    def status(self, sitting: str) -> dict[str, Any]:
+        """What the experimenter's page shows: the surfaces, and the place of the one waited for."""
+        _, waited = self._waits.get(sitting, ("", None))
+        return {"by_hand": list(self._names.get(sitting, ())), "waits_for": waited}
+
+
+def conditions_of(
+    given: dict[str, Any], consent_text: str, *, consented: bool
+) -> SessionConditions:
+    """The conditions from a form's fields: numbers in SI, or texts with their units.
+
+    Raises `InputError` for a field that there is not, and for a value outside its range, in the
+    unit that was typed.
+    """
+    known = {one.name for one in dataclasses.fields(SessionConditions)}
+    odd = set(given) - (known - {"consent", "consent_form"})
+    if odd:
+        raise InputError(f"conditions have no field '{sorted(odd)[0][:60]}'")
+    hints = si.hints_of(SessionConditions)
+    values = {name: _si(name, value, hints[name]) for name, value in given.items()}
+    form = "text sha256 " + hashlib.sha256(consent_text.encode()).hexdigest()[:16]
+    return SessionConditions(consent=consented, consent_form=form, **values)
+
+
+def _si(name: str, value: Any, hint: Any) -> Any:
+    unit = si.unit_of(hint)
+    if unit is None or not isinstance(value, str):
+        return value
+    si.require_typed(name, value, hint)
+    return si.parse_quantity(value, unit)
+
+
+def confusion_counts(store: StudyStore) -> list[dict[str, Any]]:
+    """Counts per display, rows answers and columns stimuli; main trials that count only.
+
+    Empty for another task than match-to-sample. Raises `RecordError` if the file cannot be read.
+    """
+    design = store.design
+    if design.task != "match-to-sample":
+        return []
+    rows, columns = list(design.answers), [stimulus.name for stimulus in design.stimuli]
+    found = store.rows(
+        "SELECT t.display, t.stimuli, r.choice, count(*) AS n FROM response r "
+        "JOIN trial t ON t.uuid = r.trial WHERE t.phase = 'main' "
+        f"AND {COUNTED} GROUP BY t.display, t.stimuli, r.choice"
+    )
+    tables = []
+    for display in design.displays:
+        counts = [[0] * len(columns) for _ in rows]
+        for row in found:
+            stimulus = row["stimuli"][2:-2]
+            if row["display"] == display and row["choice"] in rows and stimulus in columns:
+                counts[rows.index(row["choice"])][columns.index(stimulus)] += row["n"]
+        tables.append({"display": display, "rows": rows, "columns": columns, "counts": counts})
+    return tables
+
+
+def described(design: StudyDesign) -> dict[str, Any]:
+    """A design, as the page lists it."""
+    return {
+        "title": design.title,
+        "task": design.task,
+        "displays": list(design.displays),
+        "stimuli": [one.name for one in design.stimuli],
+        "answers": list(design.answers),
+        "question": design.spoken_question,
+        "note": design.note,
+        "design": design.name,
+    }
+
+
+def shown_sitting(one: Sitting) -> dict[str, Any]:
+    """A sitting, without what was consented to."""
+    return {
+        "id": one.id,
+        "participant": one.participant,
+        "device": one.device,
+        "begun": one.session is not None,
+    }
