@@ -13,7 +13,7 @@ from squeezefilm.study.adaptive.placement import Placement, PlacementModel
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 from squeezefilm.study.adaptive.task_models import same_different_model
 from squeezefilm.study.design.special_trials import AdaptiveCondition
-from squeezefilm.study.design.study_design import Task
+from squeezefilm.study.design.tasks.task import Task
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 _CHOICES = 40

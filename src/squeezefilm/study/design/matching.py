@@ -59,7 +59,7 @@ def require_amounts(
 ) -> None:
     """Refuse a task that compares amounts where a surface has none of what is judged (NaN): a
     shape has no period. Raises `InputError`."""
-    if task not in ("two-interval", "magnitude-estimation"):
+    if task in ("match-to-sample", "same-different"):
         return
     for one, amount in zip(stimuli, amounts, strict=True):
         if math.isnan(amount):

@@ -66,7 +66,7 @@ class StudyPlan(Result):
                     "surface_sha256": one.surface_sha256,
                     "waveform": one.waveform,
                     "friction_depth": one.friction_depth,
-                    "right_answer": design.answer_to(one) if not design.two_surfaces else "",
+                    "right_answer": design.answer_to(one) if not design.compares else "",
                 }
                 for one in design.stimuli
             ],

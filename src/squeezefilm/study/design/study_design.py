@@ -1,12 +1,13 @@
 """A study's design: its task, what is presented, how often and in which order; from a TOML file.
 
-Four tasks:
+Five tasks, each a record of `design.tasks`:
 
 - "match-to-sample": one virtual surface; which of the real gratings (`alternatives`) is it like?
   Or, with `matched_with` = "stimuli", which of the stimuli, shapes and maps too, was it?
 - "same-different": two surfaces one after the other; the same or different?
 - "two-interval": two surfaces; which is coarser (`judged` = "spatial_period") or has the deeper
   friction change (`judged` = "friction_depth")? One of them is always `reference`.
+- "odd-one-out": three surfaces, two of them the same; which is the other? One kind is `reference`.
 - "magnitude-estimation": one surface; a number for how coarse, rough or strong it is.
 
 `squeezefilm.study.design.trials` makes each participant's trials of a design.
@@ -43,11 +44,10 @@ from squeezefilm.study.design.special_trials import (
     require_different,
     require_name,
 )
+from squeezefilm.study.design.tasks.every_task import TASKS
+from squeezefilm.study.design.tasks.task import Condition, StudyTask, Task
 
-Task = Literal["match-to-sample", "same-different", "two-interval", "magnitude-estimation"]
 Order = Literal["williams", "latin-square", "shuffled"]
-Condition = tuple[str, ...]
-"""The names of what one trial presents: one stimulus, or two in their order."""
 
 
 @si.checked_numbers
@@ -59,16 +59,16 @@ class StudyDesign:
         name, title: what it is called, in files and for people.
         displays: presets or files of displays; every participant does the trials on each, in an
             order balanced over participants.
-        task: one of the four of this module.
+        task: one of the five of this module.
         stimuli: the conditions.
         alternatives: real gratings; for match-to-sample only, where they are the answers.
         matched_with: what match-to-sample offers as answers: the "real gratings", or the "stimuli"
             themselves by name, which people got to know before.
         exploring: "strokes", to and fro along x, or "free" over the whole face.
-        reference: name of the stimulus every other is compared with (tasks of two surfaces), or
+        reference: name of the stimulus every other is compared with (tasks of several surfaces), or
             of the one that is worth `modulus` (magnitude estimation).
-        judged: what two-interval answers are right about, same-different answers tell apart and
-            magnitudes are of.
+        judged: what two-interval answers are right about, differences are of (same-different,
+            odd-one-out), and magnitudes are of.
         modulus: number given to the reference in magnitude estimation (1); 0 for free numbers.
         question: what the participant is asked.
         order: "williams" (each condition follows each other equally often), "latin-square"
@@ -154,31 +154,36 @@ class StudyDesign:
         )
 
     @property
-    def two_surfaces(self) -> bool:
-        """Whether a trial presents two surfaces, one after the other."""
-        return self.task in ("same-different", "two-interval")
+    def described(self) -> StudyTask:
+        """The record of the task."""
+        return TASKS[self.task]
+
+    @property
+    def compares(self) -> bool:
+        """True where a trial presents several surfaces, one after the other."""
+        return self.described.surfaces > 1
 
     @property
     def most_trials(self) -> int:
         """At least as many trials as a participant has, without making them."""
-        pairs = {"same-different": 4, "two-interval": 2}.get(self.task, 1)
-        main = self.blocks * self.repetitions * len(self.stimuli) * pairs
-        if self.adaptive:
-            main = sum(one.count for one in self.adaptive)
         felt = self.familiarisation * max(len(self.stimuli), len(self.alternatives))
         caught = sum(one.count for one in self.catch)
-        return len(self.displays) * (main + felt + caught + self.practice)
+        return len(self.displays) * (self.most_main_trials + felt + caught + self.practice)
+
+    @property
+    def most_main_trials(self) -> int:
+        """At least as many main trials as a participant has on a display."""
+        if self.adaptive:
+            return sum(one.count for one in self.adaptive)
+        conditions = len(self.stimuli) * self.described.most_per_stimulus
+        return self.blocks * self.repetitions * conditions
 
     @property
     def answers(self) -> tuple[str, ...]:
         """The answers a participant may give; empty where any number may be given."""
-        matched = self.alternatives or self.stimuli
-        return {
-            "match-to-sample": tuple(one.name for one in matched),
-            "same-different": ("same", "different"),
-            "two-interval": ("first", "second"),
-            "magnitude-estimation": (),
-        }[self.task]
+        if self.task == "match-to-sample":
+            return tuple(one.name for one in self.alternatives or self.stimuli)
+        return self.described.answers
 
     @property
     def sha256(self) -> str:
@@ -190,16 +195,9 @@ class StudyDesign:
         """`question`, or the task's own."""
         if self.question:
             return self.question
-        judged = "coarser" if self.judged == "spatial_period" else "more strongly felt"
-        gratings = self.matched_with == "real gratings"
-        return {
-            "match-to-sample": "Which of the gratings does the surface feel like?"
-            if gratings
-            else "Which of the surfaces was it?",
-            "same-different": "Were the two surfaces the same or different?",
-            "two-interval": f"Which of the two surfaces was {judged}?",
-            "magnitude-estimation": "Give a number for how coarse the surface feels.",
-        }[self.task]
+        if self.matched_with == "stimuli":
+            return "Which of the surfaces was it?"
+        return self.described.question(self.judged)
 
     def stimulus(self, name: str) -> Stimulus:
         """The stimulus of that name, catch trials' too. Raises `InputError` if there is none."""
@@ -213,12 +211,13 @@ class StudyDesign:
             f"It has: {', '.join(known)}"
         )
 
-    def answer_to(self, first: Stimulus, second: Stimulus | None = None) -> str:
-        """What is right to answer; an empty text where nothing is.
+    def answer_to(self, *surfaces: Stimulus) -> str:
+        """What is right to answer to a trial's surfaces; an empty text where nothing is.
 
         For match-to-sample the alternative that the stimulus `matches`, else that of the same
         period (to 1e-9 m), or itself. For two intervals the one with more of what is `judged`.
         """
+        first = surfaces[0]
         if self.task == "match-to-sample" and self.matched_with == "stimuli":
             itself = first.name if first.name in self.answers else ""
             return first.matches or itself
@@ -227,35 +226,26 @@ class StudyDesign:
                 return first.matches
             near = [one for one in self.alternatives if abs(one.period - first.period) < 1e-9]
             return near[0].name if len(near) == 1 else ""
-        if second is None:
+        if len(surfaces) < self.described.surfaces:
             return ""
-        if self.task == "same-different":
-            alike = {(one.texture, one.surface()) for one in (first, second)}
-            return "same" if len(alike) == 1 else "different"
-        a, b = self.judged_value(first), self.judged_value(second)
-        if a == b:
-            return ""
-        return "first" if a > b else "second"
+        return self.described.right(surfaces, self.judged_value)
 
     def judged_value(self, one: Stimulus) -> float:
         """How much (SI) a stimulus has of what is judged; of a period the whole one."""
         return one.period if self.judged == "spatial_period" else one.amount(self.judged)
 
     def catch_condition(self, catch: CatchTrial) -> Condition:
-        """What a catch trial presents: its stimulus, in tasks of two surfaces with the reference
-        in the order in which its answer is right.
+        """What a catch trial presents: its stimulus, in tasks of several surfaces with the
+        reference in an order in which its answer is right.
 
-        Raises `InputError` if the answer is right in neither order.
+        Raises `InputError` if the answer is right in no order.
         """
         name, here = catch.stimulus.name, self.reference
-        if not self.two_surfaces:
+        if not self.compares:
             return (name,)
-        pairs: list[Condition] = [(name, here), (here, name)]
-        if self.task == "same-different":
-            pairs.append((name, name))
-        for pair in pairs:
-            if self.answer_to(*(self.stimulus(one) for one in pair)) == catch.answer:
-                return pair
+        for order in self.described.conditions(name, [here]):
+            if self.answer_to(*(self.stimulus(one) for one in order)) == catch.answer:
+                return order
         raise InputError(
             f"the answer '{catch.answer}' of the catch trial '{name}' is never right beside the "
             f"reference '{here}'; change one of them",
@@ -266,7 +256,7 @@ class StudyDesign:
         require_matching(
             self.task, self.matched_with, self.exploring, self.stimuli, self.alternatives
         )
-        pair = self.two_surfaces
+        pair, methods = self.compares, self.described.adaptive
         if pair and not self.reference:
             raise InputError(
                 f"task = '{self.task}' compares with a reference; name one of the stimuli",
@@ -277,14 +267,14 @@ class StudyDesign:
                 "only the reference is there; add a stimulus to compare with it, or [[adaptive]]",
                 quantity="stimuli",
             )
-        if self.adaptive and not pair:
+        if self.adaptive and not methods:
             raise InputError(
                 "adaptive series compare with a reference, in task = 'two-interval' or "
                 f"'same-different'; '{self.task}' does not",
                 quantity="adaptive",
             )
-        stairs = [one.name for one in self.adaptive if one.method == "staircase"]
-        if stairs and self.task == "same-different":
+        stairs = [one.name for one in self.adaptive if one.method not in methods]
+        if stairs:
             raise InputError(
                 f"series '{stairs[0]}' is a staircase, which would settle where a person's "
                 "criterion has it, not their senses; same-different takes method = 'bayesian'",

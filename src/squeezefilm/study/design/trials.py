@@ -19,7 +19,8 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.study.design.special_trials import CatchTrial
-from squeezefilm.study.design.study_design import Condition, Order, StudyDesign
+from squeezefilm.study.design.study_design import Order, StudyDesign
+from squeezefilm.study.design.tasks.task import Condition
 
 Phase = Literal["familiarisation", "practice", "main", "catch"]
 _LISTS = ("stimuli", "alternatives")
@@ -134,17 +135,12 @@ def orders(
 def conditions(design: StudyDesign) -> tuple[Condition, ...]:
     """What the trials of a repetition present, once each.
 
-    One stimulus each; in tasks of two surfaces each other stimulus with the reference in either
-    order, and for same-different as often (the same, the same), half with each of the two.
+    One stimulus each; in tasks of several surfaces each other stimulus with the reference in all
+    orders, and for same-different as often (the same, the same), half with each of the two.
     """
-    if not design.two_surfaces:
-        return tuple((one.name,) for one in design.stimuli)
-    here = design.reference
-    others = [one.name for one in design.stimuli if one.name != here]
-    pairs = [pair for other in others for pair in ((here, other), (other, here))]
-    if design.task == "same-different":
-        pairs += [pair for other in others for pair in ((here, here), (other, other))]
-    return tuple(pairs)
+    compares, here = design.compares, design.reference
+    names = [one.name for one in design.stimuli if not compares or one.name != here]
+    return design.described.conditions(here, names)
 
 
 def trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Trial, ...]:

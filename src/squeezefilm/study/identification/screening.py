@@ -129,7 +129,7 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
         )
     if not excused:
         asked = min(asked, 0.5 * abs(middle))
-    whole = min(max(mine.trials for mine in people), _planned(answers))
+    whole = min(max(mine.trials for mine in people), answers.design.most_main_trials)
     found = []
     for mine, one, z in zip(people, models, follows, strict=True):
         name = mine.people[int(mine.participant[0])]
@@ -150,15 +150,6 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
             reasons.append(f"{mine.trials} of {whole} trials answered")
         found.append(PersonJudgement(name, mine.trials, z, tuple(reasons), tuple(doubts)))
     return tuple(found), said
-
-
-def _planned(answers: Answers) -> int:
-    """At least as many main trials as a participant has on a display."""
-    design = answers.design
-    if design.adaptive:
-        return sum(one.count for one in design.adaptive)
-    pairs = {"same-different": 4, "two-interval": 2}.get(design.task, 1)
-    return design.blocks * design.repetitions * len(design.stimuli) * pairs
 
 
 def _habits(mine: Answers) -> list[str]:
@@ -187,7 +178,7 @@ def _percent(share: float) -> str:
 def _models(mine: Answers, lapse: float = _LAPSE) -> _Models:
     """ln likelihood of each trial's answer by who does the task, who mixes up the answers, and who
     guesses, each of shape (trials, models)."""
-    if mine.design.task == "match-to-sample":
+    if not _one_of_two(mine):
         return _among_names(mine)
     x, y = _signal(mine)
     reach = max(float(np.abs(x).max()), 1e-9)
@@ -203,6 +194,11 @@ def _models(mine: Answers, lapse: float = _LAPSE) -> _Models:
     task, turned = np.log(np.where(said, p, 1 - p)), np.log(np.where(said, 1 - p, p))
     guesses = np.linspace(0.5 * _LAPSE, 1 - 0.5 * _LAPSE, _GUESSES)
     return task, turned, np.log(np.where(said, guesses, 1 - guesses))
+
+
+def _one_of_two(mine: Answers) -> bool:
+    """True where two answers divide what is presented by how much it has."""
+    return mine.design.task in ("two-interval", "same-different")
 
 
 def _signal(mine: Answers) -> tuple[si.FloatArray, si.IntArray]:
@@ -268,7 +264,7 @@ def _changed(mine: Answers, models: _Models) -> list[str]:
         words, gain = max(gains.items(), key=lambda pair: float(pair[1].max()))
         if gain.max() > rule.turned:
             said.append(words.format(int(at[gain.argmax()])))
-    if mine.design.task != "match-to-sample":
+    if _one_of_two(mine):
         usual, many = (
             max(_best(_models(mine, times * rule.lapses)[0]) for times in pair)
             for pair in ((0.5, 1.0), (1.5, 2.0))

@@ -33,7 +33,8 @@ class Answers:
         phase: "practice", "main" or "catch".
         display: number in the design's order.
         series: number of the adaptive series, −1 for none.
-        first, second: number of the surface, or surfaces; `second` is −1 where there is one.
+        first, second, third: number of the surface, or surfaces; `second` is −1 where there is one,
+            `third` is None in tasks of fewer than three.
         intensity: of an adaptive series' comparison, in parts of the reference (1); else NaN.
         choice, right: numbers among the design's answers; −1 for none.
         estimate: number given (1); NaN for none.
@@ -58,6 +59,7 @@ class Answers:
     estimate: si.DimensionlessArray
     response_time: si.SecondArray
     exploration: Mapping[str, si.FloatArray] = dataclasses.field(default_factory=dict)
+    third: si.IntArray | None = None
 
     @property
     def trials(self) -> int:
@@ -68,6 +70,12 @@ class Answers:
     def values(self) -> si.FloatArray:
         """How much (SI) each surface has of what is judged, shape (surfaces,)."""
         return np.array([self.design.judged_value(one) for one in self.surfaces])
+
+    @property
+    def presented(self) -> si.IntArray:
+        """Numbers of the surfaces, shape (surfaces of a trial, trials)."""
+        every = (self.first, self.second, self.third)[: self.design.described.surfaces]
+        return np.array(every, dtype=np.int64)
 
     @property
     def correct(self) -> si.DimensionlessArray:
@@ -135,6 +143,9 @@ def answers_of(design: StudyDesign, table: Sequence[Mapping[str, Cell]], origin:
         series=whole([series.get(str(row["adaptive_series"]), -1) for row in rows]),
         first=whole([surface(str(row["stimulus"]), row) for row in rows]),
         second=whole([surface(str(row["second_stimulus"]), row) for row in rows]),
+        third=whole([surface(str(row["third_stimulus"]), row) for row in rows])
+        if design.described.surfaces > 2
+        else None,
         surfaces=tuple(surfaces),
         intensity=column("intensity"),
         choice=whole([names.get(str(row["choice"]), -1) for row in rows]),

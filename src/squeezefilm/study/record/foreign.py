@@ -18,7 +18,7 @@ from squeezefilm.core.hard_limits import FOREIGN_TRIALS, require_within
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import EXPLORED, Answers, answers_of
 from squeezefilm.study.record.implausible import require_plausible_rows
-from squeezefilm.study.record.tables import Cell, presented, unguarded
+from squeezefilm.study.record.tables import SURFACES, Cell, presented, unguarded
 
 NUMBERS = ("intensity", "estimate", "response_time_s", *EXPLORED)
 WORDS = (
@@ -26,8 +26,7 @@ WORDS = (
     "display",
     "trial",
     "phase",
-    "stimulus",
-    "second_stimulus",
+    *SURFACES,
     "adaptive_series",
     "answer",
     "choice",
@@ -115,7 +114,7 @@ def _rows(
         words = {key: unguarded(cells[at].strip()) for key, at in places.items()}
         if not words.get("choice") and not words.get("estimate"):
             continue
-        for key in ("choice", "stimulus", "second_stimulus", "answer"):
+        for key in ("choice", *SURFACES, "answer"):
             if key in words:
                 words[key] = values.get(words[key], words[key])
         if decimal_comma:
@@ -146,7 +145,7 @@ def _places(
         key: names.index(columns.get(key, key)) for key in ours if columns.get(key, key) in names
     }
     wanted = ["participant_id", "stimulus", "choice" if design.answers else "estimate"]
-    wanted += ["second_stimulus"] if design.two_surfaces else []
+    wanted += SURFACES[1 : design.described.surfaces]
     lacking = [key for key in wanted if key not in places]
     if lacking:
         raise InputError(
@@ -199,7 +198,7 @@ def _row(
         found["trial"] = int(trial)
     if not design.answers and not float(str(found["estimate"])) > 0:
         raise refused("estimate", f"'{words['estimate']}' is not above 0, and has no logarithm")
-    pair = [str(found[key]) for key in ("stimulus", "second_stimulus") if found[key]]
+    pair = [str(found[key]) for key in SURFACES if found[key]]
     try:
         surfaces = [presented(design, one, found) for one in pair]
     except InputError as error:

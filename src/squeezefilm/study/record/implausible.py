@@ -10,7 +10,7 @@ from statistics import median
 
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.record.tables import Cell
+from squeezefilm.study.record.tables import SURFACES, Cell
 
 Numbered = Sequence[tuple[int, Mapping[str, Cell]]]
 """Rows with their line in the file."""
@@ -18,7 +18,7 @@ LONGEST_USUAL = 100.0
 """Median response time of somebody (s) above which it is held to be in milliseconds."""
 _FACTOR = 300.0
 _FEWEST = 12
-_ANSWERED = ("display", "phase", "stimulus", "second_stimulus", "choice", "estimate")
+_ANSWERED = ("display", "phase", *SURFACES, "choice", "estimate")
 _TIMED = (*_ANSWERED, "response_time_s")
 
 
@@ -35,7 +35,7 @@ def require_plausible_rows(path: str | Path, design: StudyDesign, rows: Numbered
         time = _number(row, "response_time_s")
         if time < 0 or math.isinf(time):
             raise _refused(path, line, "response_time_s", f"{time:g} s is no response time")
-        if design.two_surfaces:
+        if design.compares:
             _require_pair(path, line, design, row)
     known: dict[tuple[object, ...], str] = {}
     for who, mine in people.items():
@@ -57,10 +57,10 @@ def require_plausible_rows(path: str | Path, design: StudyDesign, rows: Numbered
 def _require_pair(
     path: str | Path, line: int, design: StudyDesign, row: Mapping[str, Cell]
 ) -> None:
-    pair = str(row["stimulus"]), str(row["second_stimulus"])
-    alike = design.task == "same-different" and pair[0] == pair[1]
-    if (design.reference not in pair and not alike) or not all(pair):
-        said = f"{' / '.join(pair)} has no reference ('{design.reference}') to be compared with"
+    shown = [str(row[key]) for key in SURFACES[: design.described.surfaces]]
+    alike = design.task == "same-different" and len(set(shown)) == 1
+    if (design.reference not in shown and not alike) or not all(shown):
+        said = f"{' / '.join(shown)} has no reference ('{design.reference}') to be compared with"
         raise _refused(path, line, "second_stimulus", said)
     if row["adaptive_series"]:
         series = design.series(str(row["adaptive_series"]))

@@ -25,12 +25,13 @@ ORDER_COLUMNS = (
     Column("stimulus_second_period_m", "That of a grating across it, if any", "m", "number"),
     Column("stimulus_surface", "What kind of surface it is, in words"),
     Column("stimulus_surface_sha256", "Hash of the surface, its files and pictures read"),
-    Column("second_stimulus", "Name of the second stimulus, if there are two"),
+    Column("second_stimulus", "Name of the second stimulus, if there are several"),
     Column("second_stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
     Column("second_stimulus_friction_depth", "Its change of relative friction", "", "number"),
     Column("second_stimulus_second_period_m", "Of a grating across it, if any", "m", "number"),
     Column("second_stimulus_surface", "What kind of surface it is, in words"),
     Column("second_stimulus_surface_sha256", "Hash of the surface"),
+    Column("third_stimulus", "Name of the third stimulus, if there are three"),
     Column("adaptive_series", "Series that chooses the comparison, if any"),
     Column("reference_first", "Whether a series presents the reference first", kind="truth"),
     Column("alternatives", "Answers in the order in which they are offered, separated by |"),
@@ -80,7 +81,7 @@ def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
         "pause_s": trial.pause,
         "seed": trial.seed,
     }
-    names = (*trial.stimuli, "", "")[:2]
+    *names, row["third_stimulus"] = (*trial.stimuli, "", "", "")[:3]
     for prefix, name in zip(("stimulus", "second_stimulus"), names, strict=True):
         felt = trial.phase == "familiarisation" and name in gratings
         one = gratings[name] if felt else (design.stimulus(name) if name else None)

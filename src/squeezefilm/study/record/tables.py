@@ -42,18 +42,19 @@ COLUMNS = (
     Column("block", "Number of the block within the display, 0 before the first", kind="whole"),
     Column("phase", "familiarisation, practice, main or catch"),
     Column("task", "Task of the design"),
-    Column("stimulus", "Name of the stimulus, or of the first of two"),
+    Column("stimulus", "Name of the stimulus, or of the first of several"),
     Column("stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
     Column("stimulus_friction_depth", "Its change of relative friction", "", "number"),
     Column("stimulus_second_period_m", "That of a grating across it, if any", "m", "number"),
     Column("stimulus_surface", "What kind of surface it is, in words"),
     Column("stimulus_surface_sha256", "Hash of the surface, its files and pictures read"),
-    Column("second_stimulus", "Name of the second stimulus, if there are two"),
+    Column("second_stimulus", "Name of the second stimulus, if there are several"),
     Column("second_stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
     Column("second_stimulus_friction_depth", "Its change of relative friction", "", "number"),
     Column("second_stimulus_second_period_m", "Of a grating across it, if any", "m", "number"),
     Column("second_stimulus_surface", "What kind of surface it is, in words"),
     Column("second_stimulus_surface_sha256", "Hash of the surface"),
+    Column("third_stimulus", "Name of the third stimulus, if there are three"),
     Column("adaptive_series", "Adaptive series that chose the comparison, if any"),
     Column(
         "intensity", "Its difference from the reference, in parts of the reference", "", "number"
@@ -84,6 +85,9 @@ COLUMNS = (
     Column("calibration_sha256", "Hash of its calibration"),
 )
 """What every export holds, in this order."""
+
+SURFACES = ("stimulus", "second_stimulus", "third_stimulus")
+"""Columns with the names of what a trial presented, in its order."""
 
 PLACED = "SELECT *, min(number) OVER (PARTITION BY participant, display, block) AS begun FROM trial"
 """Trials, which come in the order of `begun, number`: block by block as they begin, and within one
@@ -118,6 +122,7 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
         traces = json.loads(row["traces"])
         row |= explored.measures(row["display"], traces) if traces else NO_MEASURES
         row["traces"] = " ".join(traces)
+        row["third_stimulus"] = names[2] if len(names) > 2 else ""
         row["correct"] = None if row["correct"] is None else bool(row["correct"])
         for prefix, name in zip(("stimulus", "second_stimulus"), (*names, None), strict=False):
             row[prefix] = name or ""

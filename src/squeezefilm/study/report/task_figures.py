@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squeezefilm.core.kit import style
+from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.report.figures import data_of, named_ticks
 from squeezefilm.study.report.words import estimate_words
 from squeezefilm.study.tasks.two_interval import QUARTILE
@@ -38,7 +39,7 @@ def answers(analysis: TaskAnalysis) -> Figure:
     axes = figure.subplots()
     if analysis.measure == "exponent":
         _magnitudes(axes, analysis)
-    elif analysis.task == "same-different":
+    elif TASKS[analysis.task].model is not None:
         _differences(axes, analysis)
     elif analysis.is_adaptive:
         _adaptive(axes, analysis)
@@ -83,9 +84,15 @@ def _differences(axes: Axes, analysis: TaskAnalysis) -> None:
         _unlike(axes, analysis)
         return
     _shares(axes, analysis, scale)
-    axes.set(xlabel=f"{label} of the other", ylabel="called different (%)", ylim=(-2, 103))
+    axes.set(xlabel=f"{label} of the other", ylabel=_counted(analysis), ylim=(-2, 103))
     axes.axvline(scale * analysis.standard, **style.GUIDE)
-    axes.set_title("dotted: the reference; there both surfaces are the same")
+    axes.set_title("dotted: the reference")
+
+
+def _counted(analysis: TaskAnalysis) -> str:
+    """Label of an axis of answers."""
+    counted = TASKS[analysis.task].counted.lower()
+    return f"called {counted} (%)" if counted == "different" else f"{counted} (%)"
 
 
 def _unlike(axes: Axes, analysis: TaskAnalysis) -> None:
@@ -95,7 +102,7 @@ def _unlike(axes: Axes, analysis: TaskAnalysis) -> None:
             axes.plot([at, at], [100 * one.share.low, 100 * one.share.high], **style.INTERVAL)
             axes.plot([at], [100 * one.share.value], **style.ESTIMATE)
     _named(axes, [one.name for one in analysis.conditions])
-    axes.set(xlabel="the other surface", ylabel="called different (%)", ylim=(-2, 103))
+    axes.set(xlabel="the other surface", ylabel=_counted(analysis), ylim=(-2, 103))
     axes.set_title("all trials, Wilson's intervals")
 
 

@@ -53,7 +53,7 @@ def show_plan(plan: StudyPlan) -> None:
                 *_grating(one),
                 one.kind,
                 "its own" if one.texture else f"{one.low:g} to {one.high:g}",
-                "" if design.two_surfaces else design.answer_to(one) or "none",
+                "" if design.compares else design.answer_to(one) or "none",
             )
             for one in design.stimuli
         ],
@@ -182,7 +182,11 @@ class TerminalExaminer:
         """Say what to feel; return at Enter."""
         surface = presentation.surfaces[place]
         several = len(presentation.surfaces) > 1
-        what = f"surface {place + 1} of 2" if several else f"'{surface.name}'"
+        what = (
+            f"surface {place + 1} of {len(presentation.surfaces)}"
+            if several
+            else f"'{surface.name}'"
+        )
         self._read(f"\n[{presentation.remaining} left] Feel {what}, then press Enter. ")
 
     def ask(self, presentation: Presentation) -> str | float:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import shown
+from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.identification.information import METHOD
 
 if TYPE_CHECKING:
@@ -319,11 +320,8 @@ def whose(origin: str) -> str:
 
 def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
     """Of `condition_rows`: what is counted depends on the task."""
-    counted = {
-        "two-interval": "Right" if analysis.is_adaptive else "Has more",
-        "same-different": "Different",
-        "magnitude-estimation": "Number",
-    }[analysis.task]
+    in_parts = analysis.is_adaptive and analysis.task == "two-interval"
+    counted = "Right" if in_parts else TASKS[analysis.task].counted
     return ("Stimulus", "Value", "Trials", "People", counted, "d′")
 
 

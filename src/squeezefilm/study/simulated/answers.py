@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SimulatedAnswers(Result):
-    """Answers of simulated participants to a two-interval, same-different or magnitude design.
+    """Answers of simulated participants to a design of any other task than match-to-sample.
 
     Attributes:
         tables: the chain behind them.
@@ -88,6 +88,7 @@ class SimulatedAnswers(Result):
                 "phase": str(a.phase[at]),
                 "stimulus": names[a.first[at]],
                 "second_stimulus": names[a.second[at]] if a.second[at] >= 0 else "",
+                "third_stimulus": "" if a.third is None else names[a.third[at]],
                 "adaptive_series": series[a.series[at]] if a.series[at] >= 0 else "",
                 "intensity": float(a.intensity[at]),
                 "choice": answers[a.choice[at]] if a.choice[at] >= 0 else "",

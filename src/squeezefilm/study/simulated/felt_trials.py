@@ -12,7 +12,7 @@ from squeezefilm.physics.perception.observer import Observer
 from squeezefilm.study.record.exploration import touches
 from squeezefilm.study.record.explored_trials import LONGEST_STEP, ExploredTrials
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.tables import Cell, origin_of, trial_table
+from squeezefilm.study.record.tables import SURFACES, Cell, origin_of, trial_table
 from squeezefilm.study.simulated.felt_paths import FeltPath, felt_on_path
 
 
@@ -37,7 +37,7 @@ def felt_in_trial(
         InputError: no such answer, one whose path was not kept, or what `felt_on_path` refuses.
     """
     row = _answer(store, participant, trial)
-    names = [str(row[key]) for key in ("stimulus", "second_stimulus") if row[key]]
+    names = [str(row[key]) for key in SURFACES if row[key]]
     tables = ExploredTrials(store).paths(str(row["traces"]).split())
     if len(tables) != len(names):
         raise InputError(

@@ -1,4 +1,4 @@
-"""Simulated participants of two-interval, same-different and magnitude tasks, trial by trial.
+"""Simulated participants of all tasks but match-to-sample, trial by trial.
 
 Senses and noise are those of match-to-sample (`physics.perception.perceived`): every surface is
 perceived anew on every trial. What the tasks add is how an answer follows from what was perceived.
@@ -17,7 +17,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -27,6 +26,7 @@ from squeezefilm.physics.perception.senses import FINEST_PERIOD, Candidates, per
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method
 from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.design.tasks.task import Percepts
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables
@@ -60,7 +60,7 @@ def simulate_judgements(
     A participant's answers depend on the seed and their number alone. See the module.
 
     Args:
-        design: of two-interval, same-different or magnitude estimation.
+        design: of any task but match-to-sample.
         observer: what people are made of.
         participants: how many, at least 1.
         seed: the same seed gives the same answers.
@@ -95,6 +95,8 @@ def simulate_judgements(
             seed,
             first // CHUNK,
             room.directions,
+            # One surface has the noise of two: nobody's answers depend on how tasks are kept.
+            max(design.described.surfaces, 2),
         )
         parts.append(_chunk(room, people, schedules[:count], first))
         # Twenty words are enough for however many.
@@ -156,12 +158,12 @@ class _Room:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Part:
-    """What a chunk of people was presented and answered, shape (people, trials)."""
+    """What a chunk of people answered, shape (people, trials), and was presented, shape (people,
+    trials, surfaces)."""
 
     participant: si.IntArray
     schedules: list[list[Trial]]
-    first: si.IntArray
-    second: si.IntArray
+    presented: si.IntArray
     intensity: si.FloatArray
     choice: si.IntArray
     estimate: si.FloatArray
@@ -171,10 +173,11 @@ class _Part:
 def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], begin: int) -> _Part:
     design, observer = room.design, room.observer
     count, asked = len(schedules), len(schedules[0])
-    pairs, answers = design.two_surfaces, design.answers
+    surfaces, answers = design.described.surfaces, design.answers
     methods: dict[tuple[int, str, str], AdaptiveMethod] = {}
     shape = count, asked
-    first, second, choice = (np.full(shape, -1, dtype=np.int64) for _ in range(3))
+    choice = np.full(shape, -1, dtype=np.int64)
+    presented = np.full((*shape, surfaces), -1, dtype=np.int64)
     intensity, estimate, time = (np.full(shape, np.nan) for _ in range(3))
     display = np.array([[room.display[one.display] for one in row] for row in schedules])
     judge = _judge(room, people)
@@ -191,20 +194,19 @@ def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], b
                 one = room.chosen(trial.adaptive, float(intensity[person, at]))
                 shown = [room.place[design.reference], one]
                 shown = shown if trial.reference_first else shown[::-1]
-            first[person, at] = shown[0]
-            second[person, at] = shown[1] if pairs else -1
+            presented[person, at] = shown
         skill = 1.0 + observer.learning_excess * math.exp(-at / observer.learning_trials)
         alike = count, *(1 for _ in room.directions)
         felt = [
             perceived(
-                room.presented(display[:, at], people.finger[:count], column[:, at]),
+                room.presented(display[:, at], people.finger[:count], presented[:, at, place]),
                 observer,
                 np.full(alike, skill),
                 people.spread[:count].reshape(alike),
                 people.noise[at, place, :count],
                 people.blur[at, place, :count],
             )
-            for place, column in enumerate((first, second)[: 2 if pairs else 1])
+            for place in range(surfaces)
         ]
         given = judge(felt, skill, at, count)
         choice[:, at], estimate[:, at] = given.choice, given.estimate
@@ -217,7 +219,7 @@ def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], b
                 method = _standing(methods, design, person, row[at])
                 method.update(float(intensity[person, at]), bool(right))
     who = begin + np.arange(count)
-    return _Part(who, schedules, first, second, intensity, choice, estimate, time)
+    return _Part(who, schedules, presented, intensity, choice, estimate, time)
 
 
 def _standing(
@@ -241,9 +243,8 @@ def _judge(room: _Room, people: SimulatedPeople) -> _Judge:
     task = room.design.task
     if task == "magnitude-estimation":
         return functools.partial(_number, room, people)
-    if task == "two-interval":
-        return functools.partial(_which, room, people)
-    return functools.partial(_alike_in_plane if room.directions else _alike, room, people)
+    in_plane = task == "same-different" and room.directions
+    return functools.partial(_alike_in_plane if in_plane else _decided, room, people)
 
 
 def _in_clearest_direction(felt: Perceived) -> Perceived:
@@ -263,40 +264,25 @@ def _judged(
     return felt.log_period, people.spread[: felt.log_period.size] * skill
 
 
-def _compared(
-    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float
-) -> tuple[si.FloatArray, NDArray[np.bool_], NDArray[np.bool_]]:
-    """First minus second over the deviation of that difference, whether both and one are felt."""
-    (a, deviation), (b, _) = (_judged(room, people, one, skill) for one in felt)
-    both, either = felt[0].felt & felt[1].felt, felt[0].felt | felt[1].felt
+def _decided(
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
+) -> _Given:
+    """Answers as the task's record decides; of who lapses, or has nothing to decide by, guesses."""
+    decides = room.design.described.decides
+    assert decides is not None
+    felt = [_in_clearest_direction(one) for one in felt]
+    judged = [_judged(room, people, one, skill) for one in felt]
+    known = np.array([one.felt for one in felt])
     if room.design.judged == "friction_depth":
         # How strong a surface is can be said of one that is hardly felt.
-        both = either = np.ones(a.shape, dtype=bool)
-    return (a - b) / (math.sqrt(2.0) * deviation), both, either & ~both
-
-
-def _which(
-    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
-) -> _Given:
-    felt = [_in_clearest_direction(one) for one in felt]
-    apart, both, _ = _compared(room, people, felt, skill)
-    blind = ~both | (people.blind[at, :count] < people.lapse[:count])
-    guess = (people.guess[at, :count] < 0.5).astype(np.int64)
-    choice = np.where(blind, guess, np.where(apart > 0, 0, 1))
-    return _Given(choice, np.full(count, np.nan), np.where(blind, 1.0, np.exp(-np.abs(apart))))
-
-
-def _alike(
-    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
-) -> _Given:
-    apart, both, one_only = _compared(room, people, felt, skill)
-    limit = room.observer.detection_criterion
-    different = one_only | (both & (np.abs(apart) > limit))
-    blind = people.blind[at, :count] < people.lapse[:count]
-    guess = people.guess[at, :count] < 0.5
-    choice = np.where(blind, guess, different).astype(np.int64)
-    doubt = np.where(both & ~blind, np.exp(-np.abs(np.abs(apart) - limit)), 1.0)
-    return _Given(choice, np.full(count, np.nan), doubt)
+        known = np.ones_like(known)
+    level, deviation = np.array([one for one, _ in judged]), judged[0][1]
+    found = decides(Percepts(level, known, deviation, room.observer.detection_criterion))
+    blind = ~found.decided | (people.blind[at, :count] < people.lapse[:count])
+    number = len(room.design.answers)
+    guess = number - 1 - np.floor(people.guess[at, :count] * number).astype(np.int64)
+    choice = np.where(blind, guess, found.choice)
+    return _Given(choice, np.full(count, np.nan), np.where(blind, 1.0, found.doubt))
 
 
 def _alike_in_plane(
@@ -359,6 +345,8 @@ def _together(design: StudyDesign, participants: int, room: _Room, parts: list[_
     def whole(found: list[int]) -> si.IntArray:
         return np.array(found, dtype=np.int64)
 
+    shown = np.concatenate([one.presented.reshape(-1, one.presented.shape[2]) for one in parts]).T
+    none = np.full(shown.shape[1], -1, dtype=np.int64)
     return Answers(
         design=design,
         origin="simulated",
@@ -369,8 +357,9 @@ def _together(design: StudyDesign, participants: int, room: _Room, parts: list[_
         phase=np.array([one.phase for one in rows], dtype=np.str_),
         display=whole([room.display[one.display] for one in rows]),
         series=whole([series.get(one.adaptive, -1) for one in rows]),
-        first=joined("first").astype(np.int64),
-        second=joined("second").astype(np.int64),
+        first=shown[0],
+        second=shown[1] if len(shown) > 1 else none,
+        third=shown[2] if len(shown) > 2 else None,
         intensity=joined("intensity"),
         choice=joined("choice").astype(np.int64),
         right=whole([names.get(one.answer, -1) for one in rows]),

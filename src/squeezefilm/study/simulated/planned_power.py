@@ -153,7 +153,7 @@ def require_pair(design: StudyDesign, first: str, second: str) -> None:
         )
     if first == second:
         raise InputError(f"'{first}' is asked to be told from itself; name two stimuli")
-    if design.two_surfaces and design.reference not in (first, second):
+    if design.compares and design.reference not in (first, second):
         raise InputError(
             f"'{design.name}' compares with its reference '{design.reference}'; name it as one of "
             "the two"
@@ -162,8 +162,8 @@ def require_pair(design: StudyDesign, first: str, second: str) -> None:
 
 def pair_scores(answers: Answers, first: str, second: str) -> si.FloatArray:
     """How well each person tells two stimuli apart, shape (people,); 0 in the mean of people who
-    cannot: share of right answers less one half; "different" to them less "different" to the same;
-    or the difference of the mean logarithms of their numbers, the one with more less the other.
+    cannot: share of right answers less that of guesses; "different" to them less "different" to
+    the same; or the difference of the mean logarithms of their numbers, more less less.
 
     Raises `InputError` for a pair that no test tells apart.
     """
@@ -184,13 +184,13 @@ def pair_scores(answers: Answers, first: str, second: str) -> si.FloatArray:
         )
         logs = np.log(main.estimate)
         return mean(logs, names[main.first] == more) - mean(logs, names[main.first] == less)
-    one, other = names[main.first], names[main.second]
-    wanted = [first, second]
-    here = np.isin(one, wanted) & np.isin(other, wanted) & (one != other)
-    if design.task == "two-interval":
-        return mean(main.correct, here) - 0.5
+    shown = names[main.presented]
+    alike = (shown == shown[0]).all(axis=0)
+    here = np.isin(shown, [first, second]).all(axis=0) & ~alike
+    if design.task != "same-different":
+        return mean(main.correct, here) - 1.0 / len(design.answers)
     different = (main.choice == 1).astype(float)
-    return mean(different, here) - mean(different, main.first == main.second)
+    return mean(different, here) - mean(different, alike)
 
 
 def drawn_with_replacement(scores: si.FloatArray) -> ParticipantSimulator:

@@ -31,10 +31,10 @@ from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import SIZES, on_one_display
+from squeezefilm.study.tasks.by_difference import on_grid_of_differences
 from squeezefilm.study.tasks.findings import PersonEstimate
 from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.population import Population
-from squeezefilm.study.tasks.same_different import same_different_on_grid
 from squeezefilm.study.tasks.two_interval import PeopleOnGrid, on_grid, t_interval
 from squeezefilm.study.tasks.unlike_surfaces import MEASURE, unlike_persons
 
@@ -282,8 +282,8 @@ def _on_grid(main: Answers) -> PeopleOnGrid | None:
     """Each person's Weber fraction, in tasks whose surfaces differ along a scale."""
     if main.design.task == "two-interval":
         return on_grid(main, lambda _: None)
-    is_scaled = main.design.task == "same-different" and main.design.on_a_scale
-    return same_different_on_grid(main) if is_scaled else None
+    is_scaled = main.design.described.model is not None and main.design.on_a_scale
+    return on_grid_of_differences(main) if is_scaled else None
 
 
 def _values(persons: list[PersonEstimate]) -> si.FloatArray:

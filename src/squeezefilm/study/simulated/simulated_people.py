@@ -42,6 +42,7 @@ class SimulatedPeople:
         seed: int,
         chunk: int,
         directions: tuple[int, ...],
+        surfaces: int = 2,
     ) -> SimulatedPeople:
         """Whoever is in a chunk; nobody depends on how many there are."""
         random = _random(seed, chunk)
@@ -53,8 +54,8 @@ class SimulatedPeople:
             lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(CHUNK)),
             scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(CHUNK)),
             memory=normal(CHUNK),
-            noise=normal((asked, 2, CHUNK, *directions, observer.candidates)),
-            blur=normal((asked, 2, CHUNK, *directions)),
+            noise=normal((asked, surfaces, CHUNK, *directions, observer.candidates)),
+            blur=normal((asked, surfaces, CHUNK, *directions)),
             blind=among((asked, CHUNK)),
             guess=among((asked, CHUNK)),
             slowness=normal((asked, CHUNK)),

@@ -33,6 +33,12 @@ from squeezefilm.study.record.answers import Answers, recorded_answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.tasks.asked_again import asked_again, require_rerun
+from squeezefilm.study.tasks.by_difference import (
+    difference_conditions,
+    difference_numbers,
+    false_alarms,
+    on_grid_of_differences,
+)
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
     PersonEstimate,
@@ -43,12 +49,6 @@ from squeezefilm.study.tasks.findings import (
 from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions, require_magnitudes
 from squeezefilm.study.tasks.methods import methods_text
 from squeezefilm.study.tasks.population import Population
-from squeezefilm.study.tasks.same_different import (
-    false_alarms,
-    same_different_conditions,
-    same_different_numbers,
-    same_different_on_grid,
-)
 from squeezefilm.study.tasks.two_interval import (
     PeopleOnGrid,
     adaptive_conditions,
@@ -262,12 +262,8 @@ def _judgements(
     tell: Tell,
 ) -> TaskAnalysis:
     design, main = answers.design, answers.main(display)
-    of = {
-        "two-interval": _two_interval,
-        "same-different": _same_different,
-        "magnitude-estimation": _magnitudes,
-    }[design.task]
-    found = of(main, level, seed, tell)
+    own = {"two-interval": _two_interval, "magnitude-estimation": _magnitudes}
+    found = own.get(design.task, _by_difference)(main, level, seed, tell)
     tell("response times and drift")
     condition, names = _conditions(main)
     course = course_of(answers, display)
@@ -363,14 +359,14 @@ def _two_interval(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
     return _of_fractions(people, level, conditions, two_interval_numbers(main, level))
 
 
-def _same_different(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
+def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
     if not main.design.on_a_scale:
         return _unlike(main, level, seed, tell)
-    tell("differencing model of each person")
-    people = same_different_on_grid(main)
-    conditions = same_different_conditions(main, level, seed)
-    more = same_different_numbers(main, people.bias, level)
-    return _of_fractions(people, level, conditions, more, criterion=True)
+    tell(f"{main.design.task} model of each person")
+    people = on_grid_of_differences(main)
+    conditions = difference_conditions(main, level, seed)
+    more = difference_numbers(main, people.bias, level)
+    return _of_fractions(people, level, conditions, more, criterion=bool(more))
 
 
 def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
@@ -409,13 +405,13 @@ def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
     order = np.argsort(main.values, kind="stable")
     place = np.argsort(order, kind="stable")
     names = tuple(main.surfaces[one].name for one in order)
-    if main.design.two_surfaces:
+    if main.design.compares:
         here = names.index(main.design.reference) if main.design.reference in names else -1
-        first, second = place[main.first], place[main.second]
-        other = np.where(first != here, first, second)
-        if main.design.task == "same-different":
-            return np.where(first == second, len(names), other), (*names, "the same")
-        return other, names
+        shown = place[main.presented]
+        # The one that is not the reference; several are the same one.
+        other = np.where(shown != here, shown, -1).max(axis=0)
+        alike = (shown == shown[0]).all(axis=0)
+        return np.where(alike, len(names), other), (*names, "the same")
     return place[main.first], names
 
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from squeezefilm.core import quantities as si
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.physics.perception.stimuli import Varied
-from squeezefilm.study.design.study_design import Task
+from squeezefilm.study.design.tasks.task import Task
 from squeezefilm.study.identification.condition_means import ConditionMean
 from squeezefilm.study.identification.course import Course
 from squeezefilm.study.identification.response_times import ExGaussian, ResponseTimeSummary

@@ -10,56 +10,11 @@ from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import Answers
 
-_TASKS = {
-    "match-to-sample": (
-        "On each trial one virtual surface was presented, and the participant named the one of "
-        "{alternatives} {matched} that it felt like"
-    ),
-    "two-interval": (
-        "On each trial two surfaces were presented one after the other, one of them the reference "
-        "({reference}), and the participant said which had the greater {judged}"
-    ),
-    "same-different": (
-        "On each trial two surfaces were presented one after the other, and the participant said "
-        "whether they were the same or different; the reference was {reference}"
-    ),
-    "magnitude-estimation": (
-        "On each trial one surface was presented, and the participant gave a number for its "
-        "{judged}"
-    ),
-}
 _MATCHED = {"real gratings": "real gratings", "stimuli": "surfaces known from before"}
 _ORDERS = {
     "williams": "in the order of a Williams square (Williams 1949, 10.1071/CH9490149)",
     "latin-square": "in the order of a Latin square",
     "shuffled": "in random order",
-}
-_ANALYSES = {
-    "match-to-sample": (
-        "Proportions correct have intervals by a bootstrap over participants; information transfer "
-        "is corrected for its bias. Sensitivity is the equal-variance Thurstone model's."
-    ),
-    "two-interval": (
-        "Each participant's answers were fitted with a cumulative Gaussian of the difference of "
-        "logarithms, with a bias for an interval and lapses; the Weber fraction is what is told in "
-        "75 % of two intervals. The population is a mixed model: logarithms of Weber fractions are "
-        "normal over participants, lapse rates have a mean over participants of their own, and "
-        "all likelihoods were integrated on a grid, so that intervals do not ask how differences "
-        "were chosen (compare Moscatelli et al. 2012, 10.1167/12.11.26; Kuss et al. 2005, "
-        "10.1167/5.5.8). d′ follows Macmillan and Creelman (2005)."
-    ),
-    "same-different": (
-        "Each participant's answers were fitted by the differencing model of Macmillan and "
-        "Creelman (2005), with a criterion and lapses; the Weber fraction is the difference with "
-        "d′ = 0.954, which is told in 75 % of two intervals. The population is a mixed model: "
-        "logarithms of Weber fractions are normal over participants, whose likelihoods were "
-        "integrated on a grid (compare Moscatelli et al. 2012, 10.1167/12.11.26)."
-    ),
-    "magnitude-estimation": (
-        "The exponent of Stevens' power law was fitted to each participant's logarithms, and its "
-        "mean has Student's interval over participants. Means of numbers are geometric, with the "
-        "scales of participants taken out (Lane, Catania and Stevens 1961, 10.1121/1.1908600)."
-    ),
 }
 _UNLIKE = (
     "Surfaces had no amount in common to be compared by: each participant has a d′ over all pairs "
@@ -90,7 +45,7 @@ def methods_text(answers: Answers, display: int) -> str:
     parts = [
         f"{people} {who} took part on the display '{named}'.",
         _stimuli(design),
-        _TASKS[design.task].format(
+        design.described.presents.format(
             alternatives=len(design.answers),
             matched=_MATCHED[design.matched_with],
             reference=design.reference or "none",
@@ -99,7 +54,7 @@ def methods_text(answers: Answers, display: int) -> str:
         + f" (“{design.spoken_question}”).",
         *_adaptive(design),
         _trials(design, answers, display),
-        _UNLIKE if alike and not design.on_a_scale else _ANALYSES[design.task],
+        _UNLIKE if alike and not design.on_a_scale else design.described.analysed,
         f"Orders and analysis were made with squeezefilm {__version__} "
         f"(design SHA-256 {design.sha256[:12]}).",
     ]

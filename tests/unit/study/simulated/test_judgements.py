@@ -14,12 +14,12 @@ from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.simulated.answers import (
     SimulatedAnswers,
     answers_of,
     simulate_participants,
 )
-from squeezefilm.study.simulated.assumptions import ASSUMED
 from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.judgements import simulate_judgements
@@ -119,7 +119,7 @@ def test_results_say_that_they_are_simulated_and_what_they_assume() -> None:
     data = found.summary()
     assert data["origin"] == "simulated"
     (one,) = found.analyses.values()
-    assert next(iter(data["displays"].values()))["assumed"] == list(ASSUMED["same-different"])
+    assert next(iter(data["displays"].values()))["assumed"] == list(TASKS["same-different"].assumed)
     assert one.origin == "simulated"
     assert len(found.rows()) == found.answers.trials
     assert found.participants == 4

@@ -14,10 +14,10 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.course import attention, course_of, drift
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.analyze import analyze_answers
+from squeezefilm.study.tasks.by_difference import false_alarms, on_grid_of_differences
 from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions
 from squeezefilm.study.tasks.methods import methods_text
-from squeezefilm.study.tasks.same_different import false_alarms, same_different_on_grid
 from squeezefilm.study.tasks.two_interval import comparisons, differences, on_grid, t_interval
 
 SHARP = Person(0.02, 0.9, 0.0)
@@ -89,7 +89,7 @@ def test_trials_decide_nothing_by_their_order() -> None:
             for key in ("participant", "first", "second", "choice", "right", "display", "series")
         },
     )
-    one, other = same_different_on_grid(main), same_different_on_grid(mixed)
+    one, other = on_grid_of_differences(main), on_grid_of_differences(mixed)
     for a, b in zip(one.likelihood, other.likelihood, strict=True):
         assert a == pytest.approx(b)
 

@@ -1,0 +1,1 @@
+"""The tasks, each described once, in a file of its own."""

@@ -1,0 +1,15 @@
+"""Every task by its name."""
+
+from __future__ import annotations
+
+from squeezefilm.study.design.tasks.odd_one_out import ODD_ONE_OUT
+from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE
+from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
+from squeezefilm.study.design.tasks.task import StudyTask
+from squeezefilm.study.design.tasks.two_interval import TWO_INTERVAL
+
+TASKS: dict[str, StudyTask] = {
+    one.name: one
+    for one in (MATCH_TO_SAMPLE, SAME_DIFFERENT, TWO_INTERVAL, ODD_ONE_OUT, MAGNITUDE_ESTIMATION)
+}
+"""Every task, as designs name it."""

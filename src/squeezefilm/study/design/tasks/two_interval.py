@@ -1,0 +1,71 @@
+"""Two intervals: which of two surfaces has more? Its model is `tasks.two_interval`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.study.design.tasks.task import (
+    CLEARER,
+    Condition,
+    Decision,
+    Judged,
+    Percepts,
+    StudyTask,
+)
+
+
+def _question(judged: str) -> str:
+    more = "coarser" if judged == "spatial_period" else "more strongly felt"
+    return f"Which of the two surfaces was {more}?"
+
+
+def _conditions(reference: str, others: Sequence[str]) -> tuple[Condition, ...]:
+    return tuple(pair for other in others for pair in ((reference, other), (other, reference)))
+
+
+def _right(surfaces: Sequence[Stimulus], judged: Judged) -> str:
+    first, second = map(judged, surfaces)
+    return "" if first == second else "first" if first > second else "second"
+
+
+def _decides(given: Percepts) -> Decision:
+    apart = (given.level[0] - given.level[1]) / (math.sqrt(2.0) * given.deviation)
+    return Decision(np.where(apart > 0, 0, 1), np.exp(-np.abs(apart)), given.felt.all(axis=0))
+
+
+TWO_INTERVAL = StudyTask(
+    name="two-interval",
+    surfaces=2,
+    answers=("first", "second"),
+    question=_question,
+    conditions=_conditions,
+    most_per_stimulus=2,
+    right=_right,
+    presents=(
+        "On each trial two surfaces were presented one after the other, one of them the reference "
+        "({reference}), and the participant said which had the greater {judged}"
+    ),
+    analysed=(
+        "Each participant's answers were fitted with a cumulative Gaussian of the difference of "
+        "logarithms, with a bias for an interval and lapses; the Weber fraction is what is told in "
+        "75 % of two intervals. The population is a mixed model: logarithms of Weber fractions are "
+        "normal over participants, lapse rates have a mean over participants of their own, and "
+        "all likelihoods were integrated on a grid, so that intervals do not ask how differences "
+        "were chosen (compare Moscatelli et al. 2012, 10.1167/12.11.26; Kuss et al. 2005, "
+        "10.1167/5.5.8). d′ follows Macmillan and Creelman (2005)."
+    ),
+    counted="Has more",
+    assumed=(
+        "The coarser surface is the one whose clearest rhythm has the longer period, the deeper "
+        "one the one whose clearest rhythm is the more evident.",
+        "A person who does not feel both rhythms guesses which is coarser.",
+    ),
+    in_plane=(CLEARER,),
+    adaptive=("staircase", "bayesian"),
+    decides=_decides,
+)
+"""Two surfaces, which has more?"""
