@@ -1,8 +1,6 @@
-"""An adaptive method stopped at any trial and resumed from JSON goes on as if it had not been."""
+"""An adaptive method stopped at any trial and played again goes on as if it had not been."""
 
 from __future__ import annotations
-
-import json
 
 import numpy as np
 from hypothesis import given, settings
@@ -39,7 +37,9 @@ def test_a_staircase_resumes_where_it_stopped(
     whole, part = Staircase(rule), Staircase(rule)
     for trial, answer in enumerate(given_answers):
         if trial == stop:
-            part = Staircase.from_state(json.loads(json.dumps(part.state(), allow_nan=False)))
+            part = Staircase(rule)
+            for one in whole.trials:
+                part.update(one.intensity, one.correct)
         assert part.finished == whole.finished
         if whole.finished:
             break
@@ -51,7 +51,6 @@ def test_a_staircase_resumes_where_it_stopped(
         for stairs in (whole, part):
             stairs.update(shown, answer)
     assert part.trials == whole.trials
-    assert part.state() == whole.state()
 
 
 @given(
@@ -76,11 +75,10 @@ def test_a_bayesian_choice_resumes_where_it_stopped(
     whole, part = BayesianAdaptive(design), BayesianAdaptive(design)
     for trial, answer in enumerate(given_answers):
         if trial == stop:
-            text = json.dumps(part.state(), allow_nan=False)
-            part = BayesianAdaptive.from_state(json.loads(text))
-            assert part.design == design
+            part = BayesianAdaptive(design)
+            for one in whole.trials:
+                part.update(one.intensity, one.positive)
         assert part.next_stimulus() == whole.next_stimulus()
         for method in (whole, part):
             method.update(method.next_stimulus(), answer)
     assert np.array_equal(part.probability, whole.probability)
-    assert part.state() == whole.state()

@@ -145,7 +145,9 @@ def test_expected_information_is_the_expected_fall_of_entropy(interest: str) -> 
         # By its definition: each answer tried, weighted with its probability.
         expected = 0.0
         for positive in (True, False):
-            branch = BayesianAdaptive.from_state(method.state())
+            branch = BayesianAdaptive(design)
+            for trial in method.trials:
+                branch.update(trial.intensity, trial.positive)
             branch.update(x, positive)
             share = _predicted(method, x)
             expected += (share if positive else 1 - share) * branch.entropy

@@ -14,15 +14,15 @@ import numpy as np
 import pytest
 from tests.recovery import task_people
 from tests.recovery.task_people import DESIGNS, Person, answered, somebody
-
-from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.adaptive.placement import Placement
-from squeezefilm.study.adaptive.task_models import (
+from tests.task_models import (
     magnitude_model,
     match_to_sample_model,
     same_different_model,
     two_interval_model,
 )
+
+from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
+from squeezefilm.study.adaptive.placement import Placement
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction
 from squeezefilm.study.psychometric.prior import PsychometricPrior

@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
+from squeezefilm.study.adaptive.staircase import StaircaseRule
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction
 from squeezefilm.study.psychometric.prior import PsychometricPrior
@@ -134,18 +134,6 @@ def test_rules_that_are_none(change: dict[str, Any], message: str) -> None:
 def test_adaptive_designs_that_are_none(change: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         AdaptiveDesign(**({"stimuli": (1.0, 2.0), "prior": PRIOR} | change))
-
-
-def test_states_that_are_none() -> None:
-    with pytest.raises(InputError, match="no staircase's state"):
-        Staircase.from_state({"rule": {"start": 1.0}})
-    with pytest.raises(InputError, match="no staircase's state"):
-        Staircase.from_state({"rule": 5, "trials": []})
-    with pytest.raises(InputError, match="no Bayesian method's state"):
-        BayesianAdaptive.from_state({"design": {}})
-    for prior in ({"threshold": [1.0]}, {"threshold": [1.0], "width": [1.0, 2.0]}):
-        with pytest.raises(InputError, match="no Bayesian method's state"):
-            BayesianAdaptive.from_state({"design": {"prior": prior}})
 
 
 def test_a_finished_choice_says_so() -> None:

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.from_text import reads_text
-from squeezefilm.core.results import to_json
 from squeezefilm.study.adaptive.kernel import EXACT, information
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
@@ -94,8 +93,8 @@ class AdaptiveTrial:
 class BayesianAdaptive:
     """A Bayesian choice of stimuli as it runs. `next_stimulus`, then `update`, until `finished`.
 
-    Nothing in it is random: the same answers lead to the same stimuli. `state` gives the design
-    and the answers for JSON, `from_state` plays them again.
+    Nothing in it is random: the design and the answers so far are all its state, and playing them
+    again (`update`) gives the choice that was interrupted.
     """
 
     def __init__(self, design: AdaptiveDesign) -> None:
@@ -189,37 +188,6 @@ class BayesianAdaptive:
             )
         self._weights = weights / total
         self._trials.append(AdaptiveTrial(intensity, bool(positive)))
-
-    def state(self) -> dict[str, Any]:
-        """Design and answers, as JSON holds them."""
-        return {
-            "method": "bayesian-adaptive",
-            "design": to_json(self.design),
-            "trials": [[trial.intensity, trial.positive] for trial in self._trials],
-        }
-
-    @classmethod
-    def from_state(cls, state: dict[str, Any]) -> BayesianAdaptive:
-        """The method that `state` was taken of.
-
-        Raises:
-            InputError: a state that is none.
-        """
-        try:
-            design = dict(state["design"])
-            prior = {name: (low, high) for name, (low, high) in design["prior"].items()}
-            design["prior"] = PsychometricPrior(**prior)
-            design |= {name: tuple(design[name]) for name in ("stimuli", "cells")}
-            method = cls(AdaptiveDesign(**design))
-            for intensity, positive in state["trials"]:
-                method.update(float(intensity), bool(positive))
-        except InputError:
-            raise
-        except (KeyError, TypeError, ValueError) as error:
-            raise InputError(
-                f"this is no Bayesian method's state: {error!r} is at fault"
-            ) from error
-        return method
 
 
 def _nodes(design: AdaptiveDesign) -> list[si.FloatArray]:

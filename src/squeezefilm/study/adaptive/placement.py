@@ -2,8 +2,8 @@
 
 QUEST+ (Watson 2017, 10.1167/17.3.10): a model says how probable each of several answers to each
 stimulus is under each value of its parameters; answers weigh the values, and the stimulus is chosen
-whose answer is expected to lower the entropy of what is of interest the most. `task_models` has the
-models of the tasks; `BayesianAdaptive` is the same for psychometric functions.
+whose answer is expected to lower the entropy of what is of interest the most. `BayesianAdaptive` is
+the same for psychometric functions.
 """
 
 from __future__ import annotations

@@ -8,11 +8,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.placement import Placement, PlacementModel
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
-from squeezefilm.study.adaptive.task_models import same_different_model
 from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
 from squeezefilm.study.design.tasks.task import Task
 from squeezefilm.study.psychometric.prior import PsychometricPrior
 
@@ -74,7 +75,18 @@ def _differencing(lowest: float, highest: float) -> PlacementModel:
     differences = np.append(0.0, np.log1p(np.geomspace(lowest, highest, _CHOICES)))
     fractions = np.geomspace(lowest / 4, 4 * highest, _WEBER_FRACTIONS)
     criteria = _LARGEST_CRITERION * (np.arange(_CRITERIA) + 0.5) / _CRITERIA
-    return same_different_model(differences, fractions, criteria, _LAPSES)
+    parameters = {"Weber fraction": fractions, "criterion": criteria, "lapse rate": _LAPSES}
+    # Every combination, the last running fastest.
+    grid = np.meshgrid(*parameters.values(), indexing="ij")
+    weber, criterion, lapse = (one.reshape(-1, 1) for one in grid)
+    model = SAME_DIFFERENT.model
+    assert model is not None
+    rise = model.rate(differences * D_PRIME_OF_75 / np.log1p(weber), criterion)
+    different = model.lapses * lapse + (1.0 - lapse) * rise
+    chances = np.stack([different, 1.0 - different])
+    # The prior of psychometric functions, Beta(1, 10).
+    prior = {"lapse rate": (1.0 - _LAPSES) ** 9}
+    return PlacementModel(parameters, differences, ("different", "same"), chances, prior)
 
 
 AdaptiveMethod = Staircase | BayesianAdaptive | SameDifferentSeries

@@ -9,11 +9,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.results import to_json
 from squeezefilm.study.psychometric.function import AXES, Axis
 
 
@@ -95,8 +93,8 @@ class StaircaseTrial:
 class Staircase:
     """A staircase as it runs. `next_stimulus`, then `update`, until `finished`.
 
-    Its state is its rule and the answers so far: `state` gives them for JSON, `from_state` plays
-    them again and stands where it stood.
+    Nothing in it is random: its rule and the answers so far are all its state, and playing them
+    again (`update`) gives the staircase that was interrupted.
     """
 
     def __init__(self, rule: StaircaseRule) -> None:
@@ -182,28 +180,3 @@ class Staircase:
         if self.rule.axis == "log":
             return math.exp(sum(math.log(turn) for turn in turns) / len(turns))
         return sum(turns) / len(turns)
-
-    def state(self) -> dict[str, Any]:
-        """Rule and answers, as JSON holds them."""
-        return {
-            "method": "staircase",
-            "rule": to_json(self.rule),
-            "trials": [[trial.intensity, trial.correct] for trial in self._trials],
-        }
-
-    @classmethod
-    def from_state(cls, state: dict[str, Any]) -> Staircase:
-        """The staircase that `state` was taken of.
-
-        Raises:
-            InputError: a state that is none.
-        """
-        try:
-            # JSON has no infinity: a bound that is none is left out.
-            rule = {key: value for key, value in dict(state["rule"]).items() if value is not None}
-            staircase = cls(StaircaseRule(**rule))
-            for intensity, correct in state["trials"]:
-                staircase.update(float(intensity), bool(correct))
-        except (KeyError, TypeError) as error:
-            raise InputError(f"this is no staircase's state: {error!r} is at fault") from error
-        return staircase

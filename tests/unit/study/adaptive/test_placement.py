@@ -8,16 +8,16 @@ import math
 import numpy as np
 import pytest
 from scipy.special import ndtr
-
-from squeezefilm.core.errors import InputError
-from squeezefilm.physics.perception.senses import D_PRIME_OF_75
-from squeezefilm.study.adaptive.placement import Placement, PlacementModel
-from squeezefilm.study.adaptive.task_models import (
+from tests.task_models import (
     magnitude_model,
     match_to_sample_model,
     same_different_model,
     two_interval_model,
 )
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.perception.senses import D_PRIME_OF_75
+from squeezefilm.study.adaptive.placement import Placement, PlacementModel
 
 WEBER = np.geomspace(0.03, 0.8, 14)
 STEPS = np.linspace(0.0, 1.0, 11)

@@ -1,15 +1,4 @@
-"""What is answered to each stimulus in each task, for `Placement`: the models of the analyses.
-
-    from squeezefilm.study.adaptive.placement import Placement
-
-    model = same_different_model(differences, weber_fractions, criteria)
-    placement = Placement(model, trials=60)
-    stimulus = placement.next_stimulus()  # its number among `differences`
-    placement.update(stimulus, model.answers.index("different"))
-
-Grids are the caller's: values of the parameters that are held possible, alike on the grid unless a
-prior says otherwise. Lapse rates have the prior Beta(1, 10), as in psychometric functions.
-"""
+"""Models of the tasks for `Placement`: of two answers and of many, with one parameter to three."""
 
 from __future__ import annotations
 
