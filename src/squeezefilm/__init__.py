@@ -65,7 +65,7 @@ _NAMES = {
     "BayesianAdaptive": "study.adaptive.bayesian",
     "fit_psychometric": "study.psychometric.fit",
     "PsychometricFunction": "study.psychometric.function",
-    "PsychometricPrior": "study.psychometric.prior",
+    "PsychometricPrior": "study.psychometric.function",
     # What came out
     "plot": "subjects",
     "write_mode": "subjects",

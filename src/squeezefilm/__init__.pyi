@@ -84,7 +84,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.adaptive.bayesian import BayesianAdaptive as BayesianAdaptive
     from squeezefilm.study.adaptive.bayesian import Interest
     from squeezefilm.study.conduct.playback import Playable, Playback
-    from squeezefilm.study.conduct.trial_by_trial import Examiner
+    from squeezefilm.study.conduct.terminal_run import Examiner
     from squeezefilm.study.design.plan import StudyPlan
     from squeezefilm.study.design.study_design import NamedDesign
     from squeezefilm.study.psychometric.fit import PsychometricFit
@@ -92,7 +92,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.psychometric.function import (
         PsychometricFunction as _PsychometricFunction,
     )
-    from squeezefilm.study.psychometric.prior import PsychometricPrior as PsychometricPrior
+    from squeezefilm.study.psychometric.function import PsychometricPrior as PsychometricPrior
     from squeezefilm.study.record.store import StudyStore
     from squeezefilm.study.simulated.answers import SimulatedAnswers
     from squeezefilm.study.simulated.chain_tables import ChainTables

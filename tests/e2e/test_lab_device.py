@@ -13,7 +13,7 @@ from squeezefilm.instruments.session.record.trace import read_trace
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
 from squeezefilm.study.conduct.study_device import NoDevice
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.store import StudyStore
 
 from .test_lab_pages import CONTRAST, keep, opened

@@ -30,7 +30,7 @@ from squeezefilm.study.conduct.sessions import (
     end_session,
 )
 from squeezefilm.study.conduct.study_device import NoDevice, StudyDevice
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import Row, StudyStore
 

@@ -23,7 +23,7 @@ from squeezefilm.instruments.session.record.trace import read_trace
 from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import export_study

@@ -21,7 +21,7 @@ from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.store import StudyStore
 
 TRACE = "time_s,x_m\n" + "".join(f"{i / 100},{i / 1000}\n" for i in range(100))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.psychometric.function import PsychometricPrior
 
 answers = st.lists(st.booleans(), min_size=1, max_size=40)
 

@@ -15,8 +15,7 @@ from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.rerun import Procedure, rerun_intervals
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 from squeezefilm.study.psychometric.fit import PsychometricFit, fit_psychometric
-from squeezefilm.study.psychometric.function import PsychometricFunction
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
 
 PARAMETERS = ("threshold", "width", "lapse_rate")
 Answers = tuple[FloatArray, FloatArray]

@@ -10,8 +10,7 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
-from squeezefilm.study.psychometric.function import PsychometricFunction
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
 
 PRIOR = PsychometricPrior((1.0, 9.0), (0.5, 12.0))
 STIMULI = tuple(np.linspace(0.0, 10.0, 21))

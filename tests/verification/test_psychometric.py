@@ -16,11 +16,11 @@ from squeezefilm.study.psychometric.function import (
     SHAPES,
     Axis,
     PsychometricFunction,
+    PsychometricPrior,
     Shape,
     on_axis,
 )
 from squeezefilm.study.psychometric.posterior import Answered, grid_posterior
-from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 LEVELS = np.arange(1.0, 9.0)
 CORRECT = np.array([21.0, 19.0, 24.0, 25.0, 31.0, 36.0, 38.0, 39.0])

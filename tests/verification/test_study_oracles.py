@@ -24,8 +24,7 @@ from tests.task_models import (
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.placement import Placement
 from squeezefilm.study.psychometric.fit import fit_psychometric
-from squeezefilm.study.psychometric.function import PsychometricFunction
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
 from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.two_interval import QUARTILE, differences, on_grid
 

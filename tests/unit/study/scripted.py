@@ -14,7 +14,7 @@ from squeezefilm.study.conduct.study_device import (
     StudyDevice,
     TrialMotion,
 )
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import StudyStore

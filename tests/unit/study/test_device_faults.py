@@ -20,7 +20,7 @@ from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.store import StudyStore
 
 from .scripted import CONSENT, Script, gratings

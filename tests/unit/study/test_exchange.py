@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.exports import export_study, exported_folders
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import (

@@ -12,8 +12,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.staircase import StaircaseRule
 from squeezefilm.study.psychometric.fit import fit_psychometric
-from squeezefilm.study.psychometric.function import PsychometricFunction
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
 
 PRIOR = PsychometricPrior((1.0, 9.0), (0.5, 12.0))
 

@@ -19,8 +19,13 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.from_text import reads_text
 from squeezefilm.study.adaptive.kernel import EXACT, information
 from squeezefilm.study.psychometric import kernel
-from squeezefilm.study.psychometric.function import Axis, Shape, on_axis, shape_code
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.psychometric.function import (
+    Axis,
+    PsychometricPrior,
+    Shape,
+    on_axis,
+    shape_code,
+)
 
 Interest = Literal["threshold and width", "all"]
 

@@ -15,7 +15,7 @@ from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
 from squeezefilm.study.design.tasks.task import Task
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.psychometric.function import PsychometricPrior
 
 _CHOICES = 40
 # Cells of Weber fractions and criteria: a choice takes a millisecond, and finer ones choose alike.

@@ -53,8 +53,7 @@ from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 from squeezefilm.study.conduct.study_device import DeviceVerification, TrialMotion
-from squeezefilm.study.record.exploration import PATH_PERIOD
-from squeezefilm.study.record.explored_trials import explored_table
+from squeezefilm.study.record.exploration import PATH_PERIOD, explored_table
 
 LONGEST_PRESENTATION: si.Second = 600.0
 """A surface that nobody answers plays no longer; the trial then comes again."""

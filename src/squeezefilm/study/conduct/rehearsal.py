@@ -2,7 +2,8 @@
 
 Sessions, presentations and answers are written as for people, so that analysis and exports can be
 tried before anybody is asked. The sessions say that they are simulated, and analyses take it over.
-So do the paths of their fingers, which a plain hand makes (`rehearsed_hand`).
+So do the paths of their fingers, which a plain hand makes: strokes to and fro along x, or free
+exploration (`physics.perception.free_hand`), at the speed and force of their finger class.
 """
 
 from __future__ import annotations
@@ -13,10 +14,15 @@ from collections.abc import Callable
 
 import numpy as np
 
+from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.perception.observer import Observer
+from squeezefilm.core.formats.traces import Table, csv_text
+from squeezefilm.physics.display import Display
+from squeezefilm.physics.perception.free_hand import SAYS
+from squeezefilm.physics.perception.observer import FingerClass, Observer
+from squeezefilm.physics.perception.percepts import exploration
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.study.conduct.rehearsed_hand import path_of, rehearsed
+from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.study.conduct.run import Presentation, Response, StudyRun, spoiled_by
 from squeezefilm.study.conduct.sessions import (
     SessionConditions,
@@ -25,7 +31,9 @@ from squeezefilm.study.conduct.sessions import (
     end_session,
 )
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
+from squeezefilm.study.design.matching import Exploring
 from squeezefilm.study.design.trials import trials
+from squeezefilm.study.record.exploration import PATH_PERIOD, explored_table
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import SIMULATED, SIMULATED_NOTE, origin_of
 from squeezefilm.study.simulated.answers import (
@@ -34,8 +42,8 @@ from squeezefilm.study.simulated.answers import (
     simulate_participants,
 )
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.participants import SimulatedStudy
-from squeezefilm.study.simulated.simulated_people import finger_of
+from squeezefilm.study.simulated.felt_surfaces import free_path
+from squeezefilm.study.simulated.participants import SimulatedStudy, finger_of
 
 MOST_PEOPLE = 200
 _CONDITIONS = SessionConditions(
@@ -181,3 +189,43 @@ def _answer_everything(
             response = dataclasses.replace(response, explorations=hand.explored(presentation))
             run.respond(presentation.token, response)
         end_session(store, session, NoDevice())
+
+
+_STROKES = "Strokes to and fro along x, each pass of least jerk, as the simulated answers assume."
+
+
+def path_of(
+    exploring: Exploring, display: Display, observer: Observer, finger: FingerClass
+) -> FingerPath:
+    """How a finger of that class explores a surface of a display in a rehearsal.
+
+    Raises `InputError` for free exploration of a ring.
+    """
+    if exploring == "free":
+        return free_path(display, observer, finger)
+    strokes = exploration(observer, finger)
+    times = np.append(np.arange(0.0, strokes.duration, PATH_PERIOD / 5), strokes.duration)
+    return FingerPath(times, strokes.position(times), np.zeros(times.size))
+
+
+def rehearsed(
+    path: FingerPath, exploring: Exploring, stimulus: Stimulus, normal_force: si.Newton
+) -> TrialMotion:
+    """That a finger explored a surface along a path at a force (N), as a device would say it."""
+    times = np.arange(0.0, path.duration, PATH_PERIOD)
+    x, y = path.place(times)
+    about = {
+        "device": "none: a simulated hand",
+        "assumed": SAYS if exploring == "free" else _STROKES,
+        "stimulus": stimulus.name,
+        "surface_sha256": stimulus.surface_sha256,
+    }
+    table = Table({"time_s": times, "x_m": x, "y_m": y}, about)
+    found = explored_table(table)
+    return TrialMotion(
+        path_length=found.path_length,
+        mean_speed=found.mean_speed,
+        mean_normal_force=normal_force,
+        trace=csv_text(table),
+        touch=1.0,
+    )

@@ -30,14 +30,13 @@ from squeezefilm.core.hard_limits import PARTICIPANT_TRIALS, require_within
 from squeezefilm.core.results import config_hash
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus, Varied
 from squeezefilm.physics.texture_files.image_file import with_images
-from squeezefilm.study.design.exclusion import ExclusionRule
 from squeezefilm.study.design.matching import (
     Exploring,
     MatchedWith,
     require_amounts,
     require_matching,
 )
-from squeezefilm.study.design.rules import TrialRules
+from squeezefilm.study.design.rules import ExclusionRule, TrialRules
 from squeezefilm.study.design.special_trials import (
     AdaptiveCondition,
     CatchTrial,

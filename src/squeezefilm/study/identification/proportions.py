@@ -19,7 +19,7 @@ from scipy import stats
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.confusion import ConfusionMatrix, whole_counts
-from squeezefilm.study.psychometric.interval_ends import holding
+from squeezefilm.study.psychometric.estimate import holding
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from squeezefilm.core import quantities as si
-from squeezefilm.study.design.exclusion import ExclusionRule
+from squeezefilm.study.design.rules import ExclusionRule
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.course import attention
 from squeezefilm.study.psychometric.estimate import Estimate

@@ -15,8 +15,8 @@ from scipy.special import ndtr, ndtri
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
+from squeezefilm.study.psychometric.estimate import holding
 from squeezefilm.study.psychometric.fit import Interval, PsychometricFit
-from squeezefilm.study.psychometric.interval_ends import holding
 
 # Nodes of the integral over the percept of the right alternative; the integrand is smooth.
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(120)

@@ -1,8 +1,10 @@
-"""A number with its interval."""
+"""A number with its interval, which never lies outside of it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+import numpy as np
 
 from squeezefilm.core import quantities as si
 
@@ -16,3 +18,19 @@ class Estimate:
     high: float
     level: si.Dimensionless
     method: str
+
+
+def holding(
+    estimate: si.FloatLike, low: si.FloatLike, high: si.FloatLike
+) -> tuple[si.FloatArray, si.FloatArray]:
+    """The ends of an interval, opened to an estimate that lies beyond one of them; NaN ends stay.
+
+    An estimate and its interval often come of two computations: the mode of a posterior at the
+    bound of its prior and the posterior's quantiles, a corrected share and draws without the
+    correction, a resample of a handful. The estimate may then lie in a tail. An interval that is
+    opened holds at least what its level says.
+    """
+    ends = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+    # A comparison with NaN is false: an end that is not known stays so.
+    below, above = estimate < ends[0], estimate > ends[1]
+    return np.where(below, estimate, ends[0]), np.where(above, estimate, ends[1])

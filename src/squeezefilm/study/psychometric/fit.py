@@ -24,14 +24,15 @@ from squeezefilm.study.psychometric.bootstrap import (
     inverted_interval,
     simulate_bootstrap,
 )
+from squeezefilm.study.psychometric.estimate import holding
 from squeezefilm.study.psychometric.function import (
     Axis,
     PsychometricFunction,
+    PsychometricPrior,
     Shape,
     on_axis,
     shape_code,
 )
-from squeezefilm.study.psychometric.interval_ends import holding
 from squeezefilm.study.psychometric.posterior import (
     PARAMETERS,
     Answered,
@@ -39,7 +40,6 @@ from squeezefilm.study.psychometric.posterior import (
     coarse_maxima,
     grid_posterior,
 )
-from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 Interval = tuple[float, float]
 # Answers fall where fewer guessers than this fall as clearly: a guesser is rarely told so.

@@ -14,8 +14,7 @@ from scipy.interpolate import PchipInterpolator
 
 from squeezefilm.core import quantities as si
 from squeezefilm.study.psychometric import kernel
-from squeezefilm.study.psychometric.function import Axis
-from squeezefilm.study.psychometric.prior import LARGEST_RATE, PsychometricPrior
+from squeezefilm.study.psychometric.function import LARGEST_RATE, Axis, PsychometricPrior
 
 PARAMETERS = ("threshold", "width", "lapse_rate", "guess_rate")
 

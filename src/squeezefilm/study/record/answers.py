@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.record.explored_trials import MEASURES
+from squeezefilm.study.record.exploration import MEASURES
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import Cell, is_chosen, origin_of, presented, trial_table
 

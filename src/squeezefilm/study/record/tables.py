@@ -19,7 +19,7 @@ from typing import Any, Literal
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.record.explored_trials import NO_MEASURES, ExploredTrials
+from squeezefilm.study.record.exploration import NO_MEASURES, ExploredTrials
 from squeezefilm.study.record.store import StudyStore
 
 

@@ -12,8 +12,7 @@ from squeezefilm.core.arguments import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.from_text import reads_text
 from squeezefilm.instruments.bench.markers import markers_if
-from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
-from squeezefilm.study.conduct.trial_by_trial import Examiner
+from squeezefilm.study.conduct.terminal_run import Desk, Examiner, open_study, run_session
 from squeezefilm.study.record.store import utc_now
 from squeezefilm.study.report.terminal import TerminalExaminer, ask_acknowledgement
 

@@ -41,7 +41,7 @@ REMARK = (
 def remarks(design: StudyDesign) -> tuple[str, ...]:
     """What must be read beside the answers to a match-to-sample design: the paper's remark where
     real gratings are matched, else what the answers assume."""
-    from squeezefilm.study.simulated.assumptions import assumed
+    from squeezefilm.study.simulated.recalled import assumed
 
     return (REMARK,) if design.alternatives else assumed(design)
 

@@ -174,7 +174,7 @@ def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
     console = plain_console()
     finger = f"Finger: {printable(study.tables.whose_finger)}."
     if isinstance(study, SimulatedAnswers):
-        from squeezefilm.study.simulated.assumptions import assumed
+        from squeezefilm.study.simulated.recalled import assumed
 
         show_analyses(study.analyses)
         console.print("SIMULATED: nobody answered. Assumed beyond the observer's file:")

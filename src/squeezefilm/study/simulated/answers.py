@@ -16,7 +16,6 @@ from squeezefilm.core.results import Result, stamp
 from squeezefilm.physics.perception.observer import NamedObserver
 from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.simulated.assumptions import assumed
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import (
     SimulatedStudy,
@@ -24,6 +23,7 @@ from squeezefilm.study.simulated.participants import (
     right_answers,
     simulate_matches,
 )
+from squeezefilm.study.simulated.recalled import assumed
 
 if TYPE_CHECKING:
     from squeezefilm.study.tasks.analyze import StudyAnalysis

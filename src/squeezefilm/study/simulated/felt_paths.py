@@ -39,8 +39,7 @@ from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 from squeezefilm.physics.texture_files.trajectories import motion_from
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
-from squeezefilm.study.record.exploration import Exploration, exploration, touches
-from squeezefilm.study.record.explored_trials import LONGEST_STEP
+from squeezefilm.study.record.exploration import LONGEST_STEP, Exploration, exploration, touches
 from squeezefilm.study.simulated.recalled import difference
 
 _SAMPLE: si.Second = 2e-3

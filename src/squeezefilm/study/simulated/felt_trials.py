@@ -9,8 +9,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.perception.observer import Observer
-from squeezefilm.study.record.exploration import touches
-from squeezefilm.study.record.explored_trials import LONGEST_STEP, ExploredTrials
+from squeezefilm.study.record.exploration import LONGEST_STEP, ExploredTrials, touches
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import SURFACES, Cell, origin_of, trial_table
 from squeezefilm.study.simulated.felt_paths import FeltPath, felt_on_path

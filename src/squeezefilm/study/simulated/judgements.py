@@ -30,8 +30,8 @@ from squeezefilm.study.design.tasks.task import Percepts
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.participants import CHUNK, SimulatedPeople
 from squeezefilm.study.simulated.recalled import difference
-from squeezefilm.study.simulated.simulated_people import CHUNK, SimulatedPeople
 
 _FAINTEST = 0.05
 """Strength (d′) below which magnitudes fall no further."""

@@ -29,7 +29,6 @@ from squeezefilm.study.design.trials import trials
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.recalled import recalled_distances
-from squeezefilm.study.simulated.simulated_people import CHUNK
 
 _MOST_PEOPLE = 1_000_000
 _STREAM = 29
@@ -305,3 +304,64 @@ def _doubt(away: si.FloatArray, sigma: si.DimensionlessArray) -> si.Dimensionles
     two = np.sort(away, axis=2)[:, :, :2]
     gap = np.where(np.isfinite(two[:, :, 1]), two[:, :, 1] - two[:, :, 0], 0.0)
     return np.asarray(np.exp(-gap / sigma))
+
+
+CHUNK = 60
+"""People whose noise is drawn together: a multiple of all rows for 5 stimuli. Orders of more people
+repeat those of the first so many."""
+_PEOPLE_STREAM = 31
+_OWN_SCALE, _OWN_MIDDLE = 0.5, 10.0
+"""People without a modulus: spread of ln of their scales, and the middle of them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimulatedPeople:
+    """Up to sixty people and all their noise; arrays begin with the person."""
+
+    finger: si.IntArray
+    spread: si.DimensionlessArray
+    lapse: si.DimensionlessArray
+    scale: si.DimensionlessArray
+    memory: si.DimensionlessArray
+    noise: si.FloatArray
+    blur: si.FloatArray
+    blind: si.DimensionlessArray
+    guess: si.DimensionlessArray
+    slowness: si.FloatArray
+
+    @classmethod
+    def drawn(
+        cls,
+        observer: Observer,
+        fingers: int,
+        asked: int,
+        seed: int,
+        chunk: int,
+        directions: tuple[int, ...],
+        surfaces: int = 2,
+    ) -> SimulatedPeople:
+        """Whoever is in a chunk; nobody depends on how many there are."""
+        random = _random(seed, chunk)
+        normal, among = random.standard_normal, random.random
+        clear = percept_deviation(observer.period_weber_fraction)
+        return cls(
+            finger=random.integers(0, fingers, CHUNK),
+            spread=clear * np.exp(observer.period_spread * normal(CHUNK)),
+            lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(CHUNK)),
+            scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(CHUNK)),
+            memory=normal(CHUNK),
+            noise=normal((asked, surfaces, CHUNK, *directions, observer.candidates)),
+            blur=normal((asked, surfaces, CHUNK, *directions)),
+            blind=among((asked, CHUNK)),
+            guess=among((asked, CHUNK)),
+            slowness=normal((asked, CHUNK)),
+        )
+
+
+def _random(seed: int, chunk: int) -> np.random.Generator:
+    return np.random.default_rng([seed, _PEOPLE_STREAM, chunk])
+
+
+def finger_of(person: int, fingers: int, seed: int) -> int:
+    """Which of so many finger classes a simulated person of these tasks has."""
+    return int(_random(seed, person // CHUNK).integers(0, fingers, CHUNK)[person % CHUNK])

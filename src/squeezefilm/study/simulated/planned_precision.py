@@ -31,12 +31,11 @@ from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import SIZES, on_one_display
-from squeezefilm.study.tasks.by_difference import on_grid_of_differences
+from squeezefilm.study.tasks.by_difference import MEASURE, on_grid_of_differences, unlike_persons
 from squeezefilm.study.tasks.findings import PersonEstimate
 from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.population import Population
 from squeezefilm.study.tasks.two_interval import PeopleOnGrid, on_grid, t_interval
-from squeezefilm.study.tasks.unlike_surfaces import MEASURE, unlike_persons
 
 PEOPLE = 400
 """Simulated people that studies are drawn from; each one's fit takes some 20 ms."""

@@ -4,7 +4,8 @@ A surface is perceived in each direction in which it was explored (`physics.perc
 how evident its clearest rhythm is, and with which period. Two percepts differ, in standard
 deviations of that difference, by the strengths in every direction and by the periods where both
 have one that is felt. A person who knows the stimuli by name recalls each as if it were felt again,
-with noise of its own, and names the one that differs least. None of that was measured or tuned.
+with noise of its own, and names the one that differs least. None of that was measured or tuned:
+`assumed` says what answers to a design rest on.
 """
 
 from __future__ import annotations
@@ -15,11 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.free_hand import SAYS
 from squeezefilm.physics.perception.perceived import Perceived, perceived_anew
 from squeezefilm.physics.perception.senses import Candidates
+from squeezefilm.study.design.study_design import StudyDesign
 
 if TYPE_CHECKING:
     from squeezefilm.study.simulated.chain_tables import ChainTables
+
 
 ASSUMED = (
     "Each stimulus is recalled as if it were felt again, and the answer is the one that differs "
@@ -81,3 +85,12 @@ def recalled_distances(
     own = (slice(None), slice(None), None, None)
     anything: NDArray[np.bool_] = np.any(now.felt, axis=-1, keepdims=True)[..., 0]
     return difference(shown, then, skill[own], spread[own]), anything
+
+
+def assumed(design: StudyDesign) -> tuple[str, ...]:
+    """What the simulated answers to a design assume beyond the observer's own file."""
+    task = design.described
+    found = task.assumed
+    if design.exploring == "free":
+        found = (SAYS, *(found if design.task != "same-different" else ()), *task.in_plane)
+    return (*found, *(ASSUMED if design.matched_with == "stimuli" else ()))

@@ -34,10 +34,13 @@ from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.tasks.asked_again import asked_again, require_rerun
 from squeezefilm.study.tasks.by_difference import (
+    MEASURE,
     difference_conditions,
     difference_numbers,
     false_alarms,
     on_grid_of_differences,
+    unlike_conditions,
+    unlike_persons,
 )
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
@@ -55,11 +58,6 @@ from squeezefilm.study.tasks.two_interval import (
     on_grid,
     two_interval_conditions,
     two_interval_numbers,
-)
-from squeezefilm.study.tasks.unlike_surfaces import (
-    MEASURE,
-    unlike_conditions,
-    unlike_persons,
 )
 
 StudyAnalysis = IdentificationAnalysis | TaskAnalysis

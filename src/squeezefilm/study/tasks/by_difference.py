@@ -4,7 +4,8 @@ The task's model says how often a difference of d′ = Δ/σ is told, Δ the dif
 and σ the deviation of one percept (`design.tasks`): the differencing model of same or different,
 the triangular one of odd one out. Each person's σ, criterion and lapse rate are integrated on a
 grid. The Weber fraction is that of two intervals: the difference with d′ = 0.954, told in 75 % of
-them.
+them. Between surfaces that have no amount to compare (shapes, maps, directions) there is no such
+fraction: each pair has its d′, and each person one over all pairs, from the same "same" trials.
 """
 
 from __future__ import annotations
@@ -22,10 +23,11 @@ from squeezefilm.study.identification.proportions import proportion_interval
 from squeezefilm.study.psychometric.discrimination import (
     corrected_proportion,
     differencing_sensitivity,
+    sensitivity,
 )
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.tasks.findings import ConditionFinding, through
+from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, through
 from squeezefilm.study.tasks.population import LAPSES, lapse_weights
 from squeezefilm.study.tasks.two_interval import (
     PeopleOnGrid,
@@ -199,3 +201,63 @@ def false_alarms(main: Answers, level: si.Dimensionless) -> dict[str, Estimate]:
     # NumPy's keep the NaN of one person.
     low, high = float(np.maximum(found.low, 0.0)), float(np.minimum(found.high, 1.0))
     return {"false alarms (same called different)": replace(found, low=low, high=high)}
+
+
+MEASURE = "sensitivity d′"
+_MODEL = "differencing"
+
+
+def unlike_conditions(
+    main: Answers, level: si.Dimensionless, seed: int
+) -> tuple[ConditionFinding, ...]:
+    """Each pair: how often it was called different, and its d′; the first is the same twice."""
+    alike, other = _pairs(main)
+    found = []
+    for one in (-1, *np.unique(other[~alike]).tolist()):
+        mine = alike if one < 0 else ~alike & (other == one)
+        if not mine.any():
+            continue
+        name = "the same" if one < 0 else main.surfaces[one].name
+        counts = [] if one < 0 else _counts(main, mine, alike)
+        d = mean_sensitivity(counts, _MODEL, differencing_sensitivity, level, seed)
+        found.append(condition_finding(main, name, math.nan, mine, main.choice == 1, level, d))
+    return tuple(found)
+
+
+def unlike_persons(
+    main: Answers, level: si.Dimensionless, seed: int
+) -> tuple[list[PersonEstimate], Estimate | None]:
+    """Each person's d′ over all pairs with the interval of their own trials, and the mean over
+    people with Student's."""
+    alike, _ = _pairs(main)
+    persons = []
+    for person in np.unique(main.participant):
+        mine = main.participant == person
+        for counts in _counts(main, mine & ~alike, mine & alike):
+            one = sensitivity(*counts, _MODEL, level=level, seed=seed)
+            value = Estimate(one.sensitivity.d_prime, *one.interval, level, "Jeffreys, over trials")
+            persons.append(PersonEstimate(main.people[person], value, int(mine.sum()), False))
+    if len(persons) < 2:
+        return persons, persons[0].estimate if persons else None
+    means = np.array([one.estimate.value for one in persons])
+    return persons, t_interval(means, level)
+
+
+def _pairs(main: Answers) -> tuple[NDArray[np.bool_], si.IntArray]:
+    """Whether both were the same surface, and the number of the one that is not the reference."""
+    names = [one.name for one in main.surfaces]
+    here = names.index(main.design.reference) if main.design.reference in names else -1
+    return main.first == main.second, np.where(main.first != here, main.first, main.second)
+
+
+def _counts(
+    main: Answers, signal: NDArray[np.bool_], noise: NDArray[np.bool_]
+) -> list[tuple[int, int, int, int]]:
+    """Hits, signals, false alarms and noises of each person who had both kinds of trial."""
+    found = []
+    for person in np.unique(main.participant[signal]):
+        mine = main.participant == person
+        hits, alarms = main.choice[signal & mine] == 1, main.choice[noise & mine] == 1
+        if hits.size and alarms.size:
+            found.append((int(hits.sum()), hits.size, int(alarms.sum()), alarms.size))
+    return found

@@ -14,8 +14,7 @@ from scipy import stats
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.psychometric.estimate import Estimate
-from squeezefilm.study.psychometric.interval_ends import holding
+from squeezefilm.study.psychometric.estimate import Estimate, holding
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, through
 from squeezefilm.study.tasks.two_interval import t_interval

@@ -8,7 +8,7 @@ from tests.unit.study.scripted import Script, gratings, magnitudes, session
 
 from squeezefilm.lab.studying.sittings import confusion_counts, described
 from squeezefilm.study.conduct.study_device import NoDevice
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.store import StudyStore
 
 

@@ -15,8 +15,12 @@ from squeezefilm.study.adaptive.rerun import Procedure, rerun_intervals, simulat
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 from squeezefilm.study.psychometric.bootstrap import Experiments, Simulated
 from squeezefilm.study.psychometric.fit import PsychometricFit, fit_psychometric
-from squeezefilm.study.psychometric.function import Axis, PsychometricFunction, on_axis
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.psychometric.function import (
+    Axis,
+    PsychometricFunction,
+    PsychometricPrior,
+    on_axis,
+)
 
 PRIOR = PsychometricPrior((1.0, 9.0), (0.5, 12.0))
 BAYES = AdaptiveDesign(

@@ -8,7 +8,7 @@ from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.store import Row, StudyStore
 
 from ..scripted import CONSENT, Script, gratings

@@ -14,7 +14,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.study.conduct.run import Presentation, Response, StudyRun
 from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.store import StudyStore
@@ -352,7 +352,7 @@ def test_a_clock_that_is_set_changes_no_answer_and_no_break(
         ticks[0] += 1.0
         return ticks[0]
 
-    for room in ("conduct.run", "conduct.trial_by_trial", "conduct.sessions", "record.store"):
+    for room in ("conduct.run", "conduct.terminal_run", "conduct.sessions", "record.store"):
         monkeypatch.setattr(f"squeezefilm.study.{room}.utc_now", now)
     design = dataclasses.replace(gratings(1), blocks=2, break_between_blocks=60.0)
     with StudyStore.create(tmp_path / "a.sqlite", design, 7) as store:

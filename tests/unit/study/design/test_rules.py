@@ -11,7 +11,7 @@ from squeezefilm.study.adaptive.bayesian import AdaptiveDesign
 from squeezefilm.study.adaptive.staircase import StaircaseRule
 from squeezefilm.study.design.rules import TrialRules
 from squeezefilm.study.design.special_trials import AdaptiveCondition
-from squeezefilm.study.psychometric.prior import PsychometricPrior
+from squeezefilm.study.psychometric.function import PsychometricPrior
 
 RULES = TrialRules(
     slowest=0.02, fastest=0.2, lightest=0.2, hardest=1.0, shortest_way=0.01, least_touch=0.5

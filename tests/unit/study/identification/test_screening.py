@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from squeezefilm.study.design.exclusion import ExclusionRule
+from squeezefilm.study.design.rules import ExclusionRule
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.identification.screening import judged_people
 from squeezefilm.study.psychometric.estimate import Estimate

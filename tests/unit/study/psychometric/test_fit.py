@@ -20,8 +20,8 @@ from squeezefilm.study.psychometric.bootstrap import (
 )
 from squeezefilm.study.psychometric.discrimination import just_noticeable_difference
 from squeezefilm.study.psychometric.fit import falling_probability, fit_psychometric
+from squeezefilm.study.psychometric.function import PsychometricPrior
 from squeezefilm.study.psychometric.posterior import Answered, PsychometricPosterior, coarse_maxima
-from squeezefilm.study.psychometric.prior import PsychometricPrior
 
 LEVELS = np.arange(1.0, 6.0)
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from squeezefilm.study.psychometric.interval_ends import holding
+from squeezefilm.study.psychometric.estimate import holding
 
 
 def test_an_interval_is_opened_only_where_the_estimate_lies_outside() -> None:

@@ -14,7 +14,7 @@ from squeezefilm import __version__
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import NoDevice
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.exports import bids as dataset
 from squeezefilm.study.record.exports import description, readme
 from squeezefilm.study.record.store import StudyStore

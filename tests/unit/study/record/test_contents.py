@@ -14,7 +14,7 @@ import pytest
 from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import NoDevice
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.contents import is_trace, require_identifier
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import FORMATS, export_study

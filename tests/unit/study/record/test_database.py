@@ -16,7 +16,7 @@ import pytest
 from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.study_device import NoDevice
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record import database as database_module
 from squeezefilm.study.record import store as store_module
 from squeezefilm.study.record.database import (

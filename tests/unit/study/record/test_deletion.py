@@ -12,7 +12,7 @@ import pytest
 from squeezefilm.core.errors import InputError, RecordError, SqueezefilmError
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session, end_session
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record import deletion
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import export_study

@@ -15,12 +15,12 @@ from tests.unit.study.design.test_matching import shapes
 from squeezefilm.core.formats.traces import Table, csv_text, table_from_csv
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.perception.observer import load_observer
-from squeezefilm.study.conduct.rehearsed_hand import path_of, rehearsed
+from squeezefilm.study.conduct.rehearsal import path_of, rehearsed
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
 from squeezefilm.study.record.answers import recorded_answers
-from squeezefilm.study.record.explored_trials import MEASURES, ExploredTrials, explored_table
+from squeezefilm.study.record.exploration import MEASURES, ExploredTrials, explored_table
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import COLUMNS, trial_table
 from squeezefilm.study.record.tables import csv_text as trials_csv

@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.core.errors import ContradictionError, InputError, RecordError
 from squeezefilm.study.conduct.study_device import NoDevice
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.merge import merge, open_or_begin
 from squeezefilm.study.record.schema import TABLES
 from squeezefilm.study.record.store import StudyStore

@@ -10,7 +10,7 @@ import pytest
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session, end_session
 from squeezefilm.study.conduct.study_device import NoDevice
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import SESSION_COLUMNS, session_table
 

@@ -92,7 +92,7 @@ def test_a_rehearsed_answer_is_felt_along_its_own_path(tmp_path: Path) -> None:
         assert found.force_is == "known"
         # The path as the study keeps it, every 10 ms, and the model's own give the same percept.
         from squeezefilm.physics.display import load_display
-        from squeezefilm.study.conduct.rehearsed_hand import path_of
+        from squeezefilm.study.conduct.rehearsal import path_of
 
         exact = path_of("free", load_display("biet2008-plate"), observer, observer.median_finger())
         again = felt_on_path(

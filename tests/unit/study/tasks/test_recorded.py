@@ -15,7 +15,7 @@ from squeezefilm.study.conduct.rehearsal import rehearse
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
 from squeezefilm.study.conduct.study_device import NoDevice
-from squeezefilm.study.conduct.trial_by_trial import conduct
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import SIMULATED, origin_of, trial_table
 from squeezefilm.study.simulated.participants import simulate_matches

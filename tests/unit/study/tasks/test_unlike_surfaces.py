@@ -12,7 +12,7 @@ from squeezefilm.study.psychometric.discrimination import differencing_rates
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.planned_precision import person_values
 from squeezefilm.study.tasks.analyze import analyze_answers
-from squeezefilm.study.tasks.unlike_surfaces import MEASURE, unlike_conditions
+from squeezefilm.study.tasks.by_difference import MEASURE, unlike_conditions
 
 TRUE = {"bars": 1.0, "checks": 3.0}
 CRITERION = 1.4
