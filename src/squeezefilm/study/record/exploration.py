@@ -1,4 +1,4 @@
-"""How a finger explored: way, speed, passes, coverage, force; from a trace of its path, or an answer's."""
+"""How a finger explored: way, speed, passes, coverage, force; of a trace, or of an answer."""
 
 from __future__ import annotations
 
