@@ -422,9 +422,14 @@ if TYPE_CHECKING:
     ) -> Fabrication:
         """What it takes to build a display and to measure it, with what is expected."""
     def plan_study(
-        design: NamedDesign | str | Path, participants: int = ..., seed: int = ...
+        design: NamedDesign | str | Path,
+        participants: int = ...,
+        seed: int = ...,
+        *,
+        observer: NamedObserver | str | Path | None = ...,
+        reach: bool = ...,
     ) -> StudyPlan:
-        """The plan of a design for a number of participants."""
+        """The plan of a design for a number of participants, and what is doubtful of the design."""
     def run_study(
         design: str | Path,
         store: str | Path,

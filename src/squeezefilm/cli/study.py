@@ -84,15 +84,20 @@ def plan(
         Path | None,
         written_to("Folder for each participant's order, as CSV (PsychoPy) and JSON (jsPsych)."),
     ] = None,
+    reach: Annotated[
+        bool,
+        typer.Option("--reach", help="Solve each display: does it reach what stimuli ask for?"),
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Show a design: what is presented, how often, in which orders, and how long it takes."""
+    """Show a design: what is presented, how often, in which orders, how long it takes, and what is
+    doubtful of it: its range, its displays, catch trials."""
     from squeezefilm.study.design.plan import plan_study
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.record.orders import write_orders
     from squeezefilm.study.report.terminal import show_plan
 
-    found = plan_study(load_design(design), participants, seed)
+    found = plan_study(load_design(design), participants, seed, reach=reach)
     written = [] if orders is None else write_orders(found, orders)
     answer(as_json, found, show_plan)
     if written and not as_json:

@@ -11,7 +11,9 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.hard_limits import PLANNED_TRIALS, require_within
 from squeezefilm.core.results import Result
+from squeezefilm.physics.perception.observer import NamedObserver, load_observer
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
+from squeezefilm.study.design.doubts import doubts_of
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import (
     Trial,
@@ -26,7 +28,7 @@ from squeezefilm.study.design.trials import (
 class StudyPlan(Result):
     """A design seen by who must run it. `schedules` has the trials of each participant;
     `balanced_participants` is how many give every order equally often (1 where each participant
-    has all of them)."""
+    has all of them); `doubts` says what to look at before anybody is asked."""
 
     design: StudyDesign
     participants: int
@@ -34,6 +36,7 @@ class StudyPlan(Result):
     schedules: tuple[tuple[Trial, ...], ...]
     duration: si.Second
     balanced_participants: int
+    doubts: tuple[str, ...]
     _shown: ClassVar[str] = "design.name participants duration balanced_participants seed"
 
     @property
@@ -90,6 +93,7 @@ class StudyPlan(Result):
                 [" / ".join(trial.stimuli) for trial in one if trial.phase == "main"][:10]
                 for one in self.schedules
             ],
+            "doubts": list(self.doubts),
             "assumed": list(self.assumed),
             "note": design.note,
             "design_sha256": design.sha256,
@@ -110,8 +114,18 @@ class StudyPlan(Result):
 
 
 @reads_text
-def plan_study(design: NamedDesign, participants: int = 1, seed: int = 0) -> StudyPlan:
-    """The plan of a design for a number of participants.
+def plan_study(
+    design: NamedDesign,
+    participants: int = 1,
+    seed: int = 0,
+    *,
+    observer: NamedObserver | None = None,
+    reach: bool = False,
+) -> StudyPlan:
+    """The plan of a design for a number of participants, and what is doubtful of the design.
+
+    `observer` says which threshold is predicted (the preset "fingertip" without); with `reach` each
+    display is solved, to say which stimuli ask for less friction than it makes.
 
     Raises `InputError` for less than 1 or more than 1000 participants, or a seed below 0, and
     `ConfigError` for a surface whose file cannot be read.
@@ -126,7 +140,13 @@ def plan_study(design: NamedDesign, participants: int = 1, seed: int = 0) -> Stu
     require_within(PLANNED_TRIALS, participants * design.most_trials, enough=enough)
     schedules = tuple(trials(design, number, seed) for number in range(participants))
     return StudyPlan(
-        design, participants, seed, schedules, expected_duration(design), _balanced(design)
+        design,
+        participants,
+        seed,
+        schedules,
+        expected_duration(design),
+        _balanced(design),
+        doubts_of(design, observer or load_observer(), reach),
     )
 
 

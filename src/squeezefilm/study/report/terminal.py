@@ -72,6 +72,10 @@ def show_plan(plan: StudyPlan) -> None:
     for number, schedule in enumerate(plan.schedules[:4]):
         names = [" / ".join(t.stimuli) or t.adaptive for t in schedule if t.phase == "main"][:8]
         console.print(f"{number:3d}  {schedule[0].display}: {', '.join(names)}, …")
+    if plan.doubts:
+        heading(console, "To be looked at before anybody is asked")
+        for said in plan.doubts:
+            console.print(said, highlight=False)
     if plan.assumed:
         heading(console, "Assumed")
         console.print(", ".join(plan.assumed))

@@ -69,7 +69,7 @@ def plan(design: StudyDesign = DESIGN) -> StudyPlan:
         (trial((), adaptive="stairs"), trial(("fine", "odd"), display="ring")),
         *(((trial(),),) * 3),
     )
-    return StudyPlan(design, 5, 3, schedules, 5400.0, 4)
+    return StudyPlan(design, 5, 3, schedules, 5400.0, 4, ("there are no catch trials",))
 
 
 def test_a_plan_says_what_is_presented_how_often_and_for_how_long() -> None:
@@ -96,6 +96,8 @@ def test_a_plan_says_what_is_presented_how_often_and_for_how_long() -> None:
         "1 plate: stairs, fine / odd, …",
         "2 plate: fine, …",
         "3 plate: fine, …",
+        "To be looked at before anybody is asked",
+        "there are no catch trials",
         "Assumed",
         "repetitions, blocks",
         "Widths are assumed.",
@@ -110,7 +112,7 @@ def test_a_plan_of_two_surfaces_has_no_right_answer_and_nothing_to_compare_with(
     assert "odd 10 mm 5 mm groove width sine grating 0.7 to 1" in lines
     assert "Compared with" not in lines
     assert "Assumed" not in lines
-    assert lines[-1] == "3 plate: fine, …"
+    assert lines[-1] == "there are no catch trials"
 
 
 def test_the_names_of_a_plan_are_not_broken_on_a_narrow_terminal() -> None:

@@ -1,0 +1,46 @@
+"""What a plan calls doubtful: ranges beside the threshold, catch trials, displays out of reach."""
+
+from __future__ import annotations
+
+import dataclasses
+from types import SimpleNamespace
+
+import pytest
+
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.study.design.doubts import doubts_of, predicted_fraction
+from squeezefilm.study.design.plan import plan_study
+from squeezefilm.study.design.study_design import load_design
+
+OBSERVER = load_observer()
+ODD = load_design("period-odd-one-out")
+
+
+def test_a_range_beside_the_predicted_threshold_is_said() -> None:
+    assert predicted_fraction(ODD, OBSERVER) == OBSERVER.period_weber_fraction == 0.09
+    assert predicted_fraction(dataclasses.replace(ODD, judged="ridge_share"), OBSERVER) is None
+    assert doubts_of(ODD, OBSERVER) == ()
+    coarse = dataclasses.replace(ODD, stimuli=(ODD.stimuli[0], *ODD.stimuli[2:]))
+    (said,) = doubts_of(coarse, OBSERVER)
+    assert said.startswith("the least difference from the reference, 25 %, is above")
+    near = dataclasses.replace(ODD.stimuli[1], name="4.1 mm", spatial_period=4.1e-3)
+    (said,) = doubts_of(dataclasses.replace(ODD, stimuli=(ODD.stimuli[0], near)), OBSERVER)
+    assert "the greatest difference from the reference, 2.5 %, is below" in said
+
+
+def test_a_series_and_a_task_without_differences_are_judged_as_they_are() -> None:
+    assert doubts_of(load_design("period-jnd"), OBSERVER) == ()
+    (said,) = doubts_of(load_design("coarseness-magnitude"), OBSERVER)
+    assert "no catch trials" in said
+
+
+def test_a_display_that_does_not_reach_a_stimulus_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = SimpleNamespace(relative_friction=0.72)
+    monkeypatch.setattr("squeezefilm.physics.chain.prediction.predict", lambda _: made)
+    plan = plan_study("friction-jnd", reach=True)
+    (reached,) = [one for one in plan.doubts if "reaches" in one]
+    assert reached.startswith("'biet2008-plate' reaches a relative friction of 0.72")
+    assert "'42 %' for 0.58" in reached
+    assert "'26 %'" not in reached
+    assert plan.summary()["doubts"] == list(plan.doubts)
+    assert not [one for one in plan_study("friction-jnd").doubts if "reaches" in one]
