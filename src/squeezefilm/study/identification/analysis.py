@@ -133,7 +133,7 @@ class IdentificationAnalysis(Result):
     @property
     def interval(self) -> Interval:
         """The interval to quote: over participants, or Wilson's where there is one."""
-        return self.intervals[-1] if self.participants > 1 else self.intervals[0]
+        return _quoted(self.intervals, self.participants)
 
     @property
     def main_number(self) -> Estimate:
@@ -242,23 +242,37 @@ def analyze_identification(asked: IdentificationRequest) -> IdentificationAnalys
         InputError: fewer than two labels, arrays that do not fit, or no trial. What the data are
             too few for is None in the result, with the reason in `notes`.
     """
-    tell = asked.progress or (lambda _: None)
+    return analysis_of(asked)
+
+
+def proportion_correct(asked: IdentificationRequest) -> Estimate:
+    """The share of right answers (1) with the interval that an analysis quotes, and nothing else.
+    Raises as `analyze_identification` does."""
+    counts, matrix = _counted(asked)
+    found = _quoted(_intervals(counts, matrix, asked, []), counts.shape[0])
+    return Estimate(matrix.proportion_correct, found.low, found.high, found.level, found.method)
+
+
+def _counted(asked: IdentificationRequest) -> tuple[si.IntArray, ConfusionMatrix]:
+    """Every participant's counts, and their sum."""
     names = tuple(asked.labels)
     k = len(names)
     if k < 2:
         raise InputError(f"{k} labels cannot be confused; at least 2 are wanted")
-    tell("counting")
     _, counts = participant_counts(asked.participant, asked.stimulus, asked.choice, k, k)
-    return _analysis(asked, counts, ConfusionMatrix(counts.sum(axis=0), names, names), tell)
+    return counts, ConfusionMatrix(counts.sum(axis=0), names, names)
 
 
-def _analysis(
-    asked: IdentificationRequest,
-    counts: si.IntArray,
-    matrix: ConfusionMatrix,
-    tell: Callable[[str], None],
-) -> IdentificationAnalysis:
-    """What follows from every participant's counts, their sum and the trials themselves."""
+def _quoted(intervals: tuple[Interval, ...], people: int) -> Interval:
+    """The interval to quote: over participants, or Wilson's where there is one."""
+    return intervals[-1] if people > 1 else intervals[0]
+
+
+def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
+    """What `analyze_identification` finds of a request. Raises as it does."""
+    tell = asked.progress or (lambda _: None)
+    tell("counting")
+    counts, matrix = _counted(asked)
     names, level, resamples, seed = matrix.stimuli, asked.level, asked.resamples, asked.seed
     notes: list[str] = []
     tell("intervals and tests")

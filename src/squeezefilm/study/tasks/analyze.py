@@ -6,19 +6,21 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
-from scipy import stats
-from scipy.stats import mstats
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.from_text import reads_text
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
-from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
+from squeezefilm.study.identification.analysis import (
+    IdentificationAnalysis,
+    IdentificationRequest,
+    analysis_of,
+    proportion_correct,
+)
 from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
 from squeezefilm.study.identification.course import course_of
 from squeezefilm.study.identification.response_times import (
@@ -33,38 +35,14 @@ from squeezefilm.study.record.answers import Answers, recorded_answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.tasks.asked_again import asked_again, require_rerun
-from squeezefilm.study.tasks.by_difference import (
-    MEASURE,
-    difference_conditions,
-    difference_numbers,
-    false_alarms,
-    on_grid_of_differences,
-    unlike_conditions,
-    unlike_persons,
-)
 from squeezefilm.study.tasks.findings import (
-    ConditionFinding,
-    PersonEstimate,
-    PersonFunction,
     TaskAnalysis,
-    of_population,
 )
-from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions, require_magnitudes
+from squeezefilm.study.tasks.measures import measured
 from squeezefilm.study.tasks.methods import methods_text
-from squeezefilm.study.tasks.population import Population
-from squeezefilm.study.tasks.two_interval import (
-    PeopleOnGrid,
-    adaptive_conditions,
-    on_grid,
-    two_interval_conditions,
-    two_interval_numbers,
-)
 
 StudyAnalysis = IdentificationAnalysis | TaskAnalysis
 Tell = Callable[[str], None]
-Numbers = dict[str, Estimate]
-_Analysis = TypeVar("_Analysis", IdentificationAnalysis, TaskAnalysis)
-_POPULATION = "posterior, mixed model"
 
 
 @reads_text
@@ -140,42 +118,68 @@ def analyze_answers(
         main = answers.main(number)
         if not main.trials:
             continue
-        how: dict[str, Any] = {"display": number, "name": f"{name}, {display}", "level": level}
-        how |= {"seed": seed, "tell": tell}
-        if answers.design.task == "match-to-sample":
-            match = partial(_matches, **how, mixed=mixed, resamples=resamples)
-            found[display] = _screened(answers, number, match)
-            continue
-        one = _screened(answers, number, partial(_judgements, **how, assumed=assumed))
+        how = _How(f"{name}, {display}", number, assumed, mixed, resamples, level, seed, tell)
+        one = _screened(answers, how)
         if reruns:
+            # Of two intervals alone, see `require_rerun`.
+            assert isinstance(one, TaskAnalysis)
             persons = asked_again(main, one.persons, reruns, level, seed, tell)
             one = dataclasses.replace(one, persons=persons)
         found[display] = one
     return found
 
 
-def _screened(
-    answers: Answers, display: int, analysis: Callable[[Answers], _Analysis]
-) -> _Analysis:
+@dataclass(frozen=True, slots=True, eq=False)
+class _How:
+    """How a display is analysed, see `analyze_answers`; `display` is its number."""
+
+    name: str
+    display: int
+    assumed: tuple[str, ...]
+    mixed: bool
+    resamples: int
+    level: float
+    seed: int
+    tell: Tell
+
+
+def _screened(answers: Answers, how: _How) -> StudyAnalysis:
     """The analysis of everybody, or of those who do the task, as the design's rule says; with the
     main number of both."""
-    everybody = analysis(answers)
-    people, said = judged_people(answers, display)
+    analysis = _matches if answers.design.task == "match-to-sample" else _judgements
+    people, said = judged_people(answers, how.display)
     rule = rule_of(answers.design)
-    results: dict[str, Estimate | None] = {"everybody": everybody.main_number}
     out = [one.person for one in people if one.reasons]
-    chosen = everybody
-    if out and len(out) < len(people):
+    results: dict[str, Estimate | None] = {}
+    robust: Estimate | None = None
+    if not out or len(out) == len(people):
+        chosen = analysis(answers, how)
+        results["everybody"] = chosen.main_number
+    else:
         numbers = [answers.people.index(one) for one in out]
-        without = analysis(answers.take(~np.isin(answers.participant, numbers)))
-        results["without those named"] = without.main_number
-        chosen = without if rule.action == "exclude" else everybody
-    if isinstance(everybody, TaskAnalysis):
-        results["robust, everybody"] = everybody.robust
+        rest = answers.take(~np.isin(answers.participant, numbers))
+        excludes = rule.action == "exclude"
+        chosen = analysis(rest if excludes else answers, how)
+        other, robust = _main_numbers(answers if excludes else rest, how)
+        pair = (other, chosen.main_number) if excludes else (chosen.main_number, other)
+        results |= dict(zip(("everybody", "without those named"), pair, strict=True))
+    if isinstance(chosen, TaskAnalysis):
+        is_everybody = len(chosen.people) == len(people)
+        results["robust, everybody"] = chosen.robust if is_everybody else robust
     known = {name: one for name, one in results.items() if one is not None}
     screening = Screening(rule, people, known, said)
     methods = chosen.methods + screening.left_out_sentence
     return dataclasses.replace(chosen, screening=screening, methods=methods)
+
+
+def _main_numbers(answers: Answers, how: _How) -> tuple[Estimate | None, Estimate | None]:
+    """The main number that a display's analysis would have, and the robust one."""
+    main = answers.main(how.display)
+    if answers.design.task != "match-to-sample":
+        found = measured(main, how.level, how.seed, how.tell)
+        return found.pooled, found.robust
+    asked = _identified(main, how)
+    return proportion_correct(asked), None
 
 
 def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:
@@ -191,36 +195,32 @@ def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:
     return stimuli, right
 
 
-def _matches(
-    answers: Answers,
-    display: int,
-    name: str,
-    mixed: bool,
-    resamples: int,
-    level: float,
-    seed: int,
-    tell: Tell,
-) -> IdentificationAnalysis:
-    design, main = answers.design, answers.main(display)
+def _identified(main: Answers, how: _How) -> IdentificationRequest:
+    """The trials of a display as identifications take them."""
+    design = main.design
     stimuli, right = stimuli_and_answers(design)
-    kind = np.array([stimuli.index(main.surfaces[k].name) for k in main.first])
     order = np.array([right.index(one) for one in design.answers])
     times = main.response_time
-    found = analyze_identification(
+    return IdentificationRequest(
         np.array(main.people)[main.participant],
-        kind,
+        np.array([stimuli.index(main.surfaces[k].name) for k in main.first]),
         order[main.choice],
         right,
-        name=name,
-        origin=answers.origin,
+        name=how.name,
+        origin=main.origin,
         response_time=times if np.isfinite(times).any() else None,
         exploration=main.exploration,
-        mixed=mixed,
-        level=level,
-        resamples=resamples,
-        seed=seed,
-        progress=tell,
+        mixed=how.mixed,
+        level=how.level,
+        resamples=how.resamples,
+        seed=how.seed,
+        progress=how.tell,
     )
+
+
+def _matches(answers: Answers, how: _How) -> IdentificationAnalysis:
+    design, display = answers.design, how.display
+    found = analysis_of(_identified(answers.main(display), how))
     if not design.on_a_scale:
         found = dataclasses.replace(
             found,
@@ -235,33 +235,10 @@ def _matches(
     return dataclasses.replace(found, course=course, methods=methods_text(answers, display))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Found:
-    """What a task's own analysis gives."""
-
-    measure: str
-    persons: list[PersonEstimate]
-    pooled: Estimate | None
-    spread: Estimate | None
-    conditions: tuple[ConditionFinding, ...]
-    more: dict[str, Estimate]
-    functions: dict[str, PersonFunction]
-    notes: list[str]
-    robust: Estimate | None = None
-
-
-def _judgements(
-    answers: Answers,
-    display: int,
-    name: str,
-    assumed: tuple[str, ...],
-    level: float,
-    seed: int,
-    tell: Tell,
-) -> TaskAnalysis:
-    design, main = answers.design, answers.main(display)
-    own = {"two-interval": _two_interval, "magnitude-estimation": _magnitudes}
-    found = own.get(design.task, _by_difference)(main, level, seed, tell)
+def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
+    design, display, level, seed = answers.design, how.display, how.level, how.seed
+    main, tell = answers.main(display), how.tell
+    found = measured(main, how.level, how.seed, how.tell)
     tell("response times and drift")
     condition, names = _conditions(main)
     course = course_of(answers, display)
@@ -277,7 +254,7 @@ def _judgements(
         )
     here = design.judged_value(design.stimulus(design.reference)) if design.reference else math.nan
     return TaskAnalysis(
-        name=name,
+        name=how.name,
         origin=answers.origin,
         task=design.task,
         judged=design.judged,
@@ -296,103 +273,13 @@ def _judgements(
         ex_gaussian=ex_gaussian,
         course=course,
         exploration=explored,
-        assumed=assumed,
+        assumed=how.assumed,
         notes=tuple(notes),
         methods=methods_text(answers, display),
         screening=None,
-        robust=found.robust or _trimmed(found.persons, level),
+        robust=found.robust,
         seed=seed,
     )
-
-
-def _trimmed(persons: list[PersonEstimate], level: float) -> Estimate | None:
-    """The mean of people's values without the fifth at either end, with Yuen's interval (1974,
-    10.1093/biomet/61.1.165); None of fewer than five people."""
-    values = np.sort([one.estimate.value for one in persons])
-    cut = values.size // 5
-    if not cut:
-        return None
-    kept = values.size - 2 * cut
-    error = float(mstats.winsorize(values, (cut / values.size,) * 2).std(ddof=1))
-    reach = float(stats.t.isf((1 - level) / 2, kept - 1)) * error * math.sqrt(values.size - 1)
-    reach /= math.sqrt(kept * (kept - 1.0))
-    mean = float(values[cut : values.size - cut].mean())
-    return Estimate(mean, mean - reach, mean + reach, level, "trimmed by a fifth at either end")
-
-
-def _of_fractions(
-    people: PeopleOnGrid,
-    level: float,
-    conditions: tuple[ConditionFinding, ...],
-    more: Numbers,
-    criterion: bool = False,
-) -> _Found:
-    notes: list[str] = []
-    persons = people.estimates(level)
-    pooled, spread, robust = persons[0].estimate, None, None
-    if len(persons) > 1:
-        population = Population(people.likelihoods())
-        pooled, spread = of_population(population.estimate(level), _POPULATION)
-        low, middle, high = (math.exp(one) for one in population.robust(level))
-        robust = Estimate(middle, low, high, level, "posterior, some do not do the task")
-        # Answers at random go into a criterion where there is one.
-        notes += [note for note in [population.lapse_note] if note and not criterion]
-    else:
-        notes.append(
-            "one participant: the population's interval is theirs, and says nothing of others"
-        )
-    functions = people.functions(level)
-    return _Found(
-        "Weber fraction", persons, pooled, spread, conditions, more, functions, notes, robust
-    )
-
-
-def _two_interval(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
-    people = on_grid(main, tell)
-    tell("mixed model over people")
-    adaptive = bool((main.series >= 0).any())
-    conditions = (
-        adaptive_conditions(main, level) if adaptive else two_interval_conditions(main, level, seed)
-    )
-    return _of_fractions(people, level, conditions, two_interval_numbers(main, level))
-
-
-def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
-    if not main.design.on_a_scale:
-        return _unlike(main, level, seed, tell)
-    tell(f"{main.design.task} model of each person")
-    people = on_grid_of_differences(main)
-    conditions = difference_conditions(main, level, seed)
-    more = difference_numbers(main, people.bias, level)
-    return _of_fractions(people, level, conditions, more, criterion=bool(more))
-
-
-def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> _Found:
-    tell("sensitivity of each person")
-    persons, pooled = unlike_persons(main, level, seed)
-    conditions = unlike_conditions(main, level, seed)
-    notes = [
-        f"the surfaces have no {main.design.judged} to be told apart by, so that there is no Weber "
-        "fraction: d′ is of whole surfaces"
-    ]
-    more = false_alarms(main, level)
-    return _Found(MEASURE, persons, pooled, None, conditions, more, {}, notes)
-
-
-def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> _Found:
-    require_magnitudes(main)
-    tell("power law of each person")
-    persons, pooled, spread = exponents(main, level)
-    conditions, notes = magnitude_conditions(main, level)
-    lacking = np.unique(main.participant).size - len(persons)
-    if lacking:
-        notes.append(
-            f"{lacking} {'person has' if lacking == 1 else 'people have'} no line of their own "
-            "(fewer than 3 answers, or to one stimulus only) and no share in the exponent"
-        )
-    if len(persons) == 1:
-        notes.append("one line: the interval is of it, and not of a population")
-    return _Found("exponent", persons, pooled, spread, conditions, {}, {}, notes)
 
 
 def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:

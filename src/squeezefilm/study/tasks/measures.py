@@ -1,0 +1,158 @@
+"""What each task measures of people: of each, of the population, and by condition."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import stats
+from scipy.stats import mstats
+
+from squeezefilm.study.psychometric.estimate import Estimate
+from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.tasks.by_difference import (
+    MEASURE,
+    difference_conditions,
+    difference_numbers,
+    false_alarms,
+    on_grid_of_differences,
+    unlike_conditions,
+    unlike_persons,
+)
+from squeezefilm.study.tasks.findings import (
+    ConditionFinding,
+    PersonEstimate,
+    PersonFunction,
+    of_population,
+)
+from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions, require_magnitudes
+from squeezefilm.study.tasks.population import Population
+from squeezefilm.study.tasks.two_interval import (
+    PeopleOnGrid,
+    adaptive_conditions,
+    on_grid,
+    two_interval_conditions,
+    two_interval_numbers,
+)
+
+Tell = Callable[[str], None]
+Numbers = dict[str, Estimate]
+_POPULATION = "posterior, mixed model"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured:
+    """What a task's own analysis gives."""
+
+    measure: str
+    persons: list[PersonEstimate]
+    pooled: Estimate | None
+    spread: Estimate | None
+    conditions: tuple[ConditionFinding, ...]
+    more: dict[str, Estimate]
+    functions: dict[str, PersonFunction]
+    notes: list[str]
+    robust: Estimate | None = None
+
+
+def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
+    """What the analysis of the answers' task gives, with a robust number where there is one.
+
+    `level` is of the intervals (1), `seed` of resampling; `tell` hears each step. Raises
+    `InputError` where magnitudes are of surfaces without an amount.
+    """
+    own = {"two-interval": _two_interval, "magnitude-estimation": _magnitudes}
+    found = own.get(main.design.task, _by_difference)(main, level, seed, tell)
+    return replace(found, robust=found.robust or _trimmed(found.persons, level))
+
+
+def _trimmed(persons: list[PersonEstimate], level: float) -> Estimate | None:
+    """The mean of people's values without the fifth at either end, with Yuen's interval (1974,
+    10.1093/biomet/61.1.165); None of fewer than five people."""
+    values = np.sort([one.estimate.value for one in persons])
+    cut = values.size // 5
+    if not cut:
+        return None
+    kept = values.size - 2 * cut
+    error = float(mstats.winsorize(values, (cut / values.size,) * 2).std(ddof=1))
+    reach = float(stats.t.isf((1 - level) / 2, kept - 1)) * error * math.sqrt(values.size - 1)
+    reach /= math.sqrt(kept * (kept - 1.0))
+    mean = float(values[cut : values.size - cut].mean())
+    return Estimate(mean, mean - reach, mean + reach, level, "trimmed by a fifth at either end")
+
+
+def _of_fractions(
+    people: PeopleOnGrid,
+    level: float,
+    conditions: tuple[ConditionFinding, ...],
+    more: Numbers,
+    criterion: bool = False,
+) -> Measured:
+    notes: list[str] = []
+    persons = people.estimates(level)
+    pooled, spread, robust = persons[0].estimate, None, None
+    if len(persons) > 1:
+        population = Population(people.likelihoods())
+        pooled, spread = of_population(population.estimate(level), _POPULATION)
+        low, middle, high = (math.exp(one) for one in population.robust(level))
+        robust = Estimate(middle, low, high, level, "posterior, some do not do the task")
+        # Answers at random go into a criterion where there is one.
+        notes += [note for note in [population.lapse_note] if note and not criterion]
+    else:
+        notes.append(
+            "one participant: the population's interval is theirs, and says nothing of others"
+        )
+    functions = people.functions(level)
+    return Measured(
+        "Weber fraction", persons, pooled, spread, conditions, more, functions, notes, robust
+    )
+
+
+def _two_interval(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
+    people = on_grid(main, tell)
+    tell("mixed model over people")
+    adaptive = bool((main.series >= 0).any())
+    conditions = (
+        adaptive_conditions(main, level) if adaptive else two_interval_conditions(main, level, seed)
+    )
+    return _of_fractions(people, level, conditions, two_interval_numbers(main, level))
+
+
+def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
+    if not main.design.on_a_scale:
+        return _unlike(main, level, seed, tell)
+    tell(f"{main.design.task} model of each person")
+    people = on_grid_of_differences(main)
+    conditions = difference_conditions(main, level, seed)
+    more = difference_numbers(main, people.bias, level)
+    return _of_fractions(people, level, conditions, more, criterion=bool(more))
+
+
+def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
+    tell("sensitivity of each person")
+    persons, pooled = unlike_persons(main, level, seed)
+    conditions = unlike_conditions(main, level, seed)
+    notes = [
+        f"the surfaces have no {main.design.judged} to be told apart by, so that there is no Weber "
+        "fraction: d′ is of whole surfaces"
+    ]
+    more = false_alarms(main, level)
+    return Measured(MEASURE, persons, pooled, None, conditions, more, {}, notes)
+
+
+def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> Measured:
+    require_magnitudes(main)
+    tell("power law of each person")
+    persons, pooled, spread = exponents(main, level)
+    conditions, notes = magnitude_conditions(main, level)
+    lacking = np.unique(main.participant).size - len(persons)
+    if lacking:
+        notes.append(
+            f"{lacking} {'person has' if lacking == 1 else 'people have'} no line of their own "
+            "(fewer than 3 answers, or to one stimulus only) and no share in the exponent"
+        )
+    if len(persons) == 1:
+        notes.append("one line: the interval is of it, and not of a population")
+    return Measured("exponent", persons, pooled, spread, conditions, {}, {}, notes)
