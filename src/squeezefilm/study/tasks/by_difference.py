@@ -52,7 +52,7 @@ def model_of(main: Answers) -> DifferenceModel:
 def told(main: Answers) -> NDArray[np.bool_]:
     """Of each trial whether its answer is what the model counts: "different", or what is right."""
     counts = model_of(main).counts
-    return main.choice == (main.right if counts < 0 else counts)
+    return np.asarray(main.choice == (main.right if counts < 0 else counts))
 
 
 def apart(main: Answers) -> si.FloatArray:
@@ -88,8 +88,8 @@ def on_grid_of_differences(main: Answers) -> PeopleOnGrid:
         whole = np.exp(total - greatest)
         people.names.append(main.people[person])
         people.likelihood.append(prior @ whole.mean(axis=1).T)
-        hits, trials = float(np.count_nonzero(hit[mine])), float(mine.sum())
-        people.otherwise.append(_otherwise(model, hits, trials, greatest))
+        trials = float(mine.sum())
+        people.otherwise.append(_otherwise(model, float(hit[mine].sum()), trials, greatest))
         people.bias.append(float(whole.sum(axis=(0, 2)) @ model.criteria / whole.sum()))
         people.lapse.append(float(whole.sum(axis=(0, 1)) @ LAPSES / whole.sum()))
         people.trials.append(int(trials))
