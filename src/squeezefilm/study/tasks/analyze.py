@@ -38,6 +38,7 @@ from squeezefilm.study.tasks.asked_again import asked_again, require_rerun
 from squeezefilm.study.tasks.findings import (
     TaskAnalysis,
 )
+from squeezefilm.study.tasks.magnitude import require_magnitudes
 from squeezefilm.study.tasks.measures import measured
 from squeezefilm.study.tasks.methods import methods_text
 
@@ -147,6 +148,8 @@ def _screened(answers: Answers, how: _How) -> StudyAnalysis:
     """The analysis of everybody, or of those who do the task, as the design's rule says; with the
     main number of both."""
     analysis = _matches if answers.design.task == "match-to-sample" else _judgements
+    if answers.design.task == "magnitude-estimation":
+        require_magnitudes(answers.main(how.display))
     people, said = judged_people(answers, how.display)
     rule = rule_of(answers.design)
     out = [one.person for one in people if one.reasons]

@@ -27,7 +27,7 @@ from squeezefilm.study.tasks.findings import (
     PersonFunction,
     of_population,
 )
-from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions, require_magnitudes
+from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions
 from squeezefilm.study.tasks.population import Population
 from squeezefilm.study.tasks.two_interval import (
     PeopleOnGrid,
@@ -60,8 +60,7 @@ class Measured:
 def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
     """What the analysis of the answers' task gives, with a robust number where there is one.
 
-    `level` is of the intervals (1), `seed` of resampling; `tell` hears each step. Raises
-    `InputError` where magnitudes are of surfaces without an amount.
+    `level` is of the intervals (1), `seed` of resampling; `tell` hears each step.
     """
     own = {"two-interval": _two_interval, "magnitude-estimation": _magnitudes}
     found = own.get(main.design.task, _by_difference)(main, level, seed, tell)
@@ -143,7 +142,6 @@ def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
 
 
 def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> Measured:
-    require_magnitudes(main)
     tell("power law of each person")
     persons, pooled, spread = exponents(main, level)
     conditions, notes = magnitude_conditions(main, level)
