@@ -34,8 +34,11 @@ def calibrate(
     that they make of it. A few minutes for eight values; stopped, it goes on where it was."""
     from squeezefilm.core.kit.folder import require_folder
     from squeezefilm.measure.calibration.folder import calibrate_display
-    from squeezefilm.measure.report.calibrated import show_calibration
-    from squeezefilm.measure.report.calibration_page import DISPLAY_FILE, write_calibration
+    from squeezefilm.measure.report.calibration_page import (
+        DISPLAY_FILE,
+        show_calibration,
+        write_calibration,
+    )
 
     folder_too = out.suffix != ".toml"
     if folder_too:
@@ -70,7 +73,7 @@ def predict_unseen(
     from squeezefilm.core.results import to_json
     from squeezefilm.measure.calibration.blind import predict_measurement
     from squeezefilm.measure.calibration.solved_answers import question
-    from squeezefilm.measure.report.calibrated import prediction_lines
+    from squeezefilm.measure.report.calibration_page import prediction_lines
 
     for one in ask:
         question(one)  # refused before the display is looked at

@@ -60,8 +60,7 @@ def check(
         check_recording,
         write_description,
     )
-    from squeezefilm.measure.report.page import write_checks
-    from squeezefilm.measure.report.terminal import show_folder
+    from squeezefilm.measure.report.page import show_folder, write_checks
 
     if file.is_dir():
         if described is not None or write:
@@ -94,8 +93,7 @@ def fit(
     adequate. Exit code 1 if it is not."""
     from squeezefilm.measure.fits.by_kind import response_fit
     from squeezefilm.measure.recordings.read import check_recording
-    from squeezefilm.measure.report.page import fit_summary, write_fit
-    from squeezefilm.measure.report.terminal import show_fit
+    from squeezefilm.measure.report.page import fit_summary, show_fit, write_fit
 
     with working(as_json) as step:
         found = check_recording(file, described)

@@ -51,7 +51,7 @@ def test_a_calibration_that_does_not_fit_ends_with_1(
 ) -> None:
     found, alone = Found(fits), tmp_path / "c.toml"
     asked = stands_in("measure.calibration.folder:calibrate_display", found)
-    shown = stands_in("measure.report.calibrated:show_calibration", None, tells=False)
+    shown = stands_in("measure.report.calibration_page:show_calibration", None, tells=False)
     drawn = stands_in("measure.report.calibration_page:write_calibration", None, tells=False)
     given = ("measure", "calibrate", PLATE, str(tmp_path), "--out", str(alone))
     done = run(*given, "--seed", "7")
@@ -69,7 +69,7 @@ def test_a_calibration_is_written_into_a_folder_with_a_page(
 ) -> None:
     found, out = Found(fits=True), tmp_path / "calibrated"
     asked = stands_in("measure.calibration.folder:calibrate_display", found)
-    stands_in("measure.report.calibrated:show_calibration", None, tells=False)
+    stands_in("measure.report.calibration_page:show_calibration", None, tells=False)
     drawn = stands_in(
         "measure.report.calibration_page:write_calibration", out / "calibration.html", tells=False
     )

@@ -162,7 +162,8 @@ def predicted(
     seed: int = 1,
     progress: SayProgress | None = None,
 ) -> BlindPrediction:
-    """What will be measured, as `predict_blind` writes it, not yet sealed: its SHA-256 is empty.
+    """Predict what will be measured, as `predict_blind` writes it, not yet sealed: its SHA-256 is
+    empty.
 
     Raises `InputError` where nothing is asked or an answer is not known.
     """

@@ -57,8 +57,8 @@ _TAILS = ((1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2)
 
 
 class Effort(NamedTuple):
-    """How much is computed: plates over the priors and where the data point (None: by the number of
-    parameters), draws of finger and laws, joint draws for friction's interval."""
+    """Amount that is computed: plates over the priors and where the data point (None: by the number
+    of parameters), draws of finger and laws, joint draws for friction's interval."""
 
     plates: tuple[int, int] | None = None
     finger_draws: Annotated[int, si.AtLeast(32)] = DRAWS
@@ -77,7 +77,7 @@ def calibrate(
     progress: SayProgress | None = None,
     effort: Effort = USUAL_EFFORT,
 ) -> Calibration:
-    """What observations say of a display: values with spreads, laws, friction's interval.
+    """Learn from observations of a display: values with spreads, laws, friction's interval.
 
     `observations` may be of the plate or disc (`solved_answers.PLATE_ANSWERS`, and
     `mode_frequency` of a mode by its nodal lines) and of µ′/µ at a vibration amplitude, normal

@@ -109,12 +109,12 @@ class Calibration:
 
     @property
     def fits(self) -> bool:
-        """Whether the model explains all that was observed."""
+        """True where the model explains all that was observed."""
         return all(one.judgement == "fits" for one in self.misfits)
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What came out, doubts first."""
+        """Sentences on what came out, doubts first."""
         said = [*self.doubts, *(one.sentence for one in self.misfits)]
         if self.after is not None:
             low, high = self.after.interval

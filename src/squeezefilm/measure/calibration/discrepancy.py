@@ -120,7 +120,7 @@ def solver_covariance(names: Sequence[str], errors: si.DimensionlessArray) -> si
 
 @dataclass(frozen=True)
 class Misfit:
-    """How well the best parameters explain what was observed.
+    """Judgement of how well the best parameters explain what was observed.
 
     `chi_square` is that of the best fit, its parameters' pull away from their priors included, over
     as many `degrees` as there are observations; `probability` is how often a right model would fit
@@ -135,7 +135,7 @@ class Misfit:
 
     @property
     def judgement(self) -> Judgement:
-        """Whether a right model would often enough fit as badly."""
+        """Judgement by how often a right model would fit as badly."""
         return "misfit" if self.probability < MISFIT else "fits"
 
     @property

@@ -26,7 +26,7 @@ _USUAL_LENGTH, _TRUST = 4.0, 0.05
 
 
 def least_points(parameters: int) -> int:
-    """How many solved points an emulator of so many parameters needs, those held out included."""
+    """Number of solved points an emulator of so many parameters needs, those held out included."""
     return 4 * (parameters + 1) + HELD_OUT
 
 

@@ -37,7 +37,7 @@ from squeezefilm.physics.display import Display, NamedDisplay
 
 @dataclass(frozen=True, eq=False)
 class FolderObservations:
-    """What the recordings of a folder observed, which of them did, and what of the folder was
+    """Observations of the recordings of a folder, which of them did, and what of the folder was
     `left_out`, each with its reason."""
 
     observations: tuple[Observation, ...]
@@ -132,7 +132,7 @@ def score_prediction(
 def folder_observations(
     display: Display, folder: str | Path, tell: SayProgress
 ) -> FolderObservations:
-    """What the recordings of a folder observed.
+    """Fit the recordings of a folder and gather what they observed.
 
     Raises `InputError` for what is no folder, or one without recordings.
     """

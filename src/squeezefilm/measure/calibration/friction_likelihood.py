@@ -83,7 +83,7 @@ class FrictionLikelihood:
 
     @cached_property
     def observed(self) -> si.DimensionlessArray:
-        """What was observed, shape (observations,)."""
+        """Observed values, shape (observations,)."""
         return np.array([one.value for one in self.observations])
 
     @cached_property
@@ -134,7 +134,8 @@ class FrictionLikelihood:
         return found
 
     def misfit(self, curves: si.DimensionlessArray) -> Misfit:
-        """How well the best of the draws explains what was observed, without a discrepancy."""
+        """Judgement of how well the best of the draws explains what was observed, without a
+        discrepancy."""
         off = (self.observed - curves) / self.noise
         squares = np.where(np.isfinite(off).all(axis=1), np.sum(off**2, axis=1), math.inf)
         at = int(np.argmin(squares))

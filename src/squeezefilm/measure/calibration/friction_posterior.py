@@ -142,7 +142,7 @@ class FrictionPosterior:
         return FrictionDraws(self, rows, self.points[rows], GRID[scales], self.curves[rows])
 
     def shares(self) -> Iterator[tuple[str, dict[str, float], dict[str, float]]]:
-        """Of each choice of a law its path, and the weights of its options before and after."""
+        """Path of each choice of a law, and the weights of its options before and after."""
         from squeezefilm.physics.uncertainty.model_choices import Choice
 
         weight = self.weights.sum(axis=1)

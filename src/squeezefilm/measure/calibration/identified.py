@@ -20,7 +20,7 @@ _FIXED, _ALONE, _NAMED = 0.35, 0.8, 0.08
 
 @dataclass(frozen=True)
 class Known:
-    """How well one parameter is known: the share of its prior spread that is left (1: nothing was
+    """Knowledge of one parameter: the share of its prior spread that is left (1: nothing was
     learned), in scores."""
 
     path: str
@@ -65,7 +65,7 @@ class Combination:
 
 @dataclass(frozen=True)
 class Identification:
-    """What data say of parameters: each by itself, and the combinations that are fixed."""
+    """Findings on parameters: each by itself, and the combinations that are fixed."""
 
     known: tuple[Known, ...]
     combinations: tuple[Combination, ...]

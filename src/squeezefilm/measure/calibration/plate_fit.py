@@ -50,7 +50,7 @@ class PlateFit:
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """Of the parameters."""
+        """Paths of the parameters."""
         return tuple(one.path for one in self.problem.scores.parameters)
 
     def values(self, scores: si.DimensionlessArray) -> Mapping[str, float]:
@@ -66,8 +66,8 @@ class PlateFit:
 
 
 def answers_to_solve(display: Display, observations: tuple[Observation, ...]) -> tuple[Asked, ...]:
-    """What is solved of a display: its working mode's answers, one neighbouring mode, and every
-    mode that was observed. Raises `InputError` for an observation without an answer."""
+    """Answers that are solved of a display: its working mode's answers, one neighbouring mode, and
+    every mode that was observed. Raises `InputError` for an observation without an answer."""
     names = [name for name in PLATE_ANSWERS if name != "modal_mass"]
     actuator = display.actuator
     asked = [Asked(name) for name in names]
@@ -81,12 +81,12 @@ def answers_to_solve(display: Display, observations: tuple[Observation, ...]) ->
 
 
 def design_sizes(parameters: int) -> tuple[int, int]:
-    """How many plates are solved over the priors, and how many more where the data point."""
+    """Number of plates are solved over the priors, and how many more where the data point."""
     return max(8 * parameters, least_points(parameters)), 4 * parameters + HELD_OUT
 
 
 def _rough(problem: PlateProblem) -> bool:
-    """Whether the emulator's error widens what some observation says."""
+    """True where the emulator's error widens what some observation says."""
     noise = [one.standard_error / one.value for one in problem.observations]
     errors = problem.emulator.errors[problem.columns]
     return bool(np.any(errors > _SMALL * np.array(noise)))
@@ -150,7 +150,7 @@ class Solves:
             )
 
     def problem(self, observations: tuple[Observation, ...]) -> PlateProblem:
-        """What was observed beside an emulator of all plates so far. An answer that some of them
+        """Observations beside an emulator of all plates so far. An answer that some of them
         have not, and that was not observed, is left out."""
         logs = np.array(self.logs)
         whole = np.asarray(np.isfinite(logs).all(axis=0))

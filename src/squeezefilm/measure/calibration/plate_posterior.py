@@ -72,7 +72,7 @@ class PlateProblem:
 
     @cached_property
     def columns(self) -> list[int]:
-        """Which of the emulator's answers each observation is of."""
+        """Columns of the emulator's answers that the observations are of."""
         return [self.asked.index(asked_by(one)) for one in self.observations]
 
     @cached_property
@@ -87,9 +87,9 @@ class PlateProblem:
 
     @cached_property
     def reading_covariance(self) -> si.DimensionlessArray:
-        """Of what the observations are off the bench's true answers, shape (observations,
-        observations): their noise, each recording's own reading error, and the one that all
-        readings of an answer share, which no number of them averages away."""
+        """Covariance of what the observations are off the bench's true answers, shape
+        (observations, observations): their noise, each recording's own reading error, and the one
+        that all readings of an answer share, which no number of them averages away."""
         same = np.equal.outer(self.columns, self.columns)
         shared = self.readings[self.columns]
         own = np.array([READ_ALONE.get(one.answer, 0.0) for one in self.observations])
@@ -97,16 +97,16 @@ class PlateProblem:
 
     @cached_property
     def model_covariance(self) -> si.DimensionlessArray:
-        """Of the emulator's and the solver's relative errors, shape (asked, asked); not to be used
-        of an answer that others fix (`moved`)."""
+        """Covariance of the emulator's and the solver's relative errors, shape (asked, asked); not
+        to be used of an answer that others fix (`moved`)."""
         names = [one.name for one in self.asked]
         found = solver_covariance(names, self.solver_errors)
         return np.asarray(found + np.diag(self.emulator.errors**2))
 
     @cached_property
     def covariance(self) -> si.DimensionlessArray:
-        """Of the observed logarithms if the model is right, shape (observations, observations): of
-        the measurement, the emulator and the solver."""
+        """Covariance of the observed logarithms if the model is right, shape (observations,
+        observations): of the measurement, the emulator and the solver."""
         here = self.answers(np.zeros((1, len(self.scores.parameters))))
         moved = self.moved(here)[0, self.columns]
         return np.asarray(self.reading_covariance + moved @ self.model_covariance @ moved.T)
@@ -118,7 +118,7 @@ class PlateProblem:
 
     @property
     def names(self) -> list[str]:
-        """What was observed, in words."""
+        """Names of what was observed."""
         return [asked_by(one).said for one in self.observations]
 
     def answers(self, scores: si.DimensionlessArray) -> si.FloatArray:
@@ -316,7 +316,7 @@ class Predictive:
 
 
 def predictive(problem: PlateProblem, posterior: PlatePosterior, *, seed: int) -> Predictive:
-    """What the posterior predicts of every answer of the emulator.
+    """Draws of every answer of the emulator.
 
     The discrepancy of an answer that was observed is what the observation left of it; of another
     one it is what its kind's scale allows, less what observed answers of its kind say of it.

@@ -63,7 +63,7 @@ class Asked(NamedTuple):
 
 
 def asked_by(observation: Observation) -> Asked:
-    """Which answer an observation is of.
+    """The answer that an observation is of.
 
     Raises `InputError` for one that the solver has no answer to, or a `mode_frequency` without the
     nodal lines of its mode.
@@ -212,8 +212,9 @@ def _of_plate(plate: RectangularPlate) -> tuple[_Named, Mapping[str, float]]:
 
 
 def _read_beside(mode: SolidMode, named: _Named) -> Mapping[str, float]:
-    """How far beside a plate's answers a bench's fit of its admittance reads them, as shares: over
-    the usual band of so many half-bandwidths, with the usual noise, which weighs the points."""
+    """Shares by which beside a plate's answers a bench's fit of its admittance reads them, as
+    shares: over the usual band of so many half-bandwidths, with the usual noise, which weighs the
+    points."""
     from squeezefilm.measure.fits.circuit.impedance import fit_impedance
     from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 

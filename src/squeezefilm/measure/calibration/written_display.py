@@ -144,7 +144,7 @@ def _written_out(display: Display, path: str) -> list[str]:
 
 
 def _ceramic_sources(calibration: Calibration, source: str) -> dict[str, Provenance]:
-    """Where the constants of a ceramic are from that was moved by shares."""
+    """Sources of the constants of a ceramic that was moved by shares."""
     actuator = calibration.display.actuator
     shares = [one for one in calibration.values if one.path in SHARES]
     if not shares or not isinstance(actuator, RectangularPlate | DiscPlate):
@@ -208,7 +208,7 @@ def _of_normal(every: si.FloatArray, values: si.FloatArray) -> si.DimensionlessA
 def _shares(
     before: tuple[Input, ...], after: tuple[Input, ...], joint: Joint, rows: si.IntArray
 ) -> dict[str, si.DimensionlessArray]:
-    """Of each input of finger and laws the shares of drawn values by its spread after the
+    """Shares of each input of finger and laws of drawn values by its spread after the
     calibration. A law's weights are as they were: its shares say how it was believed."""
     from scipy.special import ndtr
 

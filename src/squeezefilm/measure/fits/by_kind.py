@@ -44,15 +44,15 @@ NamedRecording = Annotated[kinds.Recording, ReadBy(read_recording)]
 
 
 class Fit(Protocol):
-    """What every fit has, whatever was fitted: estimates are its fields of that type."""
+    """Attributes that every fit has, whatever was fitted: estimates are its fields of that type."""
 
     @property
     def adequacy(self) -> Adequacy:
-        """Whether the fitted model describes what was recorded."""
+        """Judgement of whether the fitted model describes what was recorded."""
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use."""
+        """Observations for a calibration."""
 
 
 @reads_text

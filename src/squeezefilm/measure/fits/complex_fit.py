@@ -29,7 +29,7 @@ _FLOORS = np.geomspace(3e-3, 3.0, 25)
 
 @dataclass(frozen=True)
 class Prior:
-    """What is known beforehand of the parameters: independent normal distributions; an infinite
+    """Knowledge of the parameters beforehand: independent normal distributions; an infinite
     `spread` says nothing."""
 
     mean: si.FloatArray
@@ -60,7 +60,7 @@ class ComplexFit:
     degrees_of_freedom: int
 
     def estimate(self, value: Callable[[si.FloatArray], float], unit: str) -> Estimate:
-        """What `value` makes of the parameters: see `propagated`."""
+        """Estimate of what `value` makes of the parameters: see `propagated`."""
         return propagated(value, self.parameters, self.covariance, self.degrees_of_freedom, unit)
 
 
@@ -231,7 +231,8 @@ def correlation_time(residual: si.ComplexArray) -> float:
 
 
 def sweep_adequacy(fit: ComplexFit, frequency: si.HertzArray, model: str) -> Adequacy:
-    """Whether a `model` ("The circuit of one branch") describes a sweep: see `adequacy_of`."""
+    """Judge whether a `model` ("The circuit of one branch") describes a sweep: see
+    `adequacy_of`."""
     said = f"Below {fit.floor:.2g} S noise falls no further. " if fit.floor else ""
     return adequacy_of(
         fit.weighted,

@@ -32,7 +32,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Adequacy:
-    """Whether the fitted model describes what was recorded.
+    """Judgement of whether the fitted model describes what was recorded.
 
     `residual` is the mean distance |data − model| / |data|; `noise` what noise alone would leave;
     `where` names the place of the worst misfit in words; `sentence` says all of it to a person.
@@ -140,7 +140,7 @@ class Observing(Protocol):
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use."""
+        """Observations for a calibration."""
 
 
 _F = TypeVar("_F", bound=Observing)

@@ -1,4 +1,4 @@
-"""Whether what a fit leaves is noise, and what a person is told about it.
+"""Judgements of whether what a fit leaves is noise, and what a person is told about it.
 
 Noise differs from point to point; a wrong model leaves neighbours alike. Von Neumann's ratio of
 mean square successive difference to mean square (10.1214/aoms/1177731677) tells one from the
@@ -33,7 +33,7 @@ _MOST_ALIKE = 0.98
 
 
 class Structure(NamedTuple):
-    """How alike neighbouring residuals are: `correlation` 0 for noise, toward 1 for a misfit,
+    """Likeness of neighbouring residuals: `correlation` 0 for noise, toward 1 for a misfit,
     `significance` in standard deviations."""
 
     correlation: si.Dimensionless
@@ -41,7 +41,7 @@ class Structure(NamedTuple):
 
 
 def structure_of(residual: si.Array) -> Structure:
-    """How alike the neighbours of a row of residuals (points,), real or complex, are."""
+    """Likeness of the neighbours in a row of residuals (points,), real or complex."""
     parts = [residual.real, residual.imag] if np.iscomplexobj(residual) else [residual]
     squares = sum(float(part @ part) for part in parts)
     count = len(parts) * residual.size
@@ -53,7 +53,7 @@ def structure_of(residual: si.Array) -> Structure:
 
 
 def correlation_factor(residual: si.Array) -> float:
-    """What standard errors are to be multiplied by where neighbouring residuals are alike.
+    """Factor of standard errors where neighbouring residuals are alike.
 
     √((1 + ρ)/(1 − ρ)) for a correlation ρ that falls geometrically with the distance; 1 where it
     could be noise.
@@ -74,7 +74,7 @@ def adequacy_of(
     said: str = "",
     model: str = "The model",
 ) -> Adequacy:
-    """Whether a `model` describes `data` (points,), by what it leaves of them, in order.
+    """Judge whether a `model` describes `data` (points,), by what it leaves of them, in order.
 
     Both in the units of the fit: where every point counts by its own size, as in a sweep of
     impedance, both are over that size. `place` puts a point's number into words ("at 30.5 kHz"),
@@ -136,7 +136,8 @@ def _beyond_noise(residual: si.Array, noise: float) -> float:
 
 
 def _worst(residual: si.Array) -> int:
-    """Where five residuals in a row are largest on average: a misfit, and not one odd point."""
+    """Index where five residuals in a row are largest on average: a misfit, and not one odd
+    point."""
     row = np.abs(residual)
     if row.size < _NEAR:
         return int(np.argmax(row))

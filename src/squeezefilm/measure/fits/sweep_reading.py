@@ -16,8 +16,8 @@ _FEWEST_POINTS = 16
 
 @dataclass(frozen=True)
 class SweepPeaks:
-    """What can be read off a sweep without any model: the largest conductance (S) and the largest
-    resistance (Ω), the real parts of Y and of 1/Y, and the frequencies (Hz) of both."""
+    """Peaks that can be read off a sweep without any model: the largest conductance (S) and the
+    largest resistance (Ω), the real parts of Y and of 1/Y, and the frequencies (Hz) of both."""
 
     conductance_frequency: si.Hertz
     conductance: si.Siemens

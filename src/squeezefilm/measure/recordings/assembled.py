@@ -108,7 +108,7 @@ def _first_and_second(
 
 
 def _fixture(reading: Reading, first: str, frequency: si.HertzArray) -> Fixture:
-    """What stands beside the pair, with a fact that says so."""
+    """Quantities beside the pair, with a fact that says so."""
     said: Any = reading.description.said
     reference = said.reference or reading.table.reference
     if first in _REFLECTED:
@@ -129,9 +129,10 @@ def _in_band(reading: Reading, frequency: si.HertzArray) -> slice:
     band = getattr(reading.description.said, "band", None)
     if band is None:
         return slice(None)
-    first, last = np.searchsorted(frequency, band.low), np.searchsorted(
-        frequency, band.high, side="right"
-    )  # fmt: skip
+    first, last = (
+        np.searchsorted(frequency, band.low),
+        np.searchsorted(frequency, band.high, side="right"),
+    )
     ends = f"{quantity(band.low, _HZ)} to {quantity(band.high, _HZ)}"
     if last - first < 3:
         raise reading.description.error(f"the band {ends} holds {last - first} rows", ["band"])
@@ -185,7 +186,7 @@ def _response(reading: Reading) -> kinds.FrequencyResponse:
 
 
 def _place(reading: Reading) -> tuple[si.Metre, si.Metre] | None:
-    """Where on the plate (x, y in m) a response was recorded, where that is told."""
+    """Place on the plate (x, y in m) a response was recorded, where that is told."""
     said: Any = reading.description.said
     if (said.x is None) != (said.y is None):
         given = "y" if said.x is None else "x"
@@ -286,8 +287,10 @@ def _sweeps(reading: Reading) -> kinds.VoltageSweeps:
             )
         )
         directions.append("up" if up else "down")
-    told = (f"{quantity(float(one.voltage or 0), si.Unit('V'))} {way}"
-            for one, way in zip(found, directions, strict=True))  # fmt: skip
+    told = (
+        f"{quantity(float(one.voltage or 0), si.Unit('V'))} {way}"
+        for one, way in zip(found, directions, strict=True)
+    )
     reading.facts.append(("sweeps", ", ".join(told)))
     return kinds.VoltageSweeps(tuple(found), tuple(directions), reading.told())
 
@@ -302,7 +305,7 @@ def joined_sweeps(
 
 
 def _runs(frequency: si.HertzArray, voltage: si.VoltArray) -> list[tuple[int, int]]:
-    """Where sweeps begin and end: at one voltage, the frequency going one way."""
+    """Rows where sweeps begin and end: at one voltage, the frequency going one way."""
     starts, way = [0], 0.0
     for row in range(1, frequency.size):
         step = np.sign(frequency[row] - frequency[row - 1])

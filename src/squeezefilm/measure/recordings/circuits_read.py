@@ -12,7 +12,7 @@ from squeezefilm.core import quantities as si
 
 
 class Fixture(NamedTuple):
-    """What stands beside the two quantities: angular frequency (rad/s), the reference impedance of
+    """Quantities beside the two: angular frequency (rad/s), the reference impedance of
     a network analyser (Ω), and the shunt (Ω)."""
 
     omega: si.FloatArray
@@ -35,17 +35,17 @@ def _beside(size: si.FloatArray, part: si.FloatArray) -> si.FloatArray:
 
 
 def _reflected(wave: si.ComplexArray, at: Fixture) -> si.ComplexArray:
-    """Of a one-port at the end of a line."""
+    """Impedance of a one-port at the end of a line."""
     return np.asarray(at.reference * (1 + wave) / (1 - wave))
 
 
 def _through(wave: si.ComplexArray, at: Fixture) -> si.ComplexArray:
-    """Of what stands in series between two ports."""
+    """Impedance of what stands in series between two ports."""
     return np.asarray(2 * at.reference * (1 - wave) / wave)
 
 
 def _divided(gain: si.ComplexArray, at: Fixture) -> si.ComplexArray:
-    """Of what stands above a shunt, by the shunt's voltage over that of both."""
+    """Impedance of what stands above a shunt, by the shunt's voltage over that of both."""
     return np.asarray(at.shunt * (1 / gain - 1))
 
 

@@ -28,7 +28,7 @@ CONVENTIONS: Mapping[Convention, float] = {
 
 @dataclass(frozen=True)
 class Column:
-    """Which column of the file holds a quantity, and in which unit.
+    """Column of the file that holds a quantity, and in which unit.
 
     `column` is its name or its number from 1; `given_as` says how an amplitude is given; `scale`
     is what one recorded unit stands for, "125 mm/s/V", where an instrument's output was recorded.
@@ -61,7 +61,7 @@ class Band:
 @si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class Described:
-    """What every description may say. `file` is the data's file, where it has another name;
+    """Keys that every description may have. `file` is the data's file, where it has another name;
     `decimal` and `delimiter` are how its numbers are written, `header` the line of the columns'
     names (0 for none), where that is not to be found out; `points` is how many rows there must
     be."""
@@ -80,7 +80,7 @@ class Described:
     points: Annotated[int, si.AtLeast(1)] | None = None
 
     def told(self, file: Path) -> Told:
-        """What is told of the recording itself."""
+        """Words on the recording itself."""
         words = {one.name: getattr(self, one.name) for one in dataclasses.fields(Told)}
         return Told(**words | {"file": file.name, "name": self.name or file.stem})
 

@@ -43,7 +43,7 @@ class CeramicBar:
 @si.checked_numbers
 @dataclass(frozen=True)
 class Told:
-    """What the description beside a recording tells of it; an empty text is not told.
+    """Words of the description beside a recording; an empty text is not told.
 
     `temperature` in kelvin; `name` is the recording's own, `file` its file's name without a folder.
     """
@@ -242,8 +242,8 @@ class FrictionCurve:
 
     @property
     def unit(self) -> str:
-        """What counts once in statistics: a finger of a source, a source whose fingers are not told
-        apart, or the recording itself."""
+        """Unit that counts once in statistics: a finger of a source, a source whose fingers are not
+        told apart, or the recording itself."""
         return f"{self.told.source}: {self.finger or 'all'}" if self.told.source else self.told.name
 
 

@@ -29,14 +29,22 @@ _SCALE = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*
 _DECIBELS = re.compile(r"\s*dB\s+re\s+(\S.*?)\s*")
 # Of two alike 0 dB stand for 1.
 _RATIOS = ("reflection", "transmission", "gain")
-_IN_DECIBELS = ("magnitude", "admittance_magnitude", "displacement", "velocity", "reflection",
-                "transmission", "gain")  # fmt: skip
+_IN_DECIBELS = (
+    "magnitude",
+    "admittance_magnitude",
+    "displacement",
+    "velocity",
+    "reflection",
+    "transmission",
+    "gain",
+)
 _MOST_DECIBELS = 600.0
 _LEAST_ROWS = 3
 
 
 class Quantity(NamedTuple):
-    """What a column may hold: its unit, the largest magnitude that is believed, the least value."""
+    """Bounds of what a column may hold: its unit, the largest magnitude that is believed, the least
+    value."""
 
     unit: si.Unit
     most: float
@@ -115,11 +123,11 @@ class Reading:
     doubts: list[str] = field(default_factory=list)
 
     def has(self, name: str) -> bool:
-        """Whether the description names a column for a quantity."""
+        """True where the description names a column for a quantity."""
         return getattr(self.columns, name, None) is not None
 
     def told(self) -> Told:
-        """What the description tells of the recording itself."""
+        """Words of the description on the recording itself."""
         return self.description.said.told(self.table.file)
 
     def wanting(self, name: str, why: str) -> ConfigError:
@@ -137,7 +145,7 @@ class Reading:
         return self.table.error(f"{words(name)}: {message}", row, self._place(name))
 
     def per_volt(self, name: str) -> bool:
-        """Whether the unit of a motion is one over volts."""
+        """True where the unit of a motion is one over volts."""
         _, dimension = self._scale(name)
         return name in _PER_VOLT_OF and dimension == _PER_VOLT_OF[name].unit.dimension
 

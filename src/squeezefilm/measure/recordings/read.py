@@ -69,8 +69,11 @@ def proposed(table: RawTable) -> Proposal | None:
             held = [held[0], ("voltage", *drive[1:]), ("displacement", *moved[0][1:])]
     else:
         return None
-    lines = [f"kind = {_quoted(kind)}", f"name = {_quoted(table.file.stem)}",
-             f"instrument = {_quoted(table.format.split(',')[0])}"]  # fmt: skip
+    lines = [
+        f"kind = {_quoted(kind)}",
+        f"name = {_quoted(table.file.stem)}",
+        f"instrument = {_quoted(table.format.split(',')[0])}",
+    ]
     lines += ['shunt = "… ohm"'] if "gain" in quantities else []
     lines.append("\n[columns]")
     for quantity, column, unit in held:
@@ -90,7 +93,7 @@ _SCANS = ("line scan", "grid scan")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RecordingCheck(Result):
-    """What was read from a file: the recording, and in words how it was taken.
+    """A file as it was read: the recording, and in words how it was taken.
 
     `facts` are pairs of what and how (range, column, unit, how an amplitude was given), `doubts`
     sentences about what may be wrong; nothing doubtful was corrected. `file` is the data's, and
@@ -107,7 +110,7 @@ class RecordingCheck(Result):
     _shown: ClassVar[str] = "kind file points"
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints: how the file was read, and not its numbers."""
+        """Numbers for ``--json``: how the file was read, and not its numbers."""
         return {
             "kind": self.kind,
             "file": str(self.file),
@@ -135,7 +138,7 @@ class FolderCheck:
     refused: tuple[Refused, ...]
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints."""
+        """Numbers for ``--json``."""
         return {
             "recordings": [one.summary() for one in self.checks],
             "refused": [{"file": str(one.file), "why": one.why} for one in self.refused],
@@ -158,8 +161,8 @@ def read_recording(path: str | Path, described: str | Path | None = None) -> Rec
 
 
 def check_recording(path: str | Path, described: str | Path | None = None) -> RecordingCheck:
-    """What `read_recording` reads, with how it was taken and what is doubtful of it. Raises as it
-    does."""
+    """Read as `read_recording` does, and tell how it was taken and what is doubtful of it. Raises
+    as it does."""
     file, description = _found(Path(path), None if described is None else Path(described))
     recording, readings = _read(file, description)
     facts = [("kind", description.kind)]
@@ -172,8 +175,13 @@ def check_recording(path: str | Path, described: str | Path | None = None) -> Re
         facts += reading.facts
         facts += [("of the file", note) for note in table.notes]
     told = recording.told
-    said = (("measured by", told.who), ("when", told.when), ("instrument", told.instrument),
-            ("licence", told.licence), ("source", told.source))  # fmt: skip
+    said = (
+        ("measured by", told.who),
+        ("when", told.when),
+        ("instrument", told.instrument),
+        ("licence", told.licence),
+        ("source", told.source),
+    )
     facts += [(what, how) for what, how in said if how]
     if told.temperature is not None:
         facts.append(("temperature", f"{told.temperature:.4g} K"))
@@ -234,7 +242,7 @@ def check_folder(folder: str | Path) -> FolderCheck:
 
 
 def _says_itself(path: Path) -> bool:
-    """Whether a file is of an instrument that says what it holds, and needs no description."""
+    """True where a file is of an instrument that says what it holds, and needs no description."""
     if not path.is_file() or path.with_suffix(".toml").exists():
         return False
     if is_4294a(path) or TOUCHSTONE.fullmatch(path.suffix.lower()):
@@ -249,7 +257,7 @@ def _says_itself(path: Path) -> bool:
 
 
 def _has_kind(path: Path) -> bool:
-    """Whether a TOML file describes a recording; a display in the same folder does not."""
+    """True where a TOML file describes a recording; a display in the same folder does not."""
     try:
         text = read_toml_text(path)
     except ConfigError:
@@ -286,9 +294,13 @@ def propose_description(path: str | Path) -> Proposal:
     table = _table(Path(path), Description("", Described()))
     proposal = proposed(table)
     if proposal is None:
-        lines = ('kind = "impedance"', "[columns]", 'frequency = { column = 1, unit = "Hz" }',
-                 'magnitude = { column = 2, unit = "ohm" }',
-                 'phase = { column = 3, unit = "deg" }')  # fmt: skip
+        lines = (
+            'kind = "impedance"',
+            "[columns]",
+            'frequency = { column = 1, unit = "Hz" }',
+            'magnitude = { column = 2, unit = "ohm" }',
+            'phase = { column = 3, unit = "deg" }',
+        )
         kinds = ", ".join(f'"{one}"' for one in KINDS)
         besides = f"(kinds: {kinds}; columns of the file: {table.columns_in_words})"
         raise _undescribed(Path(path), "\n".join(lines), besides)
@@ -345,7 +357,7 @@ def _table(file: Path, description: Description) -> RawTable:
 
 
 def _undescribed(path: Path, text: str, besides: str) -> ConfigError:
-    """What to write where nothing says what the columns of a file are."""
+    """Error that tells what to write where nothing says what the columns of a file are."""
     shown = "\n".join(f"  {line}" for line in text.strip().split("\n"))
     return ConfigError(
         f"nothing says for sure what its columns hold; write {path.with_suffix('.toml').name} "

@@ -77,7 +77,7 @@ def total_rows(compared: FolderComparison) -> list[tuple[str, ...]]:
 
 
 def people_rows(compared: PopulationComparison) -> list[tuple[str, ...]]:
-    """What each model gives of a number of many people."""
+    """Rows of what each model gives of a number of many people."""
     return [
         (
             _model_words(model),
@@ -103,7 +103,7 @@ def _number(value: float | None, digits: int) -> str:
 
 
 def inside_words(compared: CurveComparison) -> str:
-    """How many points lie in our interval."""
+    """Number of points lie in our interval."""
     within, asked = compared.points_inside
     level = si.percent(compared.band.level)
     return (
@@ -113,7 +113,7 @@ def inside_words(compared: CurveComparison) -> str:
 
 
 def covered_words(compared: FolderComparison) -> str:
-    """How many fingers and papers lie in our interval."""
+    """Number of fingers and papers lie in our interval."""
     within, units, (low, high) = compared.units_covered
     return (
         f"{within} of {units} fingers or papers lie in the interval of the default, at least 90 % "
@@ -136,7 +136,7 @@ def unit_name(compared: FolderComparison, unit: str) -> str:
 
 
 def people_words(compared: PopulationComparison) -> str:
-    """How a number is distributed over people."""
+    """Distribution of a number over people."""
     low, median, high = (
         _valued(float(value), compared.unit)
         for value in np.quantile(compared.measured, [0.05, 0.5, 0.95])
@@ -184,7 +184,7 @@ def detection_rows(compared: DetectionComparison) -> list[tuple[str, ...]]:
 
 
 def detection_words(compared: DetectionComparison) -> list[str]:
-    """What was measured, how near the senses come, and what is assumed."""
+    """Sentences on what was measured, how near the senses come, and what is assumed."""
     m, made = compared.measured, dict(compared.rivals)["temporal"]
     off = np.abs(np.log(made / m.amplitude))
     return [
@@ -218,8 +218,9 @@ def comparison_figure(compared: CurveComparison) -> Figure:
         amplitude,
         compared.fitted_at_rest * compared.band.low,
         compared.fitted_at_rest * compared.band.high,
-        color=style.BAND, label=f"{level} interval of the default",
-    )  # fmt: skip
+        color=style.BAND,
+        label=f"{level} interval of the default",
+    )
     strong = {compared.default.model: style.RENDERED, nearest.model: style.WANTED}
     for score in compared.models:
         look = strong.get(score.model, style.GUIDE)
@@ -236,8 +237,9 @@ def all_curves_figure(compared: FolderComparison) -> Figure:
     """Every measured curve over its friction at rest, and the default model beside each."""
     figure = style.new_figure(
         "Published friction over the amplitude, and the default model",
-        "the default, lines, its friction at rest fitted; measured, points", 5,
-    )  # fmt: skip
+        "the default, lines, its friction at rest fitted; measured, points",
+        5,
+    )
     axes = figure.subplots()
     for number, one in enumerate(compared.curves):
         colour, amplitude = _COLOURS[number % len(_COLOURS)], 1e6 * one.curve.vibration_amplitude
@@ -258,39 +260,54 @@ def coverage_figure(compared: FolderComparison) -> Figure:
     figure = style.new_figure(
         "How many published points the intervals of the default hold, by finger or paper",
         "the default, its friction at rest fitted; bars: 95 % binomial intervals, as if the points "
-        "of a curve were independent, which they are not", 5,
-    )  # fmt: skip
+        "of a curve were independent, which they are not",
+        5,
+    )
     axes = figure.subplots()
     for number, (unit, (inside, points)) in enumerate(compared.coverage.items()):
         share = inside / points
         found = [binomtest(int(k), points).proportion_ci(0.95) for k in inside]
         away = np.abs([[one.low, one.high] for one in found] - share[:, None]).T
         axes.errorbar(
-            100 * np.array(LEVELS) + 0.6 * (number - 1), 100 * share, 100 * away, fmt="o-", ms=4,
-            lw=1.2, elinewidth=0.7, color=_COLOURS[number % len(_COLOURS)],
+            100 * np.array(LEVELS) + 0.6 * (number - 1),
+            100 * share,
+            100 * away,
+            fmt="o-",
+            ms=4,
+            lw=1.2,
+            elinewidth=0.7,
+            color=_COLOURS[number % len(_COLOURS)],
             label=f"{style.plain(unit_name(compared, unit), 40)} ({points} points)",
-        )  # fmt: skip
+        )
     axes.plot([0, 100], [0, 100], **style.GUIDE, label="as promised")
     axes.set(
-        xlabel="level of the central interval (%)", ylabel="points inside (%)",
-        xlim=(0, 100), ylim=(0, 102),
-    )  # fmt: skip
+        xlabel="level of the central interval (%)",
+        ylabel="points inside (%)",
+        xlim=(0, 100),
+        ylim=(0, 102),
+    )
     style.legend_beside(axes)
     return figure
 
 
 @style.drawn
 def people_figure(compared: PopulationComparison) -> Figure:
-    """How many people have less than a value, and where the models are."""
+    """Number of people have less than a value, and where the models are."""
     unit, scale = _SHOWN.get(compared.unit, (compared.unit, 1.0))
     figure = style.new_figure(
         f"{compared.quantity}: {compared.measured.size} measured",
-        f"nothing fitted; {compared.display}, {compared.conditions}", 4,
-    )  # fmt: skip
+        f"nothing fitted; {compared.display}, {compared.conditions}",
+        4,
+    )
     axes = figure.subplots()
     ordered = scale * np.sort(compared.measured)
-    axes.step(ordered, np.arange(1, ordered.size + 1) / ordered.size, color=style.INK, where="post",
-              label="measured")  # fmt: skip
+    axes.step(
+        ordered,
+        np.arange(1, ordered.size + 1) / ordered.size,
+        color=style.INK,
+        where="post",
+        label="measured",
+    )
     for model, value in compared.models:
         if value is not None:
             look = style.RENDERED if model == DEFAULT_MODEL else style.GUIDE

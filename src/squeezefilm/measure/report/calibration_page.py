@@ -1,9 +1,10 @@
-"""`write_calibration`: a calibrated display with its numbers, pictures and a page."""
+"""A calibrated display with its numbers, pictures and a page, and what `measure calibrate` and
+`measure predict` print."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from squeezefilm.core import quantities as si
@@ -22,7 +23,10 @@ from squeezefilm.core.kit.page_style import (
     stamped,
     text_table,
 )
+from squeezefilm.core.kit.terminal import bullets as printed_bullets
+from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.core.results import stamp
+from squeezefilm.measure.calibration.blind import BlindPrediction
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.folder import FolderCalibration
 from squeezefilm.measure.calibration.identified import IDENTIFIED, NOT_TOLD
@@ -138,7 +142,7 @@ def _apart(off: float) -> str:
 
 
 def _by_kind(rows: Sequence[ComparedAnswer]) -> str:
-    """Of each kind of answer how many were measured and how far the calibrated model is off."""
+    """For each kind of answer how many were measured and how far the calibrated model is off."""
     kinds: dict[str, list[ComparedAnswer]] = {}
     for one in rows:
         # A friction is said with its conditions, which make no kind.
@@ -183,3 +187,29 @@ def _recordings(found: FolderCalibration) -> str:
         for one in found.recordings
     ]
     return text_table("Recordings that were used", head, rows)
+
+
+def show_calibration(found: FolderCalibration) -> None:
+    """Print what a calibration found: its sentences, each value before and after, what is left
+    out."""
+    console, calibration = plain_console(), found.calibration
+    heading(console, f"{calibration.display.name}, calibrated")
+    table(console, VALUES_HEAD, value_rows(found), fixed=(0,))
+    look = "green" if calibration.fits else "bold red"
+    printed_bullets(console, [("", text, look) for text in calibration.sentences[:1]])
+    printed_bullets(console, [("", text, "") for text in calibration.sentences[1:]])
+    printed_bullets(console, [("left out", text, "yellow") for text in found.left_out])
+
+
+def prediction_lines(found: BlindPrediction) -> Iterator[str]:
+    """Lines that tell what was predicted, in SI units, and the hash to tell somebody before
+    measuring."""
+    yield f"Of {found.display}, by {found.how} (SI units):"
+    for one in found.predictions:
+        where = "".join(f", {name} {value:.4g}" for name, value in one.conditions.items())
+        low, high = one.interval
+        yield (
+            f"  {one.answer.replace('_', ' ')}{where}: {one.median:.5g} "
+            f"({low:.5g} to {high:.5g}, {100 * one.level:.0f} %)"
+        )
+    yield f"SHA-256 {found.sha256}"

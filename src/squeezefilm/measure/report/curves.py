@@ -140,10 +140,12 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
         body += section(escape(printable(recording.name)), bullets(said) + rows)
         body += picture_sections({f"curve-{number}": (recording.name, figure)})
     files["measured-curves.html"] = page(
-        "Measured friction", "Measured friction",
-        "beside every model, beside fitted shapes, and beside our interval", body,
-        stamped(summary_stamp, "SHA-256 of curves and answers")
-    )  # fmt: skip
+        "Measured friction",
+        "Measured friction",
+        "beside every model, beside fitted shapes, and beside our interval",
+        body,
+        stamped(summary_stamp, "SHA-256 of curves and answers"),
+    )
     write_folder(folder, files)
     return folder / "measured-curves.html"
 

@@ -157,9 +157,16 @@ def measured_points(axes: Axes, curve: kinds.FrictionCurve) -> None:
     deviation = curve.deviation
     label = "measured" if deviation is None else "measured, ± one deviation"
     axes.errorbar(
-        1e6 * curve.vibration_amplitude, curve.friction, yerr=deviation, fmt="o",
-        color=style.INK, ecolor=style.MUTED, ms=5, zorder=4, label=label,
-    )  # fmt: skip
+        1e6 * curve.vibration_amplitude,
+        curve.friction,
+        yerr=deviation,
+        fmt="o",
+        color=style.INK,
+        ecolor=style.MUTED,
+        ms=5,
+        zorder=4,
+        label=label,
+    )
     top = 1.1 * float(np.max(curve.friction + (0.0 if deviation is None else deviation)))
     style.friction_axes(axes, top=top)
     axes.set_ylabel(FRICTION_WORDS[curve.quantity])

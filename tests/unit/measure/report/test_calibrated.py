@@ -9,7 +9,7 @@ import pytest
 from squeezefilm.core import quantities as si
 from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted
 from squeezefilm.measure.calibration.calibration import CalibratedValue
-from squeezefilm.measure.report.calibrated import prediction_lines, show_calibration
+from squeezefilm.measure.report.calibration_page import prediction_lines, show_calibration
 
 
 def test_each_value_stands_before_and_after_with_what_was_left_out(

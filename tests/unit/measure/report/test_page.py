@@ -25,13 +25,15 @@ from squeezefilm.measure.report.beside import coverage_figure, coverage_rows
 from squeezefilm.measure.report.curves import show_comparisons, write_comparisons
 from squeezefilm.measure.report.figures import recording_figure
 from squeezefilm.measure.report.fit_figures import fit_figure, modelled
-from squeezefilm.measure.report.page import fit_summary, write_checks, write_fit
-from squeezefilm.measure.report.terminal import (
+from squeezefilm.measure.report.page import (
     estimate_rows,
+    fit_summary,
     show_check,
     show_fit,
     show_folder,
     valued,
+    write_checks,
+    write_fit,
 )
 from squeezefilm.physics.uncertainty.uncertainty import FrictionBand
 

@@ -27,7 +27,7 @@ _LARGEST = np.array([30.0, 30.0, 0.0])
 
 @dataclass(frozen=True)
 class Layout:
-    """Which parameter stands where: ln C0 and tan δ, then ln f, ln Q, ln C of each branch, then
+    """Order of the parameters: ln C0 and tan δ, then ln f, ln Q, ln C of each branch, then
     the coupling's loss, g and h of softening, R_l (Ω) and L_l (H) of leads, real and imaginary part
     of a drift."""
 
@@ -39,26 +39,26 @@ class Layout:
 
     @property
     def size(self) -> int:
-        """How many parameters there are."""
+        """Number of parameters."""
         return self.lead + 2 * self.leads + 2 * self.drift
 
     @property
     def loss(self) -> int:
-        """Where the coupling's loss stands, if it is fitted."""
+        """Index of the coupling's loss, if it is fitted."""
         return 2 + 3 * self.branches
 
     @property
     def soft(self) -> int:
-        """Where g and h of softening stand, if it is fitted."""
+        """Index of g and h of softening, if it is fitted."""
         return self.loss + self.coupling_loss
 
     @property
     def lead(self) -> int:
-        """Where the leads' resistance and inductance stand, if they are fitted."""
+        """Index of the leads' resistance and inductance, if they are fitted."""
         return self.soft + 2 * self.softening
 
     def branch(self, k: int) -> slice:
-        """Where ln f, ln Q and ln C of branch k stand."""
+        """Indices of ln f, ln Q and ln C of branch k."""
         return slice(2 + 3 * k, 5 + 3 * k)
 
 
@@ -118,7 +118,7 @@ def circuit_curve(
 def relative_motion(
     static: si.ComplexArray, frequency: si.HertzArray, admittance: si.ComplexArray
 ) -> si.DimensionlessArray:
-    """How far a body moves at each frequency under one voltage, over the farthest (points,): the
+    """Motion of a body at each frequency under one voltage, over the farthest (points,): the
     motional current by its frequency. `static` is the admittance of the held body."""
     size = np.abs(admittance - static) / frequency
     return np.asarray(size / size.max())

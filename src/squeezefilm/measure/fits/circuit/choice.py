@@ -35,7 +35,7 @@ _EVIDENCE, _LESS_LEFT = 10.0, 0.8
 _TOLD_APART = 0.35
 
 CORRECTIONS = ("coupling_loss", "leads", "drift")
-"""What may stand beside the branches."""
+"""Corrections that may stand beside the branches."""
 
 Fitted = tuple[ComplexFit, Layout]
 _Starts = tuple[si.HertzArray, si.DimensionlessArray]
@@ -94,7 +94,8 @@ def _chosen(trials: _Trials, branches: int | None) -> Fitted:
 
 
 def _corrections(sweep: ImpedanceSweep, drift: bool) -> tuple[frozenset[str], ...]:
-    """What may stand beside the branches, the plainer first: what was told stands in all."""
+    """Corrections that may stand beside the branches, the plainer first: what was told stands in
+    all."""
     told = {"drift"} if drift else set()
     told |= {"leads"} if sweep.compensated is False else set()
     free = [name for name in CORRECTIONS if name not in told]
@@ -118,7 +119,7 @@ def _layouts(count: int, corrections: Sequence[frozenset[str]]) -> Iterator[tupl
 
 
 def _corrected(layout: Layout) -> int:
-    """How many corrections a circuit has."""
+    """Number of corrections a circuit has."""
     return sum(getattr(layout, name) for name in CORRECTIONS)
 
 
@@ -148,7 +149,7 @@ def _settled(trials: _Trials, best: Fitted) -> tuple[Fitted, list[Fitted]]:
 
 
 def _deviance(fit: Fitted) -> float:
-    """What a fit leaves: twice the logarithm of a likelihood, but for a constant."""
+    """Deviance of a fit: twice the logarithm of a likelihood, but for a constant."""
     return 2 * fit[0].residual.size * math.log(fit[0].left ** 2)
 
 
@@ -158,7 +159,7 @@ def _criterion(fit: Fitted) -> float:
 
 
 def _better(more: Fitted, best: Fitted) -> bool:
-    """Whether the richer circuit is asked for by the data, and each of its branches is told."""
+    """True where the richer circuit is asked for by the data, and each of its branches is told."""
     fit, layout = more
     for k in range(layout.branches):
         if np.any(np.sqrt(np.diag(fit.covariance)[layout.branch(k)]) > _TOLD_APART):
@@ -242,8 +243,8 @@ def sweep_motion(sweep: ImpedanceSweep, p: si.FloatArray) -> si.DimensionlessArr
 
 
 def _starts(f: si.HertzArray, y: si.ComplexArray, count: int) -> _Starts | None:
-    """Where to begin: poles of a rational function with one or more too many, of which those with
-    the strongest residues inside the band are kept."""
+    """Frequencies and Q to begin with: poles of a rational function with one or more too many, of
+    which those with the strongest residues inside the band are kept."""
     for spare in (0, 1, 2):
         own, quality = poles(f, y, count + spare)
         good = (own > f[0]) & (own < f[-1]) & (quality > _LEAST_QUALITY)

@@ -46,7 +46,7 @@ class Branch:
 
 @dataclass(frozen=True)
 class Softening:
-    """What a body does when it moves farther, from rest to the largest motion of a sweep at one
+    """Change of a body that moves farther, from rest to the largest motion of a sweep at one
     voltage: by which share its resonance falls, and by which share its loss 1/Q is larger."""
 
     frequency_fall: Estimate
@@ -107,7 +107,7 @@ class ImpedanceFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use of the strongest branch; the coupling follows from the two
+        """Observations of the strongest branch; the coupling follows from the two
         resonances and would count them twice. Nothing of one whose Q has no bounds."""
         branch = self.strongest
         if not branch.quality_factor.standard_error < branch.quality_factor.value / 2:
@@ -156,12 +156,14 @@ def _holding(told: ImpedanceFit, rival: ImpedanceFit) -> ImpedanceFit:
     """The same with intervals that hold what a circuit says that describes the sweep as well."""
     pairs = zip(told.branches, rival.branches, strict=True)
     branches = tuple(
-        Branch(**{
-            part.name: _wider(getattr(ours, part.name), getattr(theirs, part.name))
-            for part in fields(Branch)
-        })
+        Branch(
+            **{
+                part.name: _wider(getattr(ours, part.name), getattr(theirs, part.name))
+                for part in fields(Branch)
+            }
+        )
         for ours, theirs in pairs
-    )  # fmt: skip
+    )
     return replace(
         told,
         branches=branches,
@@ -252,8 +254,9 @@ def _branch(fit: ComplexFit, layout: Layout, k: int) -> Branch:
 
 
 def parallel_resonance(layout: Layout, p: si.FloatArray, k: int) -> si.Hertz:
-    """Where the susceptance of the circuit without its losses vanishes above branch k (Hz): with
-    one branch fs √(1 + C1/C0). There one that softens is nearly at rest, and as stiff as that."""
+    """Frequency at which the susceptance of the circuit without its losses vanishes above branch k
+    (Hz): with one branch fs √(1 + C1/C0). There one that softens is nearly at rest, and as stiff as
+    that."""
     at = [layout.branch(j) for j in range(layout.branches)]
     squares = np.exp([2 * p[j][0] for j in at])
     weights = np.exp([p[j][2] - p[0] for j in at])

@@ -85,8 +85,8 @@ class FrictionBenchFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use: µ without vibration, and µ′/µ at every amplitude; none where
-        the fit is not adequate."""
+        """Observations for a calibration: µ without vibration, and µ′/µ at every amplitude; none
+        where the fit is not adequate."""
         at = {"finger_speed": self.speed, "normal_force": self.normal_force}
         if self.recording.frequency is not None:
             at |= {"frequency": self.recording.frequency}

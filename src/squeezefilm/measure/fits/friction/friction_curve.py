@@ -62,8 +62,8 @@ class CurveComparison:
 
     @property
     def inside(self) -> tuple[bool | None, ...]:
-        """Whether each point lies in `band`; where the band is not known it does not, None where
-        nothing vibrates."""
+        """For each point True where it lies in `band`; where the band is not known it does not,
+        None where nothing vibrates."""
         return tuple(
             None if a == 0 else bool(here)
             for a, here in zip(self.curve.vibration_amplitude, self.inside_levels[-1], strict=True)
@@ -81,13 +81,13 @@ class CurveComparison:
 
     @property
     def points_inside(self) -> tuple[int, int]:
-        """How many points lie in the interval, and how many could."""
+        """Number of points lie in the interval, and how many could."""
         asked = [one for one in self.inside if one is not None]
         return sum(asked), len(asked)
 
     @property
     def covered(self) -> bool:
-        """Whether as many points lie in the interval as its level says."""
+        """True where as many points lie in the interval as its level says."""
         within, asked = self.points_inside
         return within >= self.band.level * asked
 
@@ -117,7 +117,7 @@ class CurveComparison:
         )
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
+        """Numbers for ``--json``; keys carry units."""
         c = self.curve
         return {
             "recording": to_json(c.told),
@@ -239,7 +239,7 @@ def relative_friction(law: FrictionLaw, amplitude: si.MetreArray) -> si.Dimensio
 
 
 def _adequacy(curve: FrictionCurve, default: ModelScore, at_rest: float) -> Adequacy:
-    """Whether the default model describes the curve within what its spread alone leaves.
+    """Judge whether the default model describes the curve within what its spread alone leaves.
 
     With n points of independent errors and one number fitted the sum of squares in spreads is
     chi-square with n − 1 degrees; what exceeds its 99 % quantile is more than chance.

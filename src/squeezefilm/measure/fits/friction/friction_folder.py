@@ -50,7 +50,7 @@ class FolderComparison:
 
     @property
     def units_covered(self) -> tuple[int, int, tuple[float, float]]:
-        """How many units (fingers or papers) have their curves in the default's interval, of how
+        """Number of units (fingers or papers) have their curves in the default's interval, of how
         many, and the 95 % interval of that share (Clopper and Pearson)."""
         from scipy.stats import binomtest
 
@@ -76,7 +76,7 @@ class FolderComparison:
         return counts
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
+        """Numbers for ``--json``; keys carry units."""
         within, units, ends = self.units_covered
         return {
             "curves": [compared.summary() for compared in self.curves],

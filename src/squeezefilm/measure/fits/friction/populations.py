@@ -60,7 +60,7 @@ class PopulationComparison:
         return float(np.mean(self.measured < value))
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints, in SI units."""
+        """Numbers for ``--json``, in SI units."""
         low, median, high = np.quantile(self.measured, [0.05, 0.5, 0.95])
         return {
             "recording": to_json(self.told),
@@ -107,9 +107,14 @@ def compare_decays(
         f"{1e3 * prediction.speed:.3g} mm/s{assumed}"
     )
     return PopulationComparison(
-        decays.told, display.name, conditions, "decay amplitude τ", "m",
-        decays.decay_amplitude, tuple(models),
-    )  # fmt: skip
+        decays.told,
+        display.name,
+        conditions,
+        "decay amplitude τ",
+        "m",
+        decays.decay_amplitude,
+        tuple(models),
+    )
 
 
 def compare_impedances(
@@ -170,7 +175,7 @@ class DetectionComparison:
         return self.measured.told
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
+        """Numbers for ``--json``; keys carry units."""
         return {
             "recording": to_json(self.told),
             "people": self.measured.people,
@@ -218,8 +223,8 @@ def detection_medians(
     speed: si.MetrePerSecond | None = None,
     period: si.MetreArray | None = None,
 ) -> si.DimensionlessArray:
-    """What the published method would give of this observer (1), shape (periods,): where thresholds
-    were measured, or at another speed (m/s) and other periods (m)."""
+    """Medians that the published method would give of this observer (1), shape (periods,): where
+    thresholds were measured, or at another speed (m/s) and other periods (m)."""
     return METHOD_RATIO * detection_threshold(
         observer,
         measured.period if period is None else period,

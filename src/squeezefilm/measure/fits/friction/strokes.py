@@ -48,7 +48,8 @@ class Strokes:
 
 
 def sliding_strokes(recording: FrictionBench) -> Strokes:
-    """Where a finger or probe slides in one direction at an even amplitude, and what it felt.
+    """Strokes in which a finger or probe slides in one direction at an even amplitude, and what it
+    felt.
 
     Sliding is at least 60 % of the usual speed under at least 40 % of the usual force, for at
     least 0.1 s, less 15 % at each end; where the amplitude changes on the way, the longest even

@@ -77,7 +77,7 @@ class DrivenShape:
 
     @property
     def antinode(self) -> si.Metre:
-        """Where the best antinode lies on that line (m)."""
+        """Place of the best antinode on that line (m)."""
         return self.lobe[0 if self.lengthwise else 1]
 
 

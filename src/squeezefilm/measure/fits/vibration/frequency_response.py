@@ -133,7 +133,8 @@ class FrequencyResponseFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use: resonance, Q and amplitude per volt of the strongest mode.
+        """Observations for a calibration: resonance, Q and amplitude per volt of the strongest
+        mode.
 
         The amplitude is the largest of the whole response near that mode, as the library's
         `amplitude_per_volt` is. Whether the remainder beside the mode is its neighbours' or the
@@ -256,7 +257,7 @@ class _Band:
 
 
 def _first_mode(f: si.HertzArray, H: si.ComplexArray) -> tuple[bool, tuple[float, float]]:
-    """Whether the phase has the other sign, and frequency and loss of the strongest mode."""
+    """True where the phase has the other sign; frequency and loss of the strongest mode."""
     circle = modal_circle(f, H)
     if circle is None:
         peak = int(np.argmax(np.abs(H)))

@@ -49,7 +49,7 @@ class GridScanFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use: the amplitude per volt where the voltage was told, if the
+        """Observations for a calibration: the amplitude per volt where the voltage was told, if the
         scan is of the shape that it is compared with."""
         volts = self.recording.voltage
         if not volts or self.likeness[self.label] < SAME_SHAPE:
@@ -71,7 +71,7 @@ def fit_grid_scan(
     *,
     drift: bool = False,
 ) -> GridScanFit:
-    """Which of the `shapes` a scan is, by the modal assurance criterion, and how far it moves.
+    """Tell which of the `shapes` a scan is, by the modal assurance criterion, and how far it moves.
 
     `shapes` by their labels, each (points,), relative motion at the scan's places with 1 where the
     amplitude is asked for (the best antinode): `shapes_at` takes them from solved modes, as many
@@ -200,7 +200,7 @@ def _adequacy(
     likeness: float,
     alike: Mapping[str, str],
 ) -> Adequacy:
-    """Whether the shapes describe the scan, and one of them is it."""
+    """Judge whether the shapes describe the scan, and one of them is it."""
     x, y = places
     same = ", ".join(f"{name} from {other}" for name, other in alike.items())
     found = adequacy_of(

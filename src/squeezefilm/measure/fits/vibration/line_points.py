@@ -32,17 +32,17 @@ class LineWaves:
 
     @property
     def length(self) -> si.Metre:
-        """Of the line (m)."""
+        """Length of the line (m)."""
         return self.last - self.first
 
     @property
     def count(self) -> int:
-        """How many numbers bend the columns."""
+        """Number of numbers bend the columns."""
         own = 2 if self.complex else 1
         return own + (own if self.drift else 0)
 
     def reach(self, wave_number: float) -> si.FloatArray:
-        """How far the shape may go from its start."""
+        """Distance that the shape may go from its start."""
         rows = [wave_number / 3] + ([0.25] if self.complex else [])
         return np.array(rows + [2.0] * (self.count - len(rows)))
 
@@ -119,7 +119,7 @@ class LinePoints:
 
     @cached_property
     def nodes(self) -> tuple[Estimate, ...]:
-        """Where the displacement changes its sign (m)."""
+        """Places where the displacement changes its sign (m)."""
         x, w = self._smooth
         found = []
         for i in np.flatnonzero(np.signbit(w[1:]) != np.signbit(w[:-1])):
@@ -157,8 +157,8 @@ class LinePoints:
 
     @property
     def antinode(self) -> tuple[si.Metre, Estimate] | None:
-        """Where the displacement is largest between the outermost nodes, and how large (m); None
-        of fewer than 2 nodes."""
+        """Place where the displacement is largest between the outermost nodes, and how large (m);
+        None of fewer than 2 nodes."""
         if len(self.nodes) < 2:
             return None
         x, w = self._smooth

@@ -65,7 +65,7 @@ class LineScanFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use: half wavelength, and amplitude at the best antinode where
+        """Observations for a calibration: half wavelength, and amplitude at the best antinode where
         the drive's voltage was told; by the points where an even wave does not fit. None where
         neither says anything (no two nodal lines)."""
         if not self.adequacy.adequate and not self.by_points:
@@ -300,7 +300,8 @@ class _FittedLine:
         )
 
     def _node(self, node: float) -> Estimate:
-        """Where the fitted size is least, near a node: a step of Newton's from there on |w|²."""
+        """Place where the fitted size is least, near a node: a step of Newton's from there on
+        |w|²."""
         step = 1e-3 / self.fit.shape[0]
         places = node + step * np.array([-1.0, 0.0, 1.0])
 
@@ -327,7 +328,7 @@ class _FittedLine:
 
 
 def _minima(x: si.MetreArray, size: si.FloatArray) -> si.MetreArray:
-    """Where the size is least between its neighbours, on a dense row."""
+    """Places where the size is least between its neighbours, on a dense row."""
     inside = (size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:])
     return np.asarray(x[1:-1][inside])
 

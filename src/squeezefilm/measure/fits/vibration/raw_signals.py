@@ -101,8 +101,11 @@ def _averaged(
 
     v, x, rate = signals
     settings: dict[str, Any] = {
-        "fs": rate, "window": "hann", "nperseg": length, "detrend": "linear"
-    }  # fmt: skip
+        "fs": rate,
+        "window": "hann",
+        "nperseg": length,
+        "detrend": "linear",
+    }
     f, drive = signal.welch(v, **settings)
     _, motion = signal.welch(x, **settings)
     _, cross = signal.csd(v, x, **settings)
@@ -122,7 +125,7 @@ def _averaged(
 
 
 def _resolution(found: RawSignalsFit) -> float:
-    """How many frequencies lie within the half-power band of the strongest resonance; infinite
+    """Number of frequencies lie within the half-power band of the strongest resonance; infinite
     where there is none."""
     f = found.response.frequency
     circle = modal_circle(f, np.asarray(found.response.displacement_per_volt))
@@ -163,7 +166,7 @@ def _recorded(recording: RawSignals) -> tuple[si.SecondArray, si.VoltArray, si.M
 
 
 def _coherent(found: RawSignalsFit, segment: si.Second) -> Adequacy:
-    """Whether the motion comes from the drive, and segments are long enough for what resonates."""
+    """Judge whether the motion comes from the drive, and segments are long enough."""
     f, coherence = found.response.frequency, found.response.coherence
     assert coherence is not None
     noise = float(np.sqrt(1 - np.mean(coherence)))

@@ -62,7 +62,7 @@ class RingDownFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration may use: resonance frequency and Q; none of an inadequate fit.
+        """Observations for a calibration: resonance frequency and Q; none of an inadequate fit.
 
         With losses of 1/Q the free decay rings at the resonance but for a share 1/8Q².
         """
@@ -135,7 +135,7 @@ class _Decay:
 
     @cached_property
     def wide(self) -> si.Hertz:
-        """How far the frequency may be from where the spectrum has it."""
+        """Distance that the frequency may be from where the spectrum has it."""
         return 20.0 / float(self.t[-1])
 
     @cached_property
@@ -213,7 +213,7 @@ class _Blocks:
         return 2 * self._mean(w * np.exp(-2j * np.pi * self.f * self.t))
 
     def misfits(self, residual: si.FloatArray) -> bool:
-        """Whether a residual has a structure that noise has not."""
+        """True where a residual has a structure that noise has not."""
         return correlation_factor(self.of(residual)) > 1
 
     def _mean(self, values: si.Array) -> si.Array:

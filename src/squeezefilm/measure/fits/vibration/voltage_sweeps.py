@@ -63,7 +63,7 @@ class VoltageSweepsFit:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """What a calibration of a linear plate may use: values for vanishing amplitudes; none where
+        """Observations of a linear plate: values for vanishing amplitudes; none where
         the fit is not adequate."""
         if not self.adequacy.adequate:
             return ()
@@ -110,8 +110,8 @@ def fit_voltage_sweeps(
     law: BackboneLaw | None = None,
     drift: bool = False,
 ) -> VoltageSweepsFit:
-    """How resonance frequency (Hz) and losses depend on the amplitude (m), from sweeps at several
-    voltages (V), up and down.
+    """Fit how resonance frequency (Hz) and losses depend on the amplitude (m), from sweeps at
+    several voltages (V), up and down.
 
     At every point [(f(a)/f0)² (1 + i/Q(a)) − (f/f0)²](x − R V) = g V with the amplitude a = |x|
     that was recorded: no branch has to be chosen, and jumps need no treatment. Residuals are
@@ -217,7 +217,7 @@ class _Duffing:
 
     @property
     def power(self) -> int:
-        """Of the amplitude in the backbone."""
+        """Power of the amplitude in the backbone."""
         return 2 if self.law == "quadratic" else 1
 
     def terms(self, at: si.FloatArray) -> tuple[si.ComplexArray, ...]:
@@ -235,7 +235,7 @@ class _Duffing:
         return tuple(np.asarray(one, dtype=complex) for one in (D, slope, x, g * points.v))
 
     def steps_to_curve(self, at: si.FloatArray) -> tuple[si.ComplexArray, si.FloatArray]:
-        """How far each point is from the curve, to first order, and how far from a fold: the
+        """Distance of each point from the curve, to first order, and how far from a fold: the
         determinant of the equation's slopes over that of a linear one."""
         D, slope, x, wanted = self.terms(at)
         E, u = D * x - wanted, self.points.u
@@ -327,7 +327,7 @@ def _first_look(
 
 
 def _left(look: tuple[_Duffing, NonlinearFit, si.FloatArray]) -> float:
-    """How far points away from folds are from a law's curve after its first look."""
+    """Distance of points away from folds from a law's curve after its first look."""
     duffing, fit, _ = look
     step, folded = duffing.steps_to_curve(fit.numbers)
     return float(np.mean(np.minimum(np.abs(step), 0.2)[folded > _FOLD] ** 2))

@@ -23,20 +23,30 @@ _SAID = re.compile(r'\s*"([^":]+):\s*([^"]*)"\s*$')
 _COLUMNS = ("real", "imaginary", "memory real", "memory imaginary")
 # What traces A and B hold, by the words of the head's parameter.
 _SYMBOLS = {
-    "LS": ("series_inductance", "H"), "LP": ("parallel_inductance", "H"),
-    "CS": ("series_capacitance", "F"), "CP": ("parallel_capacitance", "F"),
-    "RS": ("resistance", "ohm"), "R": ("resistance", "ohm"), "RP": ("parallel_resistance", "ohm"),
-    "X": ("reactance", "ohm"), "G": ("conductance", "S"), "B": ("susceptance", "S"),
-    "Q": ("quality_factor", "1"), "D": ("dissipation_factor", "1"),
-    "|Z|": ("magnitude", "ohm"), "Z": ("magnitude", "ohm"), "IMPEDANCE": ("magnitude", "ohm"),
-    "|Y|": ("admittance_magnitude", "S"), "Y": ("admittance_magnitude", "S"),
+    "LS": ("series_inductance", "H"),
+    "LP": ("parallel_inductance", "H"),
+    "CS": ("series_capacitance", "F"),
+    "CP": ("parallel_capacitance", "F"),
+    "RS": ("resistance", "ohm"),
+    "R": ("resistance", "ohm"),
+    "RP": ("parallel_resistance", "ohm"),
+    "X": ("reactance", "ohm"),
+    "G": ("conductance", "S"),
+    "B": ("susceptance", "S"),
+    "Q": ("quality_factor", "1"),
+    "D": ("dissipation_factor", "1"),
+    "|Z|": ("magnitude", "ohm"),
+    "Z": ("magnitude", "ohm"),
+    "IMPEDANCE": ("magnitude", "ohm"),
+    "|Y|": ("admittance_magnitude", "S"),
+    "Y": ("admittance_magnitude", "S"),
     "ADMITTANCE": ("admittance_magnitude", "S"),
-}  # fmt: skip
+}
 _PARTS = {"ohm": ("resistance", "reactance"), "S": ("conductance", "susceptance")}
 
 
 def is_4294a(path: Path) -> bool:
-    """Whether a file begins as the analyser's export does."""
+    """True where a file begins as the analyser's export does."""
     try:
         with opened(path, RECORDING_BYTES, "a recording") as handle:
             return _HEAD.match(os.read(handle, 40).decode("latin-1")) is not None
@@ -94,8 +104,11 @@ def read_4294a(path: Path) -> RawTable:
             )
         columns += list(numbers[:, 1:].T)
         names += [f"{trace.letter} {part}" for part in _COLUMNS[: numbers.shape[1] - 1]]
-    notes += [f"the analyser says {key.lower()}: {value}" for key, value in head.items()
-              if key in ("OSC LEVEL", "DC BIAS", "SWEEP TYPE")]  # fmt: skip
+    notes += [
+        f"the analyser says {key.lower()}: {value}"
+        for key, value in head.items()
+        if key in ("OSC LEVEL", "DC BIAS", "SWEEP TYPE")
+    ]
     table = RawTable(
         file=path,
         format=f"4294A export, {head.get('MEASURE PARAMETER', 'parameter not said')}",
@@ -113,7 +126,7 @@ def read_4294a(path: Path) -> RawTable:
 
 
 def _described(head: dict[str, str], names: Sequence[str]) -> tuple[Held, ...]:
-    """Which column holds what by the analyser's own words; nothing for a parameter not known, or
+    """Quantities of the columns by the analyser's own words; nothing for a parameter not known, or
     one that leaves the sign of the reactance open."""
     said = head.get("MEASURE PARAMETER", "").upper()
     words = re.findall(r"\|?[A-Z]+\|?", said)
@@ -140,7 +153,7 @@ def _held(meant: Sequence[tuple[str, str]], columns: Sequence[str]) -> tuple[Hel
 
 
 def _read(lines: Sequence[str], path: Path) -> tuple[dict[str, str], list[_Trace]]:
-    """What the head says, and the traces."""
+    """Words of the head, and the traces."""
     head: dict[str, str] = {}
     traces: list[_Trace] = []
     for number, line in enumerate(lines, 1):

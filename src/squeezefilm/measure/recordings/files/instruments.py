@@ -18,9 +18,22 @@ from squeezefilm.measure.recordings.files.raw_table import Held, RawTable
 _HEAD_CHARACTERS = 4000
 _UNIT = re.compile(r"\s*[(\[]([^()\[\]]*)[)\]]|\s+in\s+(\S+)$")
 _BESIDE_A_NAME = re.compile(r"^trace\s*\d*\s*:?\s*|^tr\d+\s+|[-_ ]data$|^measurement\s*:?\s*")
-_SYMBOLS = {"º": "deg", "degree": "deg", "degrees": "deg", "degre": "deg", "siemens": "S",
-            "volt": "V", "volts": "V", "second": "s", "seconds": "s", "sec": "s", "ohms": "ohm",
-            "db": "dB", "u": "1", "": "1"}  # fmt: skip
+_SYMBOLS = {
+    "º": "deg",
+    "degree": "deg",
+    "degrees": "deg",
+    "degre": "deg",
+    "siemens": "S",
+    "volt": "V",
+    "volts": "V",
+    "second": "s",
+    "seconds": "s",
+    "sec": "s",
+    "ohms": "ohm",
+    "db": "dB",
+    "u": "1",
+    "": "1",
+}
 
 
 @dataclass(frozen=True)
@@ -76,8 +89,8 @@ def recognised(text: str) -> Instrument | None:
 
 
 def held_by(names: Sequence[str]) -> tuple[Held, ...]:
-    """What columns with these names hold: frequency with the first pair that makes an impedance, or
-    time with voltages; nothing where the names do not say."""
+    """Quantities that columns with these names hold: frequency with the first pair that makes an
+    impedance, or time with voltages; nothing where the names do not say."""
     found: dict[str, list[tuple[int, str]]] = {}
     for number, name in enumerate(names, 1):
         for quantity, unit in _read_name(name):
@@ -143,7 +156,7 @@ def _is_unit(symbol: str) -> bool:
 
 
 def _alike(first: str, second: str) -> bool:
-    """Whether two units are of one dimension."""
+    """True where two units are of one dimension."""
     if "dB" in (first, second):
         return first == second
     return si.parse_unit(first)[1] == si.parse_unit(second)[1]

@@ -91,7 +91,7 @@ class RawTable:
 
     @property
     def known_names(self) -> list[str]:
-        """What columns may be called: their names, whole and without a unit."""
+        """Names by which columns may be called: their names, whole and without a unit."""
         bare = [_UNIT_IN_NAME.sub("", name).strip() for name in self.names]
         return [name for name in (*bare, *self.names) if name]
 

@@ -59,12 +59,12 @@ class _Notation:
         return float(cell.replace(",", ".") if self.decimal == "," else cell)
 
     def is_row(self, line: str) -> bool:
-        """Whether a line is a row of numbers, as many as there are columns."""
+        """True where a line is a row of numbers, as many as there are columns."""
         cells = self.split(line)
         return len(cells) == self.cells and all(map(self.is_number, cells))
 
     def is_number(self, cell: str) -> bool:
-        """Whether a cell holds a number; NaN is one, to be refused with its place."""
+        """True where a cell holds a number; NaN is one, to be refused with its place."""
         try:
             self.number(cell)
         except ValueError:
@@ -73,7 +73,7 @@ class _Notation:
 
     @property
     def words(self) -> str:
-        """How numbers are written, for people."""
+        """Notation of numbers, for people."""
         point = "a comma" if self.decimal == "," else "a point"
         return f"{_WORDS[self.delimiter]} between the columns, decimals after {point}"
 
@@ -197,8 +197,12 @@ def _values(rows: Sequence[tuple[int, str]], notation: _Notation, path: Path) ->
     for k, (number, line) in enumerate(rows):
         cells = notation.split(line)
         if len(cells) != notation.cells:
-            raise ConfigError(_miscounted(cells, notation, last=k == len(rows) - 1), file=path,
-                              line=number, column=min(len(cells), notation.cells + 1))  # fmt: skip
+            raise ConfigError(
+                _miscounted(cells, notation, last=k == len(rows) - 1),
+                file=path,
+                line=number,
+                column=min(len(cells), notation.cells + 1),
+            )
         for column, cell in enumerate(cells):
             try:
                 found[k, column] = notation.number(cell)

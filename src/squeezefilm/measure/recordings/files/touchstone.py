@@ -113,10 +113,12 @@ def _options(words: list[str], path: Path) -> tuple[str, str, str, si.Ohm]:
 
 
 def _held(names: list[str], unit: str, kind: str, form: str) -> tuple[Held, ...]:
-    """What the columns of port 1 hold."""
-    real, imaginary = {"S": ("reflection", "reflection_imaginary"),
-                       "Z": ("resistance", "reactance"),
-                       "Y": ("conductance", "susceptance")}[kind]  # fmt: skip
+    """Quantities that the columns of port 1 hold."""
+    real, imaginary = {
+        "S": ("reflection", "reflection_imaginary"),
+        "Z": ("resistance", "reactance"),
+        "Y": ("conductance", "susceptance"),
+    }[kind]
     linear = {"S": "1", "Z": "ohm", "Y": "S"}[kind]
     second, angle = (imaginary, linear) if form == "RI" else ("phase", "deg")
     if form != "RI":

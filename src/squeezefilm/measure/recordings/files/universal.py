@@ -154,7 +154,7 @@ def _require_whole(block: _Block, path: Path) -> None:
 
 
 def _said(block: _Block) -> str:
-    """What a function says of itself."""
+    """Words of a function on itself."""
     c = block.content
     words = [str(c.get(key, "")).strip() for key in ("id1", "ordinate_axis_lab")]
     unit = str(c.get("ordinate_axis_units_lab", "")).strip()
