@@ -34,7 +34,7 @@ from squeezefilm.design.search.found import DesignSearch
 from squeezefilm.design.search.report.figures import FIGURES as FIGURES_OF_DESIGN
 from squeezefilm.design.search.report.page import write_design
 from squeezefilm.design.sweep.report.figures import sweep_figure
-from squeezefilm.design.sweep.report.files import write_sweep
+from squeezefilm.design.sweep.report.page import write_sweep
 from squeezefilm.design.sweep.swept import Sweep
 from squeezefilm.design.textures.report import figures as textures
 from squeezefilm.design.textures.report import gallery

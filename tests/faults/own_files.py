@@ -20,9 +20,8 @@ from squeezefilm.core.kept.store import Kept as KeptResults
 from squeezefilm.design.search.evolution import Proposals
 from squeezefilm.design.search.store import FILE as DESIGNS
 from squeezefilm.design.search.store import DesignStore
-from squeezefilm.design.sweep.kept import FILE as ANSWERS
-from squeezefilm.design.sweep.kept import Kept
-from squeezefilm.design.sweep.points import Answer, Point
+from squeezefilm.design.sweep.points import FILE as ANSWERS
+from squeezefilm.design.sweep.points import Answer, Kept, Point
 from squeezefilm.design.sweep.report.compared import compared_rows
 from squeezefilm.instruments.session.record.trace import export_trace
 from squeezefilm.instruments.session.record.trace_writer import TraceWriter

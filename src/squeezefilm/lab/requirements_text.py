@@ -16,7 +16,7 @@ from squeezefilm.core.config.scan import require_quick_toml
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.design.search.candidate import Design
 from squeezefilm.design.search.criteria import bounded, criterion_of
-from squeezefilm.design.search.report.plates import plate_file
+from squeezefilm.design.search.report.page import plate_file
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.lab.files import existing
 

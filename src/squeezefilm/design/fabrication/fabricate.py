@@ -12,9 +12,13 @@ from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.design.fabrication.bill import BillRow, bill_of
-from squeezefilm.design.fabrication.nodal_lines import NodalLines, nodal_lines_of
 from squeezefilm.design.fabrication.test_plan import Known, TestStep, test_plan
-from squeezefilm.design.fabrication.wiring import Electrode, electrodes_of
+from squeezefilm.design.fabrication.wiring import (
+    Electrode,
+    NodalLines,
+    electrodes_of,
+    nodal_lines_of,
+)
 from squeezefilm.measure.calibration.blind import (
     BlindPrediction,
     Predicted,

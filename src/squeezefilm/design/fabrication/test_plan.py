@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from squeezefilm.core import quantities as si
-from squeezefilm.design.fabrication.nodal_lines import NodalLines
+from squeezefilm.design.fabrication.wiring import NodalLines
 from squeezefilm.measure.calibration.blind import Predicted
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.physics.chain.pad_place import place_words

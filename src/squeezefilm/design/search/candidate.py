@@ -1,4 +1,5 @@
-"""One design of a search: what was chosen, the display that follows, and what it does."""
+"""One design of a search: what was chosen, the display that follows, and what it does; and the
+display that the front is set beside, asked the same."""
 
 from __future__ import annotations
 
@@ -22,10 +23,10 @@ from squeezefilm.design.search.criteria import (
     numbers_of_solved,
 )
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.sources import plate_sources
+from squeezefilm.design.search.sources import plate_sources, shared_sources
 from squeezefilm.design.search.space import VOLTAGE, Setting
 from squeezefilm.physics.chain.prediction import Prediction, predict
-from squeezefilm.physics.display import Display
+from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.beam.modes import timoshenko_frequency
 from squeezefilm.physics.plate.laminate import plate_laminate, section_with
 from squeezefilm.physics.plate.layout import RectangularPlate
@@ -213,3 +214,41 @@ def _judged(
 
 def _since(began: float) -> si.Second:
     return time.perf_counter() - began
+
+
+_NOT_CHOSEN = Design(0, ())
+"""In place of a design, since nobody chose it."""
+
+
+def reference_of(requirements: Requirements) -> Evaluated:
+    """What the display of `compare_with` does at the requirements' voltage, under their finger, on
+    their surface, cooled as theirs are; solved in three dimensions.
+
+    It has no class of cost, since nobody says what it is built from. Where it cannot be judged, its
+    reason says why.
+    """
+    base, own = requirements.base, load_display(requirements.compare_with)
+    of_body = {at: one for at, one in own.provenance.items() if at.startswith("actuator.")}
+    display = replace(
+        own,
+        finger=base.finger,
+        surfaces=base.surfaces,
+        gas=base.gas,
+        thermal=base.thermal,
+        active_area=None,
+        provenance=shared_sources(requirements) | of_body,
+    )
+    try:
+        found = predict(display, voltage=requirements.drive.voltage)
+        if not found.mode.has_shape:
+            return _not_judged(found.objections[-1])
+        numbers = numbers_of_prediction(requirements, display, found)
+        numbers |= numbers_of_solved(requirements, display, found)
+    except SqueezefilmError as error:
+        return _not_judged(str(error))
+    del numbers["cost"]
+    return Evaluated(_NOT_CHOSEN, "solved", numbers, breaches(numbers, requirements.limits))
+
+
+def _not_judged(reason: str) -> Evaluated:
+    return Evaluated(_NOT_CHOSEN, "solved", {}, reason=reason)

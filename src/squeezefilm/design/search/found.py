@@ -16,11 +16,11 @@ from squeezefilm.core.results import Result, to_json
 from squeezefilm.design.search.candidate import Evaluated, plates_of, sourced_display_of
 from squeezefilm.design.search.correction import Correction
 from squeezefilm.design.search.criteria import CRITERIA
-from squeezefilm.design.search.front import dominates, hypervolume, knee_of
 from squeezefilm.design.search.reasons import EmptyCorner, LimitReason
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.tolerance import Made
 from squeezefilm.design.search.worth_solving import objectives_of, worst_corner
+from squeezefilm.design.sweep.tradeoffs import dominates, hypervolume, knee_of
 from squeezefilm.physics.display import Display
 
 

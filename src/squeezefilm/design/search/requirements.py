@@ -14,10 +14,9 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.from_text import ReadBy
-from squeezefilm.design.search.shape import Body, Room
 from squeezefilm.design.search.shapes import AnyShape, shape_called
 from squeezefilm.design.search.space import VOLTAGE, Space, number
-from squeezefilm.design.search.stock import OWN
+from squeezefilm.design.search.stock import OWN, Body, Room
 from squeezefilm.measure.fits.friction.person import with_finger
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.display import Display, load_display

@@ -24,19 +24,19 @@ from squeezefilm.design.search.candidate import (
     design_of,
     evaluate_all,
     plates_of,
+    reference_of,
 )
 from squeezefilm.design.search.correction import Correction, learned
 from squeezefilm.design.search.evolution import POPULATION, Proposals
 from squeezefilm.design.search.found import DesignSearch, FrontMember
-from squeezefilm.design.search.front import front_of
 from squeezefilm.design.search.reasons import empty_corners, limit_reasons
-from squeezefilm.design.search.reference import reference_of
 from squeezefilm.design.search.requirements import NamedRequirements
 from squeezefilm.design.search.space import VOLTAGE, Space
 from squeezefilm.design.search.store import DesignStore, requirements_hash
 from squeezefilm.design.search.tolerance import Made, made_of
 from squeezefilm.design.search.worth_solving import Seen, objectives_of, worth_solving
 from squeezefilm.design.sweep.tasks import Lost, Workers
+from squeezefilm.design.sweep.tradeoffs import front_of
 from squeezefilm.design.sweep.workers import workers
 
 # Screened designs to a task: one takes some ten milliseconds.

@@ -12,8 +12,8 @@ from squeezefilm.core import quantities as si
 from squeezefilm.design.search.candidate import Design, Evaluated, Level, plates_of
 from squeezefilm.design.search.correction import Correction
 from squeezefilm.design.search.criteria import breaches, criterion_of
-from squeezefilm.design.search.front import layers_of
 from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.sweep.tradeoffs import layers_of
 
 # A design is solved though the screening says that it breaks a limit by up to this share; it tells
 # frequencies better than what depends on losses.

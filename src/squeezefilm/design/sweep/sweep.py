@@ -19,9 +19,8 @@ from squeezefilm.core.progress import SayProgress, about
 from squeezefilm.core.results import config_hash, stamp
 from squeezefilm.design.sweep.answers import FOLLOWED, Asked
 from squeezefilm.design.sweep.followed import FollowedMode, followed_modes
-from squeezefilm.design.sweep.kept import Kept, address
 from squeezefilm.design.sweep.plan import plan_of, told_apart
-from squeezefilm.design.sweep.points import Answer, Point, answered
+from squeezefilm.design.sweep.points import Answer, Kept, Point, address, answered
 from squeezefilm.design.sweep.swept import NOT_YET, Column, Sweep, counted
 from squeezefilm.design.sweep.workers import workers
 from squeezefilm.physics.display import Display, NamedDisplay

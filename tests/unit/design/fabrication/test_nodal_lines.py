@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import squeezefilm as sf
-from squeezefilm.design.fabrication.nodal_lines import nodal_lines_of
+from squeezefilm.design.fabrication.wiring import nodal_lines_of
 from squeezefilm.physics.plate.layout import RectangularPlate, turned
 from squeezefilm.physics.plate.working_mode import working_mode
 

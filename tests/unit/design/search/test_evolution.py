@@ -9,7 +9,7 @@ from tests.unit.design.search.made_up import formula, random_designs, requiremen
 
 from squeezefilm.design.search.candidate import Design, Evaluated, Level, evaluate
 from squeezefilm.design.search.evolution import Proposals
-from squeezefilm.design.search.front import hypervolume
+from squeezefilm.design.sweep.tradeoffs import hypervolume
 
 WORST = np.array([0.7, 5e-4])
 

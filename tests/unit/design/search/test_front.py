@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from squeezefilm.design.search.front import (
+from squeezefilm.design.sweep.tradeoffs import (
     dominates,
     front_of,
     hypervolume,

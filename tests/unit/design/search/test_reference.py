@@ -8,7 +8,7 @@ from tests.unit.design.search.report.made_search import made_search
 
 from squeezefilm.core.errors import GeometryError
 from squeezefilm.design.search import reference
-from squeezefilm.design.search.reference import reference_of
+from squeezefilm.design.search.candidate import reference_of
 from squeezefilm.design.search.requirements import load_requirements
 from squeezefilm.physics.chain.prediction import Prediction, predict
 

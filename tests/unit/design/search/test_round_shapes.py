@@ -9,7 +9,7 @@ from squeezefilm.core import config
 from squeezefilm.core.errors import GeometryError, InputError
 from squeezefilm.design.search.candidate import design_of, display_of
 from squeezefilm.design.search.requirements import Requirements, load_requirements
-from squeezefilm.design.search.round_shapes import Ring
+from squeezefilm.design.search.shapes import Ring
 from squeezefilm.physics.plate.layout import DiscPlate
 
 RING = """

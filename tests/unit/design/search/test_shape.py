@@ -4,9 +4,8 @@ import pytest
 from tests.unit.design.search.made_up import requirements
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.search.shape import counts
 from squeezefilm.design.search.shapes import Strips
-from squeezefilm.design.search.stock import OWN, CeramicStock, Sheet
+from squeezefilm.design.search.stock import OWN, CeramicStock, Sheet, counts
 
 SHEET, CERAMIC = Sheet(OWN, (1e-3,)), CeramicStock(OWN, (5e-4,))
 

@@ -8,9 +8,13 @@ import pytest
 from tests.unit.design.search.made_up import requirements
 
 from squeezefilm.core import config
-from squeezefilm.design.search.candidate import design_of, evaluate, sourced_display_of
-from squeezefilm.design.search.reference import reference_of
-from squeezefilm.design.search.report.plates import plate_file
+from squeezefilm.design.search.candidate import (
+    design_of,
+    evaluate,
+    reference_of,
+    sourced_display_of,
+)
+from squeezefilm.design.search.report.page import plate_file
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.uncertainty.uncertainty import uncertain_friction

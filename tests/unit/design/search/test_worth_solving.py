@@ -7,12 +7,12 @@ from tests.unit.design.search.made_up import formula, random_designs, requiremen
 
 from squeezefilm.design.search.candidate import Design, Evaluated, Level
 from squeezefilm.design.search.correction import learned
-from squeezefilm.design.search.front import front_of
 from squeezefilm.design.search.worth_solving import (
     _adding_most,
     objectives_of,
     worth_solving,
 )
+from squeezefilm.design.sweep.tradeoffs import front_of
 
 WANTED = requirements()
 SCREENED = {one: formula(WANTED, one, "screened") for one in random_designs(WANTED, 300)}

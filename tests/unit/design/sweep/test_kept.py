@@ -9,8 +9,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.sweep import kept
-from squeezefilm.design.sweep.kept import FILE, Kept, address
-from squeezefilm.design.sweep.points import Answer, Point
+from squeezefilm.design.sweep.points import FILE, Answer, Kept, Point, address
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.uncertainty.parameters import with_values
 

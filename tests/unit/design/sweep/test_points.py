@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from squeezefilm.design.sweep.points import Answer, Point, answer_of, answered
-from squeezefilm.design.sweep.processes import Processes
 from squeezefilm.design.sweep.tasks import ThisProcess
 from squeezefilm.design.sweep.verbs import VERBS
+from squeezefilm.design.sweep.workers import Processes
 from squeezefilm.physics.display import load_display
 
 STATOR = load_display("biet2008-stator")

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from tests.counted_tasks import counted, deadly, lines, refused, whose
 
-from squeezefilm.design.sweep.processes import Processes
 from squeezefilm.design.sweep.tasks import Lost
+from squeezefilm.design.sweep.workers import Processes
 
 pytestmark = pytest.mark.slow
 

@@ -3,9 +3,8 @@
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.sweep.processes import Processes
 from squeezefilm.design.sweep.tasks import ThisProcess
-from squeezefilm.design.sweep.workers import workers
+from squeezefilm.design.sweep.workers import Processes, workers
 
 
 def test_one_process_is_this_one_and_more_are_a_pool() -> None:

@@ -11,7 +11,7 @@ from squeezefilm.core import config
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.design.search.candidate import display_of
 from squeezefilm.design.search.criteria import criterion_of
-from squeezefilm.design.search.report.plates import plate_file
+from squeezefilm.design.search.report.page import plate_file
 from squeezefilm.lab.designing.form import preset_text
 from squeezefilm.lab.designing.numbers import opened
 from squeezefilm.lab.requirements_text import (

@@ -9,8 +9,10 @@ from html import escape
 from pathlib import Path
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.config.write import text_of
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import csv_text, json_text, require_folder, write_folder
+from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.page_style import (
     FigureOf,
     as_html,
@@ -24,11 +26,11 @@ from squeezefilm.core.kit.page_style import (
     text_table,
     verdict_list,
 )
+from squeezefilm.design.search.candidate import Design, sourced_display_of
 from squeezefilm.design.search.criteria import CRITERIA, bounded, criterion_of
 from squeezefilm.design.search.found import DesignSearch, FrontMember
 from squeezefilm.design.search.reasons import margins
 from squeezefilm.design.search.report.figures import FIGURES, MARKED
-from squeezefilm.design.search.report.plates import plate_file
 from squeezefilm.design.search.report.words import (
     asked_sentences,
     chosen_sentences,
@@ -46,6 +48,7 @@ from squeezefilm.design.search.report.words import (
     reference_sentences,
     row_of,
 )
+from squeezefilm.design.search.requirements import Requirements
 
 _SURE: si.Dimensionless = 0.95
 """The share of the plates made that must keep all limits for a plate to be called good."""
@@ -333,3 +336,19 @@ def _files(found: DesignSearch) -> str:
         "plates/NAME.toml</code> works it out, <code>squeezefilm render</code> plays a texture on "
         "it.</p>"
     )
+
+
+def plate_file(requirements: Requirements, design: Design) -> str:
+    """The text of a TOML file from which `load_display` reads the plate: the same values, and of
+    each where it is from.
+
+    Raises `GeometryError` for a design that cannot be built, and `InputError` as `text_of`.
+    """
+    said = printable(chosen_words(requirements, design))
+    head = (
+        f"# A plate that squeezefilm design found for the requirements "
+        f"'{printable(requirements.name)}':\n# {said}.\n"
+        "# It was computed and never built. squeezefilm analyze works it out.\n\n"
+    )
+    display = sourced_display_of(requirements, design)
+    return head + text_of(display, display.provenance)

@@ -20,7 +20,6 @@ from squeezefilm.core.distributions import Normal, Uniform
 from squeezefilm.core.formats.drawing import Dimension, Drawing, Ordinate, Polyline, Text
 from squeezefilm.core.formats.dxf import APPLICATION, dxf_text
 from squeezefilm.design.fabrication.fabricate import Fabrication
-from squeezefilm.design.fabrication.nodal_lines import NodalLines
 from squeezefilm.design.fabrication.report.drawing_sheet import drawing_sheet
 from squeezefilm.design.fabrication.report.rectangular_sheet import electrode_rows
 from squeezefilm.design.fabrication.report.round_sheet import sector_rows
@@ -34,6 +33,7 @@ from squeezefilm.design.fabrication.report.sheet_parts import (
     table,
     tolerance_said,
 )
+from squeezefilm.design.fabrication.wiring import NodalLines
 from squeezefilm.physics.plate.layout import CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.physics.uncertainty.parameters import value_at
 

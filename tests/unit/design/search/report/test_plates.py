@@ -10,7 +10,7 @@ from squeezefilm.core import config
 from squeezefilm.core.config.provenance import UNSTATED
 from squeezefilm.core.results import config_hash
 from squeezefilm.design.search.found import DesignSearch, FrontMember
-from squeezefilm.design.search.report.plates import plate_file
+from squeezefilm.design.search.report.page import plate_file
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import GlueLayer

@@ -15,7 +15,7 @@ from squeezefilm.core.formats.traces import parquet_of_columns
 from squeezefilm.design.sweep.axes import Axis
 from squeezefilm.design.sweep.followed import FollowedMode
 from squeezefilm.design.sweep.report.figures import sweep_figure
-from squeezefilm.design.sweep.report.files import require_kind, sweep_csv, write_sweep
+from squeezefilm.design.sweep.report.page import require_kind, sweep_csv, write_sweep
 from squeezefilm.design.sweep.report.terminal import (
     in_lines,
     show_answers,
