@@ -25,13 +25,11 @@ from typing import Any
 import numpy as np
 from scipy.linalg import solve_banded
 
-from squeezefilm.physics.film.line_grid import uniform_gap
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import flexural_profile
 from squeezefilm.physics.film.planar.film import solve_planar
 from squeezefilm.physics.film.planar.gap import PlanarGap
-from squeezefilm.physics.film.transient.settling import settle_to_periodic
 
 
 def best_time(run: Callable[[], object], repeats: int = 3) -> float:
@@ -195,43 +193,6 @@ def ours_at(error: float, sigma: float, eps: float, exact: float) -> tuple[float
     return abs(ours / exact - 1.0), each, best_time(one_by_one) / 100
 
 
-def against_transient() -> None:
-    """The first of some fixed resolutions, cheap ones first, that is within 0.5 %."""
-    print(
-        "\nAgainst our own transient solver (settle_to_periodic, BDF2, accelerated) at equal error"
-    )
-    print("     σ    ε   steps × cells  periods     error     ms (by tolerance 5e-3: error, ms)"
-          "   ours: error   µs in a batch   µs alone   ratio: batch   alone")  # fmt: skip
-    eps = 0.5
-    gap = uniform_gap(eps)
-    ladder = ((32, 12), (64, 16), (64, 24), (96, 24), (96, 32), (128, 32), (192, 48))
-    for sigma in (1.0, 10.0, 100.0):
-        exact = float(solve_films(sigma, eps, tolerance=1e-7).over_pressure)
-        for steps, cells in ladder:
-
-            def fixed(sigma: float = sigma, steps: int = steps, cells: int = cells) -> Any:
-                return settle_to_periodic(
-                    gap, sigma, tolerance=None, cells=cells, steps=steps, settled=1e-6
-                )
-
-            film = fixed()
-            error = abs(film.over_pressure / exact - 1.0)
-            if error <= 5e-3:
-                break
-
-        def adaptive(sigma: float = sigma) -> Any:
-            return settle_to_periodic(gap, sigma, tolerance=5e-3, cells=8, steps=16, settled=1e-6)
-
-        seconds, own = best_time(fixed, 10), best_time(adaptive, 10)
-        own_error = abs(adaptive().over_pressure / exact - 1.0)
-        ours, each, alone = ours_at(error, sigma, eps, exact)
-        print(
-            f"{sigma:6g} {eps:4g}   {steps:5d} × {cells:5d} {film.periods:8d} {error:9.1e} "
-            f"{seconds * 1e3:6.2f} ({own_error:20.1e}, {own * 1e3:.2f}) {ours:19.1e} "
-            f"{each * 1e6:15.1f} {alone * 1e6:10.0f} {seconds / each:14,.0f} {seconds / alone:7.1f}"
-        )
-
-
 def gapflow_strip(problem_class: Any, sigma: float, inertia: float, cells: int) -> Any:
     """A GaPFlow problem at rest: parallel plates, ideal gas, ambient density at both ends.
 
@@ -357,7 +318,6 @@ def main() -> None:
     speed_map(5e-3, 4000 // share)
     ridges()
     against_march()
-    against_transient()
     ellipses()
     against_gapflow()
 

@@ -82,10 +82,6 @@ class Later:
     make: Callable[[], Any]
 
 
-def still_gap(X: Any, T: Any) -> Any:
-    return 1 + 0.2 * np.cos(T) + 0 * X
-
-
 def planar_gap(X: Any, Y: Any, T: Any) -> Any:
     return 1 + 0.2 * np.cos(T) + 0 * X + 0 * Y
 
@@ -170,14 +166,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "signals": np.cos(np.arange(640.0)),
         "time_step": 1e-3,
         "lines": np.array([100.0]),
-    },
-    "physics.film.line_grid.gap_table": {"gap": still_gap, "X": _GRID, "T": _GRID},
-    "physics.film.transient.settling.settle_to_periodic": {"gap": still_gap},
-    "physics.film.transient.march.solve_transient": {
-        "gap": still_gap,
-        "end": 1.0,
-        "steps": 32,
-        "cells": 16,
     },
     "physics.film.planar.film.solve_planar": {
         "shape": "rectangle",

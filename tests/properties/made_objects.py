@@ -39,7 +39,6 @@ from squeezefilm.physics.contact.sliding.dry_friction import (
 from squeezefilm.physics.contact.sliding.march import Sliding, slide
 from squeezefilm.physics.display import Display, Surface, load_display
 from squeezefilm.physics.film.gap import PaperGap
-from squeezefilm.physics.film.periodic.balance import VibratedFilm
 from squeezefilm.physics.film.periodic.profile import GapProfile, flexural_profile
 from squeezefilm.physics.film.planar.gap import PlanarGap
 from squeezefilm.physics.plate.beam.modes import BeamMode
@@ -234,7 +233,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     CeramicPatch: lambda: PLATE.patches[0],
     LoadedMode: lambda: LoadedMode(30e3, 60.0, 0.01 + 0.01j),
     SurfaceLoad: lambda: SurfaceLoad(10e-3, 2e-3, 5e-3, 5e-3, 1.0),
-    VibratedFilm: lambda: VibratedFilm(2e-6, 40e3, 10e-3),
     EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
     DrivenResponse: _capacitor,
     Amplifier: lambda: AMPLIFIERS[0],

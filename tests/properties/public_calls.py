@@ -63,10 +63,8 @@ NOT_CALLED = {
     physics.contact.sharing.balance.LoadSharing
     physics.contact.sliding.skin_vibration.SkinVibration
     physics.contact.sliding.march.Sliding
-    physics.film.periodic.balance.LoadBalance
     physics.film.periodic.batch.FilmBatch physics.film.periodic.solution.FilmSolution
-    physics.film.planar.film.FilmPlanar physics.film.transient.settling.FilmSettled
-    physics.film.transient.march.FilmTransient physics.film.transient.march.MovedFilm
+    physics.film.planar.film.FilmPlanar
     physics.film.validity.FilmValidity physics.film.validity.ValidityCheck
     physics.texture_files.hjif.HjifExport physics.plate.ring.modes.AnnularMode
     physics.plate.solid.resonances.DrivenMode
@@ -98,10 +96,8 @@ NOT_CALLED = {
     physics.plate.elements.slab_count.require_countable
     physics.plate.heat.states.WarmCase.states physics.plate.heat.states.WarmCase.time_to_fall
     physics.film.periodic.batch.check_film physics.film.periodic.batch.solve_all
-    physics.film.line_grid.LineGrid physics.film.line_grid.edge_graded
-    physics.film.line_grid.edge_layer physics.film.line_grid.gap_table
-    physics.film.line_grid.line_grid physics.film.line_grid.mean_over
-    physics.film.line_grid.refined_line physics.film.line_grid.uniform_gap
+    physics.film.planar.grid.edge_graded physics.film.planar.grid.edge_layer
+    physics.film.planar.grid.refined_line
     physics.film.periodic.nested.load_times physics.film.periodic.nested.force_harmonics
     physics.film.periodic.nested.levels_of physics.film.periodic.nested.refine
     physics.film.periodic.nested.steadied physics.film.periodic.small.fill_small

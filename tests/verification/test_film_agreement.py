@@ -2,15 +2,14 @@
 
 import numpy as np
 import pytest
+from tests.film_march import settle_to_periodic, uniform_gap
 
 from squeezefilm.physics.film.closed.linear import relative_damping, relative_stiffness
 from squeezefilm.physics.film.gas import FilmGas
-from squeezefilm.physics.film.line_grid import uniform_gap
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import flexural_profile
 from squeezefilm.physics.film.planar.film import solve_planar
 from squeezefilm.physics.film.planar.gap import PlanarGap
-from squeezefilm.physics.film.transient.settling import settle_to_periodic
 
 
 @pytest.mark.parametrize(
@@ -42,7 +41,7 @@ def test_harmonic_balance_agrees_with_the_march(
     march = settle_to_periodic(
         uniform_gap(excursion),
         sigma,
-        shape=shape,  # type: ignore[arg-type]
+        shape=shape,
         tolerance=1e-3,
         gas=FilmGas(n, knudsen, slip),
     )

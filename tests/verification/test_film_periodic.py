@@ -7,7 +7,6 @@ import pytest
 from tests.verification.trapped_film import trapped_load
 
 from squeezefilm.physics.film.gas import Aim, Gas
-from squeezefilm.physics.film.periodic.balance import VibratedFilm, mean_gap_for_load
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.kernel import newton
@@ -235,19 +234,6 @@ def test_field_and_load_agree():
     batch = solve_films(30.0, 0.6, tolerance=1e-5)
     assert batch.stiffness_relative == pytest.approx(solution.stiffness_relative, rel=1e-4)
     assert batch.damping_relative == pytest.approx(solution.damping_relative, rel=1e-4)
-
-
-def test_load_balance_carries_the_load():
-    film = VibratedFilm(2e-6, 40e3, 10e-3, mean_free_path=68e-9)
-    balance = mean_gap_for_load(film, 5e3, tolerance=1e-4)
-    check = solve_uniform(
-        balance.squeeze_number, balance.excursion_ratio,
-        knudsen_number=balance.knudsen_number, tolerance=1e-5,
-    )  # fmt: skip
-    assert check.over_pressure * 101325.0 == pytest.approx(5e3, rel=1e-4)
-    wider = mean_gap_for_load(film, 4.9e3, tolerance=1e-5)
-    slope = 100.0 / (wider.mean_gap - balance.mean_gap)
-    assert balance.static_stiffness == pytest.approx(slope, rel=0.05)
 
 
 def test_the_load_of_a_motion_grows_as_the_gap_closes_and_stays_below_salbu():

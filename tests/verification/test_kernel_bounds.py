@@ -22,7 +22,7 @@ SAMPLE = {
     "programs of textures": "properties/test_interpreters.py",
     "sliding": "properties/test_sliding.py",
     "load sharing": "properties/test_load_sharing.py",
-    "film in time": "verification/test_film_transient.py",
+    "film in time": "verification/test_film_march.py",
 }
 
 

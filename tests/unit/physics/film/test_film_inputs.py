@@ -8,10 +8,9 @@ import sys
 import numpy as np
 import pytest
 
-from squeezefilm.core.errors import ConvergenceError, GeometryError, InputError, UnreachableError
+from squeezefilm.core.errors import ConvergenceError, GeometryError, InputError
 from squeezefilm.physics.film.gas import MOST_SQUEEZE_NUMBER
 from squeezefilm.physics.film.periodic import batch, film, nested
-from squeezefilm.physics.film.periodic.balance import VibratedFilm, mean_gap_for_load
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import (
@@ -169,38 +168,14 @@ def test_workers_do_not_change_the_result():
     np.testing.assert_array_equal(one.over_pressure, two.over_pressure)
 
 
-def test_load_balance_refuses_what_the_film_cannot_carry():
-    with pytest.raises(UnreachableError, match=r"more than the film carries"):
-        mean_gap_for_load(VibratedFilm(2e-6, 40e3, 10e-3), 1e7)
-    with pytest.raises(UnreachableError, match=r"less than the film carries"):
-        mean_gap_for_load(VibratedFilm(2e-6, 40e3, 10e-3), 1e-9)
-    with pytest.raises(InputError, match="amplitude = 0 m"):
-        mean_gap_for_load(VibratedFilm(0.0, 40e3, 10e-3), 100.0)
-    with pytest.raises(InputError, match="shape = 'square'"):
-        mean_gap_for_load(VibratedFilm(1e-6, 40e3, 10e-3, shape="square"), 100.0)
-
-
-@pytest.mark.slow
-def test_load_balance_of_a_narrow_ridge():
-    # At σ far below 1 the over-pressure is of second order and tiny over most of the search.
-    balance = mean_gap_for_load(VibratedFilm(2e-6, 40e3, 250e-6, polytropic_exponent=1.2), 1e3)
-    assert balance.mean_load_pressure == pytest.approx(1e3, rel=1e-3)
-
-
 def test_importing_the_film_imports_neither_scipy_nor_numba():
     code = (
         "import sys, squeezefilm.physics.film.periodic.film;"
         "import squeezefilm.physics.film.periodic.batch;"
-        "import squeezefilm.physics.film.periodic.balance;"
         "print([m for m in ('scipy', 'numba') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
-
-
-def test_a_gas_of_tar_is_refused_before_a_solve_that_would_not_end():
-    with pytest.raises(InputError, match="squeeze_number"):
-        mean_gap_for_load(VibratedFilm(1e-6, 30e3, 0.03, viscosity=4e8), 1e4)
 
 
 @pytest.mark.slow

@@ -9,8 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
-from squeezefilm.physics.film.line_grid import tabulated
+from squeezefilm.core.errors import GeometryError, InputError
 
 # A thousand waves on the surface; some twenty cells a wave make a grid of it.
 _HIGHEST_WAVE_NUMBER = 2000 * np.pi
@@ -56,8 +55,27 @@ def gap_values(
 ) -> si.FloatArray:
     """H at every place and time, (places, times), checked: finite and open."""
     values = gap._at if isinstance(gap, PlanarGap) else gap
-    enough = "Reduce the vibration or the ridges, or raise the mean gap."
-    return tabulated(values, {"X": (X, 0), "Y": (Y, 0), "T": (T, 1)}, enough)
+    x, y, t = X[:, None], Y[:, None], T[None, :]
+    shape = (X.size, T.size)
+    try:
+        H = np.broadcast_to(np.asarray(values(x, y, t), dtype=float), shape)
+    except ValueError as error:
+        raise InputError(
+            f"the gap must return what broadcasts to {shape} for X {x.shape}, Y {y.shape}, "
+            f"T {t.shape}: {error}"
+        ) from error
+    # One pass on the way through; the place is looked for only where something is wrong.
+    if H.min() > 0.0 and H.max() < np.inf:
+        return np.ascontiguousarray(H)
+    finite = np.isfinite(H)
+    k, j = np.unravel_index(int(np.argmin(np.where(finite, H, -np.inf))), shape)
+    place = f"X = {X[k]:.4g}, Y = {Y[k]:.4g}, T = {T[j]:.4g}"
+    if not finite.all():
+        raise InputError(f"gap = {H[k, j]} at {place} cannot be used: it must be finite")
+    raise GeometryError(
+        f"the gap closes: H = {H[k, j]:.4g} at {place}; it must stay above 0. "
+        "Reduce the vibration or the ridges, or raise the mean gap."
+    )
 
 
 def require_periodic(gap: GapFunction, X: si.FloatArray, Y: si.FloatArray) -> None:
@@ -69,6 +87,5 @@ def require_periodic(gap: GapFunction, X: si.FloatArray, Y: si.FloatArray) -> No
         i, k = np.unravel_index(int(np.argmax(off)), off.shape)
         raise InputError(
             f"the gap is not periodic: H = {now[i, k]:.6g} at T = {T[k]} but {later[i, k]:.6g} "
-            f"one period 2π later (X = {X[i]:.4g}, Y = {Y[i]:.4g}); a motion without a period "
-            "is followed by solve_transient"
+            f"one period 2π later (X = {X[i]:.4g}, Y = {Y[i]:.4g}); only periodic films are solved"
         )

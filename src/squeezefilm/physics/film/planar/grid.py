@@ -16,7 +16,6 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.film.line_grid import edge_graded, edge_layer
 
 _Sides = Literal["open", "turn", "segment"]
 """Where columns end: at ambient gas, or in each other, with no line or one between two foci."""
@@ -154,6 +153,45 @@ def _edges(
             first = weight / (v_node[0] - v_face[0])
             edges.append((index[:, 0], *lines.at(u_node, v_face[:1]), first))
     return edges
+
+
+def edge_graded(count: int, layer: float) -> si.FloatArray:
+    """`count` + 1 points from 0 to 1, denser towards 1: half of them lie within `layer` of 1.
+
+    The map is smooth, so that second-order differences on it stay second order.
+    """
+    s = np.linspace(0.0, 1.0, count + 1)
+    if layer >= 0.499:
+        return s
+    beta = 2.0 * np.arccosh(0.5 / layer)
+    return np.asarray(1.0 - np.sinh(beta * (1.0 - s)) / np.sinh(beta))
+
+
+def edge_layer(squeeze_number: float, least: float = 2e-3) -> float:
+    """The distance from an edge, on a half width of 1, within which half the cells should lie."""
+    return float(min(0.5, max(4.0 / np.sqrt(squeeze_number), least)))
+
+
+def refined_line(
+    line: si.FloatArray, mean_gap: Callable[[si.FloatArray], si.FloatArray]
+) -> si.FloatArray:
+    """As many points as `line`, drawn also to where the mean gap is small.
+
+    The density added goes with 1/√H: over a crest, where H = a + b x², that is the map x ~ sinh s,
+    which resolves the crest and the groove alike. A gap that hardly varies leaves `line` as it is.
+    """
+    fine = np.linspace(line[0], line[-1], 64 * line.size + 1)
+    middle = (fine[1:] + fine[:-1]) / 2
+    H = mean_gap(middle)
+    if H.max() < 1.5 * H.min():
+        return line
+    s = np.linspace(0.0, 1.0, line.size)
+    crowd = np.diff(np.interp(fine, line, s))
+    crest = np.diff(fine) / np.sqrt(H)
+    total = np.concatenate([[0.0], np.cumsum(0.3 * crowd + 0.7 * crest / crest.sum())])
+    placed = np.interp(s * total[-1], total, fine)
+    placed[0], placed[-1] = line[0], line[-1]
+    return np.asarray(placed)
 
 
 def graded_line(

@@ -15,7 +15,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import PLANAR_MEMORY, require_within
-from squeezefilm.physics.film.line_grid import refined_line
 from squeezefilm.physics.film.periodic.nested import steadied
 from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film, resampled
 from squeezefilm.physics.film.planar.cut import cut_ellipse_grid
@@ -26,6 +25,7 @@ from squeezefilm.physics.film.planar.grid import (
     ellipse_grid,
     graded_line,
     rectangle_grid,
+    refined_line,
 )
 
 PlanarShape = Literal["rectangle", "disc", "ellipse"]
