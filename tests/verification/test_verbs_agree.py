@@ -14,7 +14,8 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.design.analysis.analyze import Analysis, analyze
-from squeezefilm.design.analysis.report.rows import friction_rows, vibration_rows
+from squeezefilm.design.analysis.report.first_screen import first_screen
+from squeezefilm.design.analysis.report.rows import vibration_rows
 from squeezefilm.design.plate.command import PlateAnalysis, solve_plate
 from squeezefilm.design.plate.modes import list_modes
 from squeezefilm.design.search.criteria import numbers_of_prediction, numbers_of_solved
@@ -146,8 +147,8 @@ def check_summaries(
 def check_rows(analysis: Analysis) -> None:
     """Assert that the report's rows say, to the digits that they have, what the JSON has."""
     p = analysis.prediction
-    rows = {label: (text, remark) for label, text, remark in vibration_rows(p)}
-    rows |= {label: (text, remark) for label, text, remark in friction_rows(analysis)}
+    rows = {label: (text, remark) for label, text, remark in first_screen(analysis).numbers}
+    rows |= {label: (text, remark) for label, text, remark in vibration_rows(p)}
     metre, volts = si.Unit("m"), p.voltage
     for label, value, unit in (
         ("Resonance frequency", p.mode.resonance_frequency, si.Unit("Hz")),

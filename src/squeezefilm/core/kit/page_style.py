@@ -34,8 +34,10 @@ main, header, footer {{ max-width: 70rem; margin: 0 auto; padding: 0 1.25rem; }}
 h1 {{ font-size: 1.75rem; line-height: 1.25; margin: 1.5rem 0 .25rem; }}
 h2 {{ font-size: 1.25rem; margin: 0 0 .6rem; }}
 .name, figcaption, footer, caption {{ color: var(--muted); }}
-section {{ background: var(--paper); border: 1px solid var(--grid); border-radius: .5rem;
+section, details {{ background: var(--paper); border: 1px solid var(--grid); border-radius: .5rem;
   padding: 1.1rem 1.25rem; margin: 1rem 0; }}
+section section, details section {{ border: 0; padding: 0; }} summary {{ cursor: pointer; }}
+summary h2 {{ display: inline; }} details[open] > summary {{ margin-bottom: .8rem; }}
 .part {{ margin: 2.2rem 0 0; }} .part h2 {{ font-size: 1.45rem; }} .part p {{ margin: 0; }}
 a {{ color: var(--blue); }}
 figure {{ margin: 0; }}
@@ -67,7 +69,8 @@ footer {{ font-size: .9rem; padding-bottom: 2rem; }}
 @media (max-width: 48rem) {{ ul.verdict li, ul.verdict b {{ display: block; }} }}
 @media print {{
   body {{ font-size: 10.5pt; }}
-  section {{ border: 0; padding: 0; margin: 0 0 1.2rem; }}
+  details::details-content {{ content-visibility: visible; display: block; height: auto; }}
+  section, details {{ border: 0; padding: 0; margin: 0 0 1.2rem; }}
   section.figure, ul.verdict li, tr {{ break-inside: avoid; }}
   .part:not(:first-child) {{ break-before: page; }}
   svg, .scroll img {{ min-width: 0; }}
@@ -143,6 +146,11 @@ def section(heading: str, body: str, kind: str = "") -> str:
     """A section of a class; heading and body are HTML already."""
     attribute = f' class="{kind}"' if kind else ""
     return f"<section{attribute}>\n<h2>{heading}</h2>\n{body}\n</section>\n"
+
+
+def folded(heading: str, body: str) -> str:
+    """A section that opens where its heading is asked for; printed it is open. HTML already."""
+    return f"<details>\n<summary><h2>{heading}</h2></summary>\n{body}\n</details>\n"
 
 
 _KINDS = {"good": "✓ Good", "limit": "△ Limit", "doubt": "? Doubt"}

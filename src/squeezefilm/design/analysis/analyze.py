@@ -38,6 +38,7 @@ from squeezefilm.design.analysis.sensitivities import (
 )
 from squeezefilm.design.analysis.verdict import (
     Finding,
+    as_json,
     ears_finding,
     held_back,
     model_form,
@@ -244,7 +245,7 @@ class Analysis(Result):
             "active_area": None if self.active_area is None else self.active_area.summary(),
             "relative_friction_interval": None if unsure is None else list(unsure.interval),
             "relative_friction_of_rival_models": self.rivals,
-            "model_form": to_json(self.model_form),
+            "model_form": None if self.model_form is None else as_json([self.model_form])[0],
             "relative_friction_median": None if unsure is None else unsure.median,
             **_intervals(unsure),
             "wanted": None if self.wanted is None else self.wanted.summary(),
@@ -277,7 +278,7 @@ class Analysis(Result):
             "other_models": to_json(self.other_models) if self.whole else None,
             "measured": [to_json(one) | {"difference": one.difference} for one in self.measured],
             "drive_electronics": to_json(self.drive_electronics),
-            "verdict": to_json(self.findings),
+            "verdict": as_json(self.findings),
             "provenance": stamp(self.display),
         }
 

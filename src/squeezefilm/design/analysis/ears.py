@@ -97,6 +97,17 @@ class EarExposure:
             "reviews call their basis thin."
         )
 
+    @property
+    def short(self) -> str:
+        """The level beside the guidance for the public, in a few words; empty without one."""
+        public = next((one for one in self.limits if one.guidance.audience == "public"), None)
+        if public is None or self.frequency < AUDIBLE:
+            return ""
+        return (
+            f"At an ear {self.distance:g} m away it makes {self.level_dB:.0f} dB, "
+            f"{_STANDING[public.standing]} {public.guidance.level_dB:.0f} dB recommended."
+        )
+
 
 _STANDING = {"below": "below the", "above": "above the", "open": "not surely below the"}
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -37,15 +37,19 @@ NOTICED_DIFFERENCE: si.Dimensionless = 0.2
 PLAUSIBLE_AMPLITUDE: si.Metre = 10e-6
 
 
+TOO_HOT = "Driven for long, it gets warmer than its ceramic is known for."
 Kind = Literal["good", "limit", "doubt"]
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One sentence of the verdict: good news, a limit to know, or a reason not to believe."""
+    """One sentence of the verdict: good news, a limit to know, or a reason not to believe; what it
+    is `about` where that matters, and in `short` what the first screen says in its place."""
 
     kind: Kind
     text: str
+    about: Literal["", "friction", "gratings", "sources"] = field(default="", compare=False)
+    short: str = field(default="", compare=False)
 
 
 def verdict(
@@ -81,13 +85,13 @@ def verdict(
                 "turn nonlinear and bonds fail long before, and nothing here sees that.",
             )
         if p.heat is not None and (hot := too_hot(p.heat)) is not None:
-            yield Finding("limit", hot)
+            yield Finding("limit", hot, short=TOO_HOT)
         if table is not None:
             yield _of_gratings(table, p.relative_friction)
         if not MODEL_KINDS[p.model].shares_load:
             yield from (Finding("doubt", check.sentence) for check in p.validity.failed)
         if (doubt := source_doubt(display.provenance)) is not None:
-            yield Finding("doubt", doubt)
+            yield Finding("doubt", doubt, "sources")
         yield Finding(
             "doubt",
             "Friction is by a model fitted to published friction of people on glass, and to "
@@ -95,9 +99,15 @@ def verdict(
             if p.model == DEFAULT_MODEL
             else f"Published friction of people on glass refutes the model '{p.model}' "
             "(squeezefilm reproduce --data published).",
+            "sources",
         )
 
     yield from (held_back(finding, why) for finding in found())
+
+
+def as_json(findings: Iterable[Finding]) -> list[dict[str, str]]:
+    """Findings for ``--json``: kind and text."""
+    return [{"kind": finding.kind, "text": finding.text} for finding in findings]
 
 
 def why_not_good(display: Display, p: Prediction) -> str | None:
@@ -126,7 +136,7 @@ def ears_finding(ears: EarExposure | None) -> Finding:
     if ears.frequency < AUDIBLE:
         return Finding("limit", ears.sentence)
     kind: dict[str, Kind] = {"below": "good", "above": "limit"}
-    return Finding(kind.get(ears.standing, "doubt"), ears.sentence)
+    return Finding(kind.get(ears.standing, "doubt"), ears.sentence, short=ears.short)
 
 
 def friction_verdict(
@@ -149,14 +159,15 @@ def friction_verdict(
     highest = worst if area.odds is None else max(worst or 0.0, area.odds.worst_interval[1])
     everywhere = highest is not None and worst is not None and highest < PAPER_CRITERION
     kind = "limit" if found.kind == "good" and not everywhere else found.kind
-    return replace(found, kind=kind), Finding(kind, f"{area.area.sentence}{_odds(area)}")
+    over = Finding(kind, f"{area.area.sentence}{_odds(area)}", "friction")
+    return replace(found, kind=kind), over
 
 
 def _odds(area: JudgedArea) -> str:
     """How probable the criterion is over the area, in a sentence."""
     if area.odds is None:
         return ""
-    best, median, worst = (_probability(p) for p in area.odds.probabilities_below(CRITERIA[0]))
+    best, median, worst = (probability_words(p) for p in area.odds.probabilities_below(CRITERIA[0]))
     draws = len(area.odds.samples)
     unknown = int(np.sum(np.any(np.isnan(area.odds.samples), axis=1)))
     text = (
@@ -185,6 +196,8 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
             f"µ′/µ is {p.relative_friction:.2f} as described {where} by the "
             f"model '{p.model}'. How probable it is that it lies below {asked}, is not known: "
             f"{because}.",
+            "friction",
+            f"No interval of the friction: {because}.",
         )
     low, high = unsure.interval
     noticed = 1 - NOTICED_DIFFERENCE
@@ -192,18 +205,18 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
         f"µ′/µ is {unsure.nominal:.2f} as described {where}. When the uncertain inputs and "
         f"models vary, its median is {unsure.median:.2f} ({si.percent(unsure.level)} "
         f"interval {low:.2f}–{high:.2f}); it is below {asked}, with probability "
-        f"{_probability(unsure.probability_below(PAPER_CRITERION))}, and below {noticed:.2f}, "
+        f"{probability_words(unsure.probability_below(PAPER_CRITERION))}, and below {noticed:.2f}, "
         "where people notice it, with probability "
-        f"{_probability(unsure.probability_below(noticed))}."
+        f"{probability_words(unsure.probability_below(noticed))}."
     )
     if high < PAPER_CRITERION:
-        return Finding("good", text)
+        return Finding("good", text, "friction")
     if low <= PAPER_CRITERION:
         text += " The criterion lies inside the interval: whether it is met is open."
-    return Finding("limit", text)
+    return Finding("limit", text, "friction")
 
 
-def _probability(value: si.Dimensionless) -> str:
+def probability_words(value: si.Dimensionless) -> str:
     """In two digits; never 0 or 1, which so few draws cannot say."""
     return "above 0.99" if value > 0.99 else "below 0.01" if value < 0.01 else f"{value:.2f}"
 
@@ -303,4 +316,5 @@ def _of_gratings(table: FidelityTable, relative_friction: si.Dimensionless) -> F
         f"peak, up to {1e3 * table.speeds[-1]:g} mm/s; {1e3 * table.spatial_periods[worst]:g} mm "
         f"up to {1e3 * fastest[worst]:.0f} mm/s. Of the fundamental "
         f"{100 * table.fundamental_at_limit:.0f} % are left there.{unfelt}",
+        "gratings",
     )

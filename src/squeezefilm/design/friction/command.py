@@ -16,7 +16,13 @@ from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.design.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.design.analysis.curves import ModelCurve, as_far_as_it_goes, model_curves
 from squeezefilm.design.analysis.published_claims import missed_by
-from squeezefilm.design.analysis.verdict import Finding, friction_verdict, held_back, why_not_good
+from squeezefilm.design.analysis.verdict import (
+    Finding,
+    as_json,
+    friction_verdict,
+    held_back,
+    why_not_good,
+)
 from squeezefilm.design.analysis.wanted import Wanted, wanted_friction
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
@@ -124,7 +130,7 @@ class FrictionAnalysis(Result):
             ],
             "measurements_missed": _missed(p.model),
             "uncertainty": None if unsure is None else unsure.summary(),
-            "verdict": to_json(self.verdict),
+            "verdict": as_json(self.verdict),
             "warnings": list(p.warnings),
             "provenance": stamp(self.display),
         }

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import textwrap
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import printable
-from squeezefilm.physics.chain.active_area import CRITERIA, ActiveArea, percent
+from squeezefilm.physics.chain.active_area import CRITERIA, ActiveArea
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:
@@ -31,7 +30,8 @@ _PLACE: dict[str, Any] = {
 
 @style.drawn
 def active_area(analysis: Analysis) -> Figure:
-    """The amplitude of the face and the friction under the pad, by the place of its centre."""
+    """The friction under the pad by the place of its centre, or where the model has none the
+    amplitude of the face."""
     judged = analysis.active_area
     if judged is None:
         return style.message_figure(
@@ -40,32 +40,26 @@ def active_area(analysis: Analysis) -> Figure:
         )
     area = judged.area
     made = f"{area.shape_model} ({area.shape_words}); friction by {analysis.prediction.model}"
-    is_line = 1 in area.amplitude.shape
-    wide = not is_line and np.ptp(area.x) > 2.2 * np.ptp(area.y)
-    figure = style.new_figure(_title(area), made, 4.0 if is_line else 6.4 if wide else 4.4)
-    if is_line:
+    if 1 in area.amplitude.shape:
+        figure = style.new_figure(_title(area), made, 4.0)
         _line(figure.subplots(), area)
         return figure
-    above, below = figure.subplots(2, 1) if wide else figure.subplots(1, 2)
-    _map(above, area, 1e6 * area.amplitude, "amplitude of the face (µm)")
+    figure = style.new_figure(_title(area), made, 4.4)
+    axes = figure.subplots()
     if area.relative_friction is None:
-        below.set_axis_off()
-        below.text(0.0, 0.5, textwrap.fill(f"No friction: {area.why_not}.", 44), va="center")
+        _map(axes, area, 1e6 * area.amplitude, "amplitude of the face (µm)")
         return figure
-    _map(below, area, area.relative_friction, "relative friction µ′/µ under the pad")
-    _places(below, area)
+    _map(axes, area, area.relative_friction, "relative friction µ′/µ under the pad")
+    _places(axes, area)
     return figure
 
 
 def _title(area: ActiveArea) -> str:
-    """The message: how far friction goes over the area, and how much of it is good enough."""
+    """The message; the numbers of the friction stand beside the figure."""
     if area.best is None or area.worst is None:
         low, high = (1e6 * one for one in area.amplitude_range)
         return f"Under the pad {low:.3g} to {high:.3g} µm (root mean square) over the active area"
-    return (
-        f"µ′/µ is {area.best:.2f} to {area.worst:.2f} over the active area, below "
-        f"{CRITERIA[0]:.2f} on {percent(area.share_below(CRITERIA[0]))} of it"
-    )
+    return "Friction under a finger, by the place of its centre on the active area"
 
 
 def _map(axes: Axes, area: ActiveArea, values: FloatArray, label: str) -> None:
@@ -103,6 +97,8 @@ def _places(axes: Axes, area: ActiveArea) -> None:
     assert area.relative_friction is not None, "drawn only where there is a friction"
     assert area.best_place is not None
     assert area.worst_place is not None
+    from matplotlib.patches import Rectangle
+
     shown = np.ma.masked_invalid(area.relative_friction.T)
     within = [one for one in CRITERIA if shown.min() < one < shown.max()]
     if within:
@@ -117,9 +113,22 @@ def _places(axes: Axes, area: ActiveArea) -> None:
         x, y = (1e3 * one for one in place)
         said = printable(f"{name}, {place_words(place)}")
         axes.plot([x], [y], look, **_PLACE, label=said)
+    side = 1e3 * area.contact_side
+    left, bottom = (1e3 * middle - side / 2 for middle in area.best_place)
+    axes.add_patch(
+        Rectangle(
+            (left, bottom),
+            side,
+            side,
+            facecolor="none",
+            edgecolor=style.ORANGE,
+            lw=2.0,
+            label="the finger's contact",
+        )
+    )
     # A place can lie anywhere on the map: both are named above it.
     axes.legend(
-        loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=1, frameon=False, borderaxespad=0.2
+        loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False, borderaxespad=0.2
     )
 
 

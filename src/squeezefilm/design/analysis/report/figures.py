@@ -9,7 +9,6 @@ from squeezefilm.core.kit.page_style import FigureOf
 from squeezefilm.design.analysis.report import (
     area_figures,
     friction_figures,
-    layout_figures,
     plate_figures,
 )
 
@@ -18,25 +17,10 @@ if TYPE_CHECKING:
 
 FIGURES: tuple[FigureOf, ...] = (
     FigureOf(
-        "layout",
-        "Side view and layout",
-        layout_figures.layout,
-        "The vibrating body to scale. Parts marked + and − follow the drive with opposite sign.",
-    ),
-    FigureOf(
-        "mode",
-        "Mode shape and nodal lines",
-        plate_figures.mode_shape,
-        "Deflection at the two extremes of a period, along the line through the antinode of which "
-        "amplitudes are told. The dashed lines are its zeros: nothing moves there, but a finger is "
-        "wide enough to meet the antinodes beside them.",
-    ),
-    FigureOf(
         "area",
-        "Amplitude and friction over the active area",
+        "Friction over the active area",
         area_figures.active_area,
-        "What the face does and what a finger with its centre there meets of it. The finger damps "
-        "the vibration at each place as it does there.",
+        "By the place of the finger's centre; the square is its contact at the best place.",
     ),
     FigureOf(
         "response",

@@ -2,137 +2,21 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, M, V, shown
-from squeezefilm.design.analysis.report.layout_figures import drive_strip
 from squeezefilm.design.plate.solved import half_power
-from squeezefilm.physics.plate.layout import AnnularStator, RectangularPlate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from squeezefilm.core.quantities import FloatArray
     from squeezefilm.design.analysis.analyze import Analysis
     from squeezefilm.physics.chain.prediction import Prediction
-    from squeezefilm.physics.plate.working_mode import ModeLine, WorkingMode
-
-# More labels than this cannot be told apart on one axis.
-_MOST_LABELS = 26
-
-
-@style.drawn
-def mode_shape(analysis: Analysis) -> Figure:
-    """The working mode at the working amplitude, with its nodal lines."""
-    mode = analysis.prediction.mode
-    size = 1e6 * analysis.prediction.vibration_amplitude
-    x, w, nodes, title, along = (
-        _around_the_ring(analysis) if mode.line is None else _along_the_line(mode, mode.line)
-    )
-    figure = style.new_figure(title, mode.model, 4.4)
-    axes = figure.subplots()
-    unit = f"deflection at {shown(analysis.prediction.vibration_amplitude, M, 3)} (µm)"
-    # A drive that cancels out leaves rounding errors, no picometre of motion.
-    if size < 1e-6:
-        size, unit = 1.0, "relative deflection"
-    y = size * w
-    reach = float(np.max(np.abs(y)))
-    for node in nodes:
-        axes.axvline(float(node), **style.GUIDE)
-    axes.fill_between(x, y, -y, color=style.BAND, lw=0)
-    axes.plot(x, y, color=style.BLUE, label="one extreme of the vibration")
-    axes.plot(x, -y, color=style.BLUE, lw=1.1, ls=(0, (4, 2)), label="half a period later")
-    axes.axhline(0, color=style.INK, lw=0.8)
-    bottom = -1.2 * reach
-    plate = analysis.display.actuator
-    if isinstance(plate, RectangularPlate) and plate.lines_across == "length":
-        bottom = drive_strip(axes, plate, reach)
-    if len(nodes) >= 4:
-        _half_wave_arrow(axes, nodes, 1.14 * reach, mode.half_wavelength)
-    margin = 0.01 * float(x[-1])
-    axes.set(xlim=(float(x[0]) - margin, float(x[-1]) + margin), ylim=(bottom, 1.45 * reach))
-    axes.set(xlabel=along, ylabel=unit)
-    axes.grid(visible=False)
-    # The strip of ceramics has no deflection to read.
-    axes.set_yticks([tick for tick in axes.get_yticks() if abs(tick) <= reach])
-    _label_nodes(axes, nodes)
-    style.legend_below(axes)
-    return figure
-
-
-class _Drawn(NamedTuple):
-    """A mode along a line: places (mm), deflection (1), nodes (mm), the title, the axis' label."""
-
-    place: FloatArray
-    deflection: FloatArray
-    nodes: FloatArray
-    title: str
-    along: str
-
-
-def _along_the_line(mode: WorkingMode, line: ModeLine) -> _Drawn:
-    """The mode of a plate or a disc, from end to end."""
-    w, nodes = line.deflection, 1e3 * line.nodal_positions
-    ends = float(np.max(np.abs([w[0], w[-1]])))
-    title = (
-        f"{mode.label}: {len(nodes)} nodal lines, λ/2 = "
-        f"{shown(mode.half_wavelength, M)}; the free ends move {ends:.2f} times as far as "
-        "the lobes between"
-    )
-    return _Drawn(1e3 * line.position, w, nodes, title, "position across the nodal lines (mm)")
-
-
-def _around_the_ring(analysis: Analysis) -> _Drawn:
-    """The mode of a stator along its mean circumference, three waves of it at most."""
-    actuator, half = analysis.display.actuator, analysis.prediction.mode.half_wavelength
-    assert isinstance(actuator, AnnularStator), "only a stator has no line along a plate"
-    waves = round(2 * math.pi * (actuator.mean_diameter / 2) / (2 * half))
-    seen = min(3, waves)
-    x = np.linspace(0, 2e3 * half * seen, 1201)
-    w, nodes = np.sin(np.pi * x / (1e3 * half)), 1e3 * half * np.arange(2 * seen + 1, dtype=float)
-    title = (
-        f"{seen} of the {waves} waves around the ring: a nodal line every "
-        f"{shown(half, M)}, where the surface stands still"
-    )
-    along = f"position along the mean circumference (mm), {seen} of {waves} waves"
-    return _Drawn(x, w, nodes, title, along)
-
-
-def _label_nodes(axes: Axes, nodes: FloatArray) -> None:
-    """Where the nodal lines are (mm), above the axes; of very many only some."""
-    above = axes.secondary_xaxis("top")
-    every = math.ceil(len(nodes) / _MOST_LABELS)
-    marked = nodes[::every]
-    turned = 90 if len(marked) > 14 else 0
-    above.set_xticks(marked, [f"{node:.1f}".replace("-", "−") for node in marked], rotation=turned)
-    above.set_xlabel("nodal lines at (mm)" + ("" if every == 1 else f", one in {every}"))
-
-
-def _half_wave_arrow(axes: Axes, nodes: FloatArray, height: float, half: float) -> None:
-    middle = len(nodes) // 2
-    left, right = float(nodes[middle - 1]), float(nodes[middle])
-    axes.annotate(
-        "",
-        (left, height),
-        (right, height),
-        arrowprops={"arrowstyle": "<->", "color": style.INK, "lw": 1, "shrinkA": 0, "shrinkB": 0},
-    )
-    axes.annotate(
-        f"λ/2 = {shown(half, M, 4)} in the mean",
-        ((left + right) / 2, height),
-        (0, 4),
-        textcoords="offset points",
-        ha="center",
-        va="bottom",
-        fontsize=9.5,
-        bbox={"facecolor": style.PAPER, "edgecolor": "none", "pad": 1.2},
-    )
 
 
 @style.drawn

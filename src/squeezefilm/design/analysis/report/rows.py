@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,41 +24,17 @@ from squeezefilm.core.kit.numbers import (
     span,
 )
 from squeezefilm.design.analysis.report.decisions import felt_rows
-from squeezefilm.design.analysis.report.point_rows import place_rows, reduction_row
+from squeezefilm.design.analysis.report.point_rows import reduction_row
 from squeezefilm.design.plate.report.heat_and_sound import heat_rows
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:
     from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.ears import EarExposure
     from squeezefilm.design.analysis.other_models import MeasuredBeside
     from squeezefilm.physics.chain.prediction import Prediction
+    from squeezefilm.physics.plate.electronics import ElectricalLoad
     from squeezefilm.physics.plate.working_mode import WorkingMode
-
-
-class Rows(NamedTuple):
-    """Rows of one subject under its heading; those that are `said` stand in the verdict, too."""
-
-    heading: str
-    rows: list[Row]
-    said: list[Row]
-
-
-def decision_rows(analysis: Analysis) -> list[Rows]:
-    """The key numbers by subject, in the order of the chain."""
-    p = analysis.prediction
-    groups = [
-        Rows("Vibration", with_measured(vibration_rows(p), analysis.measured, p.voltage), []),
-        Rows("Friction", friction_rows(analysis), place_rows(p, analysis.active_area)),
-        Rows("Textures", texture_rows(analysis), []),
-    ]
-    if p.voltage:
-        sound = _sound_rows(analysis)
-        groups += [
-            Rows("Electrical load", _electrical_rows(analysis), []),
-            Rows("Heat", heat_rows(p.heat)[:2], []),
-            Rows("Sound", sound, [] if analysis.ears is None else sound),
-        ]
-    return groups
 
 
 def working_point(p: Prediction) -> str:
@@ -128,26 +104,19 @@ def _solved(mode: WorkingMode) -> str:
     return f"{mode.label}, solved to ± {shown(mode.frequency_error, HZ, 2)}"
 
 
-def friction_rows(analysis: Analysis) -> list[Row]:
-    """The friction with its interval, what it is of, and what the paper's criterion takes."""
-    p, unsure = analysis.prediction, analysis.uncertainty
-    said = "1 without vibration"
-    if unsure is not None:
-        interval = f"{si.percent(unsure.level)} interval, median {unsure.median:.2f}"
-        said = f"{span(*unsure.interval)} ({interval})"
+def surface_rows(analysis: Analysis) -> list[Row]:
+    """What is touched, and what the paper's criterion takes."""
+    p = analysis.prediction
     finger = f"{shown(p.normal_force, N)} at {shown(p.speed, SPEED)}"
     name = printable(p.surface.name)
     reached = _reached(analysis.own_curve.amplitude_for_criterion)
     return [
-        ("Relative friction µ′/µ", f"{p.relative_friction:.2f}", said),
-        *_rival_rows(analysis),
-        *place_rows(p, analysis.active_area),
         ("Surface roughness", shown(p.surface.roughness, M), f"{name}; finger {finger}"),
-        ("Amplitude for µ′/µ = 0.7", reached, "as the paper asks, under the finger"),
+        ("Amplitude for µ′/µ = 0.7", reached, "under the finger"),
     ]
 
 
-def _rival_rows(analysis: Analysis) -> list[Row]:
+def rival_rows(analysis: Analysis) -> list[Row]:
     """Between what rival models lie, beside the width of the interval, which leaves them out."""
     rivals, unsure = analysis.rivals.values(), analysis.uncertainty
     if unsure is None or not rivals:
@@ -184,9 +153,8 @@ def _grating(analysis: Analysis, at: int) -> Row:
     )
 
 
-def _electrical_rows(analysis: Analysis) -> list[Row]:
+def electrical_rows(load: ElectricalLoad | None) -> list[Row]:
     """What the free plate takes from its amplifier at the drive's frequency, and of which kind."""
-    load = analysis.drive_electronics
     if load is None:
         said = "it takes a voltage, and an admittance solved near it"
         return [("Current", "not known", said)]
@@ -211,8 +179,8 @@ def _electrical_rows(analysis: Analysis) -> list[Row]:
     ]
 
 
-def _sound_rows(analysis: Analysis) -> list[Row]:
-    ears = analysis.ears
+def sound_rows_at_ear(ears: EarExposure | None) -> list[Row]:
+    """The level at an ear, beside the guidance."""
     if ears is None:
         said = "no face was solved here; squeezefilm plate solves plates, discs and stators"
         return [("Sound", "not known", said)]

@@ -14,31 +14,24 @@ import pytest
 from squeezefilm.core.kit import style
 from squeezefilm.design.analysis.analyze import Analysis
 from squeezefilm.design.analysis.report.figures import FIGURES
-from squeezefilm.design.analysis.report.layout_figures import drive_strip
 from squeezefilm.design.analysis.report.plate_figures import half_power
-from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.layout import RectangularPlate
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
-KEYS = ("layout", "mode", "area", "response", "band")
+KEYS = ("area", "response", "band")
 # The odd displays, each with the figures that its oddness can spoil.
 ODD = {
-    "one-ceramic": ("layout", "mode", "response"),
-    "hostile-names": ("layout", "band"),
-    "no-voltage": (
-        "mode",
-        "response",
-        "band",
-    ),
+    "one-ceramic": ("response",),
+    "hostile-names": ("band",),
+    "no-voltage": ("response", "band"),
     "floating": ("band",),
     "off-resonance": ("response",),
-    "not-driven": ("mode", "response"),
+    "not-driven": ("response",),
     "amplitude-given": ("response",),
-    "many-nodes": ("layout", "mode"),
-    "square": ("layout",),
+    "many-nodes": ("area",),
+    "square": ("area",),
     "five-surfaces": ("band",),
-    "small-ring": ("layout", "mode"),
-    "printed-model": ("band",),
+    "small-ring": ("area",),
+    "printed-model": ("area", "band"),
 }
 OFTEN = {*PRESETS, "hostile-names", "no-voltage", "one-ceramic"}
 """Drawn at every run; the other odd ones at night."""
@@ -133,8 +126,6 @@ def test_messages_tell_the_numbers_of_the_analysis(plate_analysis: Analysis) -> 
         item.key: item.draw(plate_analysis).get_suptitle().replace("\u00a0", " ").replace("\n", " ")
         for item in FIGURES
     }
-    assert "7 ceramics cover 93 %" in titles["layout"]
-    assert "8 nodal lines" in titles["mode"]
     assert "33.57 kHz is 556 Hz wide" in titles["response"]
 
 
@@ -221,19 +212,3 @@ def test_importing_the_report_room_loads_no_matplotlib() -> None:
 def test_a_users_text_is_made_fit_for_a_figure() -> None:
     assert style.plain("a\x1b[31m\nb 漢") == "a [31m b □"
     assert style.plain("long " * 20, 12) == "long long l…"
-
-
-def test_the_ceramics_are_drawn_where_they_are_under_the_mode() -> None:
-    plate = load_display("biet2008-plate").actuator
-    assert isinstance(plate, RectangularPlate)
-    axes = style.new_figure("a mode", "a model", 3.0).subplots()
-    bottom = drive_strip(axes, plate, 2.0)
-    bars = [patch.get_bbox() for patch in axes.patches]  # type: ignore[attr-defined] # rectangles
-    wanted = [(1e3 * patch.x, 1e3 * patch.length) for patch in plate.patches]
-    assert np.allclose([(bar.x0, bar.width) for bar in bars], wanted)
-    # Below the mode's deepest place, and above the new end of the axes.
-    assert all(bottom < bar.y0 < bar.y1 < -2.0 for bar in bars)
-    signs = {1: "+", -1: "−"}
-    assert [text.get_text() for text in axes.texts] == [
-        signs[patch.polarity] for patch in plate.patches if patch.length > 0.02 * plate.length
-    ]

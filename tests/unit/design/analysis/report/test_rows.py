@@ -10,7 +10,11 @@ from tests.unit.made_results import WARM
 
 from squeezefilm.design.analysis.other_models import MeasuredBeside
 from squeezefilm.design.analysis.report.rows import (
-    decision_rows,
+    electrical_rows,
+    rival_rows,
+    sound_rows_at_ear,
+    surface_rows,
+    texture_rows,
     unsaid_warnings,
     vibration_rows,
     with_measured,
@@ -64,17 +68,10 @@ def test_what_was_measured_stands_beside_what_is_computed() -> None:
     ]
     (other,) = with_measured(rows[:1], [swing], 30.0)
     assert other[2].startswith("+50 % on measured 1 µm at 15 V (")
-    vibration = decision_rows(analysis(measured=(swing,)))[0].rows
-    assert any("on measured 1 µm" in remark for _, _, remark in vibration)
 
 
-def test_key_numbers_go_by_subject_in_the_order_of_the_chain() -> None:
-    groups = decision_rows(analysis())
-    assert [one.heading for one in groups] == [
-        "Vibration", "Friction", "Textures", "Electrical load", "Heat", "Sound",
-    ]  # fmt: skip
-    said = {label: (text, remark) for one in groups for label, text, remark in one.rows}
-    assert said["Relative friction µ′/µ"] == ("0.31", "0.04–0.79 (90 % interval, median 0.37)")
+def test_friction_and_textures_have_their_rows() -> None:
+    said = rows_of(*surface_rows(analysis()), *rival_rows(analysis()), *texture_rows(analysis()))
     assert said["Rival models give µ′/µ"] == (
         "0.00–0.70",
         "interval 0.75 wide, without them",
@@ -85,10 +82,6 @@ def test_key_numbers_go_by_subject_in_the_order_of_the_chain() -> None:
         "0.2 mm",
         "90 % of its swing, 68 % of its wave kept",
     )
-    assert said["Temperature rise"][0] == "+73.5 K"
-    assert said["Sound"][0] == "not known"
-    still = decision_rows(analysis(prediction=point(voltage=None), fidelity=None))
-    assert [one.heading for one in still] == ["Vibration", "Friction", "Textures"]
 
 
 def test_the_free_amplitude_is_told_from_that_under_the_finger() -> None:
@@ -111,31 +104,34 @@ def test_the_free_amplitude_is_told_from_that_under_the_finger() -> None:
     )
 
 
-def rows_of(made: Any) -> dict[str, tuple[str, str]]:
-    return {row[0]: row[1:] for one in decision_rows(made) for row in one.rows}
+def rows_of(*rows: tuple[str, str, str]) -> dict[str, tuple[str, str]]:
+    return {label: (text, remark) for label, text, remark in rows}
 
 
 def test_what_the_amplifier_has_to_give_and_which_can() -> None:
     kinds = [SimpleNamespace(part=part, suffices=part == "B") for part in "ABC"]
-    load = SimpleNamespace(
+    load: Any = SimpleNamespace(
         current=0.3, apparent_power=1.5, real_power=1.2, amplifiers=kinds, assumed=""
     )
-    said = rows_of(analysis(drive_electronics=load))
+    said = rows_of(*electrical_rows(load))
     assert said["Current"] == ("300 mA", "zero-to-peak, without a finger")
     load.assumed = "its ceramic"
-    assert rows_of(analysis(drive_electronics=load))["Current"][1].endswith("of an assumed ceramic")
+    assert rows_of(*electrical_rows(load))["Current"][1].endswith("of an assumed ceramic")
     assert said["Apparent power"] == ("1.5 VA", "1.2 W of it real")
     assert said["Amplifiers that can"] == ("1 of 3", "B can; A and C cannot")
-    assert rows_of(analysis())["Current"][0] == "not known"
+    assert rows_of(*electrical_rows(None))["Current"][0] == "not known"
 
 
 def test_the_level_at_an_ear_stands_beside_its_limits() -> None:
     limits = [SimpleNamespace(guidance=SimpleNamespace(level_dB=level)) for level in (100, 110)]
-    ears = SimpleNamespace(distance=0.5, level_dB=123.6, low_dB=115.0, high_dB=132.0, limits=limits)
-    said = rows_of(analysis(ears=ears))["Sound at 0.5 m"]
+    ears: Any = SimpleNamespace(
+        distance=0.5, level_dB=123.6, low_dB=115.0, high_dB=132.0, limits=limits
+    )
+    said = rows_of(*sound_rows_at_ear(ears))["Sound at 0.5 m"]
     assert said == ("124 dB", "115 to 132 dB, loudest direction; guidance 100 dB and 110 dB")
     ears.limits = []
-    assert rows_of(analysis(ears=ears))["Sound at 0.5 m"][1].endswith("no guidance")
+    assert rows_of(*sound_rows_at_ear(ears))["Sound at 0.5 m"][1].endswith("no guidance")
+    assert sound_rows_at_ear(None)[0][1] == "not known"
 
 
 def test_a_plate_whose_power_is_not_known_says_so() -> None:
