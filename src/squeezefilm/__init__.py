@@ -17,16 +17,20 @@ _NAMES = {
     "display_names": "core.presets",
     "study_names": "core.presets",
     "texture_names": "core.presets",
+    "materials": "core.presets.materials",
     "load_display": "physics.display",
+    "save_display": "physics.display",
     "load_texture": "physics.texture_files.texture_file",
     "save_texture": "physics.texture_files.texture_file",
     "replaced": "physics.uncertainty.parameters",
     "with_finger": "measure.fits.friction.person",
     # What a display does
     "predict": "physics.chain.prediction",
+    "predict_grid": "physics.chain.prediction_grid",
     "voltage_for_friction": "physics.chain.wanted_voltage",
     "analyze": "design.analysis.analyze",
     "analyze_friction": "design.friction.command",
+    "list_modes": "design.plate.modes",
     "solve_plate": "design.plate.command",
     "solve_film": "design.film.command",
     "sweep": "design.sweep.sweep",
@@ -79,8 +83,12 @@ __all__ = sorted(_NAMES)
 
 def __getattr__(name: str) -> object:
     if name not in _NAMES:
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, __all__, n=1, cutoff=0.5)
+        meant = f" Did you mean '{near[0]}'?" if near else ""
         raise AttributeError(
-            f"squeezefilm has no '{name}'; it has: {', '.join(__all__)}", name=name, obj=None
+            f"squeezefilm has no '{name}'.{meant} It has: {', '.join(__all__)}", name=name, obj=None
         )
     from importlib import import_module
 

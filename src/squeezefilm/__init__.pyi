@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from squeezefilm.core.presets import display_names as display_names
     from squeezefilm.core.presets import study_names as study_names
     from squeezefilm.core.presets import texture_names as texture_names
+    from squeezefilm.core.presets.materials import materials as materials
     from squeezefilm.core.progress import Pace, SayProgress
     from squeezefilm.core.quantities import (
         Dimensionless,
@@ -23,12 +24,15 @@ if TYPE_CHECKING:
         Hertz,
         Metre,
         MetrePerSecond,
+        MetrePerSecondArray,
         MetrePerVolt,
         Newton,
+        NewtonArray,
         Pascal,
         Radian,
         Second,
         Volt,
+        VoltArray,
     )
     from squeezefilm.design.analysis.analyze import Analysis
     from squeezefilm.design.analysis.sensitivities import Effort
@@ -36,6 +40,7 @@ if TYPE_CHECKING:
     from squeezefilm.design.film.command import FilmAnswer
     from squeezefilm.design.friction.command import FrictionAnalysis
     from squeezefilm.design.plate.command import PlateAnalysis
+    from squeezefilm.design.plate.modes import ModeList
     from squeezefilm.design.plate.ring import RingAnalysis
     from squeezefilm.design.search.found import DesignSearch
     from squeezefilm.design.search.requirements import NamedRequirements
@@ -56,6 +61,7 @@ if TYPE_CHECKING:
     from squeezefilm.physics.chain.wanted_voltage import WantedFriction
     from squeezefilm.physics.display import Display, NamedDisplay
     from squeezefilm.physics.display import load_display as load_display
+    from squeezefilm.physics.display import save_display as save_display
     from squeezefilm.physics.film.periodic.profile import GapFunction, GapProfile
     from squeezefilm.physics.perception.observer import NamedObserver
     from squeezefilm.physics.plate.working_mode import PlateTheory
@@ -122,6 +128,16 @@ if TYPE_CHECKING:
         pace: Pace = ...,
     ) -> Prediction:
         """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz)."""
+    def predict_grid(
+        display: NamedDisplay | str | Path,
+        *,
+        voltage: Sequence[Volt] | VoltArray | str | None = ...,
+        normal_force: Sequence[Newton] | NewtonArray | str | None = ...,
+        speed: Sequence[MetrePerSecond] | MetrePerSecondArray | str | None = ...,
+        place: Sequence[FacePlace | str] | str | Path | None = ...,
+        model: FrictionModel | None = ...,
+    ) -> Any:
+        """The friction of a display at every combination of voltages (V), normal forces (N), speeds of"""
     def voltage_for_friction(
         display: NamedDisplay | str | Path,
         relative_friction: WantedFriction | str,
@@ -177,6 +193,14 @@ if TYPE_CHECKING:
         progress: SayProgress | None = ...,
     ) -> FrictionAnalysis:
         """The friction of a display at a working point, with everything around it."""
+    def list_modes(
+        display: NamedDisplay | str | Path,
+        band: tuple[Hertz, Hertz] | tuple[str, str] = ...,
+        *,
+        split: Hertz | str | None = ...,
+        progress: SayProgress | None = ...,
+    ) -> ModeList:
+        """The modes of a display's plate, disc or stator in a band (Hz) that its drive can move."""
     def solve_plate(
         display: NamedDisplay | str | Path,
         *,

@@ -136,7 +136,7 @@ def material_list(name: str | None = None) -> list[dict[str, Any]]:
     """
     from squeezefilm.core.presets import materials
 
-    known = materials.library() if name is None else (materials.named(name),)
+    known = materials.materials() if name is None else (materials.named(name),)
     return [
         {
             "name": one.name,

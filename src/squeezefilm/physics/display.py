@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.calibration_record import CalibrationRecord
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.config.references import References
+from squeezefilm.core.config.write import text_of
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.from_text import ReadBy
@@ -323,3 +325,16 @@ def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
         f'# the words of the source are yours too.\ncopied_from = "{preset}"\n\n'
     )
     write_whole(file, header + own)
+
+
+def save_display(display: Display, path: str | Path) -> None:
+    """Write a display to a TOML file, each value with its unit and its source; `load_display` reads
+    the same display from it.
+
+    Raises:
+        InputError: a file that exists already or cannot be written.
+    """
+    text = text_of(display, display.provenance)
+    if os.path.lexists(path):
+        raise InputError(f"{path} exists already; give another name or remove it")
+    write_whole(Path(path), text)

@@ -109,7 +109,7 @@ def test_materials_are_listed_and_one_is_shown_with_its_sources(
     printed: Callable[[], str],
 ) -> None:
     listing = described.material_list()
-    assert [one["name"] for one in listing] == [one.name for one in materials.library()]
+    assert [one["name"] for one in listing] == [one.name for one in materials.materials()]
     described.show_materials(listing)
     text = printed()
     assert all(one["name"] in text for one in listing)

@@ -46,7 +46,7 @@ class Material:
 
 
 @functools.cache
-def library() -> tuple[Material, ...]:
+def materials() -> tuple[Material, ...]:
     """All materials, in the order of the file."""
     tree = tomllib.loads(_FILE.read_text(encoding="utf-8"))
     return tuple(
@@ -66,16 +66,16 @@ def named(name: str, kind: Kind | None = None) -> Material:
     """
     wanted = _plain(name)
     found = next(
-        (one for one in library() if wanted in {_plain(word) for word in (one.name, *one.also)}),
+        (one for one in materials() if wanted in {_plain(word) for word in (one.name, *one.also)}),
         None,
     )
-    of_kind = ", ".join(one.name for one in library() if kind in (None, one.kind))
+    of_kind = ", ".join(one.name for one in materials() if kind in (None, one.kind))
     known = f"The library has{'' if kind is None else f', as {kind}'}: {of_kind}"
     if found is None:
-        words = [word for one in library() for word in (one.name, *one.also)]
+        words = [word for one in materials() for word in (one.name, *one.also)]
         hint = si.did_you_mean(name, words) or si.did_you_mean(name.lower(), words)
         # "aluminium" or "PZT" is part of several names: to propose one of them would be chance.
-        if wanted and sum(wanted in _plain(one.name) for one in library()) > 1:
+        if wanted and sum(wanted in _plain(one.name) for one in materials()) > 1:
             hint = " Several names contain it: write one of them."
         raise InputError(f"there is no material '{name[:100]}'.{hint} {known}")
     if kind not in (None, found.kind):

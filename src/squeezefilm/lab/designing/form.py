@@ -88,7 +88,7 @@ def _material_rows(text: str, display: Display) -> list[dict[str, Any]]:
         here = actuator.get(kind)
         name = here.get("material") if isinstance(here, dict) else here
         name = name.get("value") if isinstance(name, dict) else name
-        known = [one.name for one in presets.materials.library() if one.kind == kind]
+        known = [one.name for one in presets.materials.materials() if one.kind == kind]
         chosen = OWN_VALUES if name is None else presets.materials.named(name, kind).name
         rows.append(
             {

@@ -37,7 +37,7 @@ def plate(text: str) -> RectangularPlate:
     return actuator
 
 
-@pytest.mark.parametrize("one", materials.library(), ids=lambda one: one.name)
+@pytest.mark.parametrize("one", materials.materials(), ids=lambda one: one.name)
 def test_every_material_builds_a_display_and_gives_a_source_for_each_value(one: Material) -> None:
     own = f'material = "{one.name}"' + ('\nthickness = "20 um"' if one.kind == "glue" else "")
     display = load_text(Display, described(one.kind, own))
@@ -51,14 +51,16 @@ def test_every_material_builds_a_display_and_gives_a_source_for_each_value(one: 
     assert one.title
 
 
-@pytest.mark.parametrize("one", materials.library(), ids=lambda one: one.name)
+@pytest.mark.parametrize("one", materials.materials(), ids=lambda one: one.name)
 def test_a_material_is_found_by_each_of_its_names_and_no_other_has_them(one: Material) -> None:
     for word in (one.name, *one.also, one.name.upper(), one.name.replace(" ", "-")):
         assert materials.named(word) is one
     assert materials.named("aluminum 5083") is materials.named("aluminium 5083")
 
 
-@pytest.mark.parametrize("name", [one.name for one in materials.library() if one.kind == "ceramic"])
+@pytest.mark.parametrize(
+    "name", [one.name for one in materials.materials() if one.kind == "ceramic"]
+)
 def test_what_a_ceramic_states_twice_is_the_same_within_half_a_percent(name: str) -> None:
     ceramic = plate(described("ceramic", f'material = "{name}"')).ceramic
     full = ceramic.constants

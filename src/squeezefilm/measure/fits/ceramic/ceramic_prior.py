@@ -9,7 +9,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.presets.materials import library
+from squeezefilm.core.presets.materials import materials
 from squeezefilm.measure.fits.complex_fit import Prior
 
 PARAMETERS = (
@@ -46,7 +46,9 @@ def ceramic_prior() -> Prior:
     are known to √(1 + 1/n) of that. The three sizes are as good as unknown. Losses: 0.015 ± 0.02;
     that of s12 that of s11 to 20 % (both assumed). Read from `core/presets/materials.toml`.
     """
-    rows = np.array([_ratios(one.values) for one in library() if one.kind == "ceramic"])
+    rows = np.array(
+        [_ratios(material.values) for material in materials() if material.kind == "ceramic"]
+    )
     mean, spread = rows.mean(axis=0), rows.std(axis=0, ddof=1) * math.sqrt(1 + 1 / len(rows))
     spread[[0, 2, 3]] = WIDE
     means = np.concatenate([mean[:4], [_LOSS] * 3, [0.0], mean[4:]])
