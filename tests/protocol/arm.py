@@ -7,6 +7,7 @@ not cycles (on an M0+ one takes 1 to 2).
 from __future__ import annotations
 
 import ctypes
+import struct
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
@@ -83,6 +84,16 @@ class Arm:
         return done
 
     def _run(self, script: bytes, most: int, counted: tuple[str, str]) -> tuple[bytes, _Counter]:
+        core, out, top = self.powered(len(script), most)
+        counter = self._count(core, counted)
+        done = self.called(core, script, out, most, top)
+        stack = len(bytes(core.mem_read(top - _STACK, _STACK)).lstrip(_PAINT))
+        self.work.stack = max(self.work.stack, stack)
+        return done, counter
+
+    def powered(self, room: int, most: int) -> tuple[Any, int, int]:
+        """A core with the firmware, `room` bytes for scripts and `most` for records; where those
+        are, and the top of the stack."""
         unicorn = _unicorn()
         arm = unicorn.arm_const
         core = unicorn.Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS)
@@ -100,11 +111,15 @@ class Arm:
         data = unicorn.UC_PROT_READ | unicorn.UC_PROT_WRITE
         core.mem_map(RAM, top - RAM, data)
         core.mem_write(top - _STACK, _PAINT * _STACK)
-        out = ROOM + _pages(len(script))
+        out = ROOM + _pages(room)
         core.mem_map(ROOM, out - ROOM, unicorn.UC_PROT_READ)
-        core.mem_write(ROOM, script)
         core.mem_map(out, _pages(most), data)
-        counter = self._count(core, counted)
+        return core, out, top
+
+    def called(self, core: Any, script: bytes, out: int, most: int, top: int) -> bytes:
+        """What the harness writes of a script, on a core that remembers what came before."""
+        arm = _unicorn().arm_const
+        core.mem_write(ROOM, script)
         for register, value in (
             (arm.UC_ARM_REG_R0, ROOM),
             (arm.UC_ARM_REG_R1, len(script)),
@@ -115,10 +130,7 @@ class Arm:
         ):
             core.reg_write(register, value)
         core.emu_start(self.symbols[self.entry][0] | 1, RETURN)
-        stack = len(bytes(core.mem_read(top - _STACK, _STACK)).lstrip(_PAINT))
-        self.work.stack = max(self.work.stack, stack)
-        done = bytes(core.mem_read(out, min(most, core.reg_read(arm.UC_ARM_REG_R0))))
-        return done, counter
+        return bytes(core.mem_read(out, min(most, core.reg_read(arm.UC_ARM_REG_R0))))
 
     def _count(self, core: Any, counted: tuple[str, str]) -> _Counter:
         unicorn = _unicorn()
@@ -138,6 +150,39 @@ class Arm:
         )
         assert failed == 0
         return counter
+
+
+class ArmMachine:
+    """The firmware on an emulated core, as the wire sees a `Machine`: with a finger that stays."""
+
+    def __init__(self, arm: Arm, own: tuple[int, ...], tick_period: int) -> None:
+        self._arm, self._most = arm, 1 << 16
+        self._core, self._out, self._top = arm.powered(4096, self._most)
+        self._unread = bytearray()
+        self._called(b"B" + struct.pack("<11I", *own, 51, 1, tick_period))
+        self._called(b"F" + struct.pack("<iiII", 1000, 0, 1, 5))
+
+    def receive(self, data: bytes, now: int) -> bytes:
+        """The answers to bytes that arrived at `now` (µs)."""
+        for first in range(0, len(data), 2048):
+            part = data[first : first + 2048]
+            self._unread += self._called(b"R" + struct.pack("<II", now, len(part)) + part)[4:]
+        return self.outgoing()
+
+    def tick(self, now: int) -> int:
+        """Advance to `now` (µs); returns the output (µV)."""
+        done = self._called(b"T" + struct.pack("<I", now & 0xFFFFFFFF))
+        self._unread += done[4:-4]
+        return int.from_bytes(done[-4:], "little")
+
+    def outgoing(self) -> bytes:
+        """The bytes for the host since the last call."""
+        out = bytes(self._unread)
+        self._unread.clear()
+        return out
+
+    def _called(self, script: bytes) -> bytes:
+        return self._arm.called(self._core, script, self._out, self._most, self._top)
 
 
 def _pages(size: int) -> int:

@@ -4,11 +4,14 @@ import ctypes
 import random
 import re
 from collections.abc import Callable
+from dataclasses import astuple
 from pathlib import Path
 
 import pytest
 
-from .arm import Arm, firmware_alone, instruction_counter
+from squeezefilm.instruments.device.machine.limits import DeviceLimits
+
+from .arm import Arm, ArmMachine, firmware_alone, instruction_counter
 from .recording import (
     Recording,
     adversarial,
@@ -18,6 +21,7 @@ from .recording import (
     page_session,
     tile_sweep,
 )
+from .test_device_check import checked, failed
 
 MOST_INSTRUCTIONS = {"cortex-m0plus": 25_000, "cortex-m3": 10_000, "cortex-m4": 10_000}
 """Of one call: at 125 MHz, and up to two cycles for an instruction, within the 1 ms of a tick."""
@@ -54,6 +58,15 @@ def test_adversarial_streams_on_arm(arm: Arm) -> None:
     for seed in (0, 1):  # without a sensor, and with one
         check(arm, adversarial(seed, 1_500))
     check(arm, noise(9, 2_000))
+
+
+@pytest.mark.slow
+def test_the_device_check_passes_whole_three_times_in_a_row(arm: Arm) -> None:
+    """On the emulated core's own clock: watchdog, limits and stop as Arm code has them."""
+    machine = ArmMachine(arm, astuple(DeviceLimits()), 100)
+    for attempt in range(3 if arm.core == "cortex-m3" else 1):
+        check = checked(machine)  # type: ignore[arg-type]
+        assert check.passed, (attempt, failed(check))
 
 
 @pytest.mark.nightly

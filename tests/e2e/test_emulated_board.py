@@ -1,0 +1,147 @@
+"""The firmware as a program on an emulated board (QEMU's mps2-an385), by its serial port.
+
+It runs on an emulated Cortex-M3, never on a board. Its plate is a model in integers, under a finger
+of half the plate's loss and 20 Hz beside the frequency that the loops were told.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from tests.protocol.arm import symbols
+from tests.protocol.builds import SOURCES, STRICT, build, tool
+from tests.protocol.test_firmware_arm import FLOATING
+
+from squeezefilm.core.drive_limits import Limits
+from squeezefilm.instruments.bench.check import check_device
+from squeezefilm.instruments.bench.conversation import Conversation
+from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.states import Reason
+from squeezefilm.instruments.device.wire.streams import open_stream
+
+RATIO = 2e-3
+GAINS = loop_gains(
+    IdentifiedPlate(30e3, 300.0, RATIO),
+    LoopAims(29.2e3, 30.2e3, 100.0, 0.5, interval=2e-4, tracking_bandwidth=300.0, floor=1e-4),
+)
+PARTS = ("squeezefilm_fw.c", "squeezefilm_loops.c", "board_mps2.c")
+
+
+@pytest.fixture(scope="module")
+def image(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    flags = (
+        *STRICT,
+        "-O2",
+        "-mthumb",
+        "-mcpu=cortex-m3",
+        "-ffunction-sections",
+        "-fdata-sections",
+        "--specs=nano.specs",
+        "-nostartfiles",
+        f"-Wl,--gc-sections,-T,{SOURCES / 'mps2.ld'},-e,reset",
+        "-DSF_GAINS={" + ",".join(map(str, GAINS)) + "}",
+    )
+    sources = tuple(SOURCES / name for name in PARTS)
+    built = tmp_path_factory.mktemp("board") / "board.elf"
+    return build(tool("arm-none-eabi-gcc"), flags, sources, built)
+
+
+@contextlib.contextmanager
+def powered(image: Path) -> Iterator[Conversation]:
+    """The board, switched on; its port is a pseudo-terminal."""
+    words = [
+        "-M",
+        "mps2-an385",
+        "-display",
+        "none",
+        "-monitor",
+        "none",
+        "-serial",
+        "pty",
+        "-icount",
+        "shift=5",
+    ]
+    command = [tool("qemu-system-arm"), *words, "-kernel", str(image)]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as board:
+        try:
+            assert board.stdout is not None
+            line = board.stdout.readline()
+            port = re.search(r"/dev/\S+", line)
+            assert port is not None, line
+            with contextlib.closing(open_stream(f"serial:{port.group()}")) as stream:
+                time.sleep(1.5)  # QEMU looks once a second whether somebody opened its terminal.
+                yield Conversation(stream, time.monotonic, time.sleep)
+        finally:
+            board.kill()
+
+
+def test_the_board_is_a_program_without_floating_point(image: Path) -> None:
+    names = symbols(image)
+    assert {"reset", "sf_tick", "sf_loop_step"} <= names.keys()
+    assert [name for name in names if FLOATING.match(name)] == []
+
+
+TIMED = {"link", "round trip", "readings", "device clock", "finger sensor"}
+"""Checks that ask how quick the emulator is and what else this machine does, and not the firmware;
+`tests/protocol/test_firmware_arm.py` has them pass on the emulated core's own clock."""
+
+
+@pytest.mark.nightly
+@pytest.mark.realtime
+def test_limits_stop_and_watchdog_hold_on_the_emulated_board(image: Path) -> None:
+    failed: set[str] = set()
+    for _ in range(4):
+        with powered(image) as talk:
+            check = check_device(talk, 30e3, drive="an emulated board")
+        for result in check.results:
+            print(f"{result.name:36} {result.measured:60} {result.allowed}")
+        failed = {result.name for result in check.results if not result.passed} - TIMED
+        if not failed:
+            return
+    assert failed == set()
+
+
+@pytest.mark.nightly
+@pytest.mark.realtime
+def test_the_loops_hold_the_amplitude_on_the_emulated_board(image: Path) -> None:
+    """0.6 V asked for: without loops the pickup had 0.6 V K/|1.5 + 0.4 i| = 0.77 mV."""
+    wanted = round(0.6 * RATIO * 1e6)
+    # A host that this machine holds up for 50 ms is stopped by the board, as it must be.
+    tries = []
+    for _ in range(8):
+        shown = played(image)
+        right = [level == pytest.approx(wanted, rel=0.02) for level in shown]
+        if any(all(right[i : i + 5]) for i in range(len(right) - 5)):
+            return
+        tries.append(shown[::10])
+    pytest.fail(f"{wanted} uV were not held: {tries}")
+
+
+def played(image: Path) -> list[int]:
+    """What the pickup shows (µV) in two seconds of 0.6 V."""
+    with powered(image) as talk:
+        talk.ask(m.Stop(), 2.0)
+        talk.ask(m.Hello(1))
+        assert accepted(talk, m.limits_message(Limits(2.0, 2000.0, 2.0, 10.0, 29e3, 31e3)))
+        status = talk.ask(m.KeepAlive())
+        assert status is not None
+        assert accepted(talk, m.Arm(status.token))
+        for message in (m.Start(30_000_000), m.Envelope(1000, (0.6,)), m.Report(10_000)):
+            accepted(talk, message)
+        heard = talk.listen_for(2.0, keep_alive=0.01)
+        talk.ask(m.Stop())
+    return [one.message.pickup for one in heard if isinstance(one.message, m.Reading)]
+
+
+def accepted(talk: Conversation, message: m.Message) -> bool:
+    status = talk.ask(message, 2.0)
+    return status is not None and status.reason == Reason.ACCEPTED
