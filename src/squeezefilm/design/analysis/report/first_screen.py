@@ -9,6 +9,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import HZ, A, M, Row, W, shown, signed, span
 from squeezefilm.design.analysis.curves import PAPER_CRITERION
 from squeezefilm.design.analysis.verdict import NOTICED_DIFFERENCE, probability_words
+from squeezefilm.design.plate.mode_doubts import why_undriven
 
 if TYPE_CHECKING:
     from squeezefilm.design.analysis.analyze import Analysis
@@ -142,7 +143,10 @@ def _of_sources(analysis: Analysis) -> set[str]:
 
 def _next_step(analysis: Analysis) -> str:
     """What to do next."""
-    unsure = analysis.uncertainty
+    unsure, p = analysis.uncertainty, analysis.prediction
+    undriven = p.voltage is not None and why_undriven(analysis.display, p.mode) is not None
+    if undriven or p.vibration_amplitude == 0:
+        return "Give it a voltage and a mode that it drives (squeezefilm modes lists them)."
     if unsure is None:
         return "Ask for an interval of the friction (--samples 16)."
     for influence in unsure.influences:
@@ -154,4 +158,4 @@ def _next_step(analysis: Analysis) -> str:
 
 def first_statement(text: str) -> str:
     """A text up to the end of its first statement."""
-    return f"{re.split(r'(?<=[.!?]) (?=[A-Z])|; |: | [(]', text)[0].rstrip('.')}."
+    return f"{re.split(r'(?<=[.!?]) (?=[A-Z])|; |: | [(](?![0-9])', text)[0].rstrip('.')}."

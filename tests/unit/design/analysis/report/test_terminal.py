@@ -46,7 +46,7 @@ def test_what_one_decides_from_is_one_screen(
     places = [words.index(printable(one)) for one in said]
     assert places == sorted(places)
     assert all(" ".join(" ".join(row).split()) in words for row in screen.numbers)
-    assert ("as the paper asks" in words) == name.startswith("biet2008")
+    assert ("as the paper asks" in words) == analysis.display.name.startswith("biet2008")
     assert "timoshenko" not in words
 
 
@@ -90,6 +90,7 @@ def test_a_statement_ends_where_the_next_begins() -> None:
     assert first_statement("One is 2.5 mm. Two follows.") == "One is 2.5 mm."
     assert first_statement("one; two") == first_statement("one: two") == "one."
     assert first_statement("one (by hand) is so.") == "one."
+    assert first_statement("Mode (7,0) is not driven: so.") == "Mode (7,0) is not driven."
 
 
 def test_hostile_names_are_printed_and_not_obeyed(
