@@ -107,7 +107,7 @@ layers: $(VENV)/test.stamp  ## who may import whom
 	@$(BIN)/lint-imports
 
 gallery: $(VENV)/run.stamp  ## draw the preset textures for the documentation
-	@$(BIN)/python -m squeezefilm.design.textures.report.gallery
+	@$(BIN)/python tools/gallery.py
 
 pictures: $(VENV)/test.stamp  ## draw the pictures of the README, with a Chromium
 	@$(BIN)/python tools/pictures.py

@@ -37,7 +37,6 @@ from squeezefilm.design.sweep.report.figures import sweep_figure
 from squeezefilm.design.sweep.report.page import write_sweep
 from squeezefilm.design.sweep.swept import Sweep
 from squeezefilm.design.textures.report import figures as textures
-from squeezefilm.design.textures.report import gallery
 from squeezefilm.design.textures.report.page import write_render
 from squeezefilm.instruments.bench.play import PlayResult
 from squeezefilm.instruments.bench.played_session import PlayedSession
@@ -101,8 +100,8 @@ SUBJECTS: Mapping[type, _Subject] = {
     SensitivityTable: _Subject({"tornado": sensitivity_figures.tornado}),
     Sweep: _Subject({"sweep": sweep_figure}, write_sweep),
     DesignSearch: _Subject(_by_key(FIGURES_OF_DESIGN), write_design),
-    TextureFile: _Subject({"texture": gallery.picture}),
-    Composable: _Subject({"texture": lambda one: gallery.picture(TextureFile.of(one))}),
+    TextureFile: _Subject({"texture": textures.picture}),
+    Composable: _Subject({"texture": lambda one: textures.picture(TextureFile.of(one))}),
     RenderAnalysis: _Subject(_by_key(textures.FIGURES), write_render),
     PlayedSession: _Subject(_PLAYED),
     PlayResult: _Subject({key: _of_session(draw) for key, draw in _PLAYED.items()}, write_play),

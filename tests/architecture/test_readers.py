@@ -44,11 +44,6 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "measure/recordings/description.py": {"tomllib.loads": TOML},
     "physics/texture_files/pictures.py": {"Pillow.open": CHILD},
     "actuators/report/skin_stretch.py": {"Image.open": "bytes that Matplotlib just drew"},
-    "design/textures/report/gallery.py": {
-        "read_text": PACKAGE,
-        "read_bytes": "a figure of the checkout's documentation",
-        "Image.open": "a figure of the checkout's documentation",
-    },
     "design/plate/report/page.py": {"read_bytes": "a draft in a folder of its own"},
     "study/report/session.py": {"path.open": WRITES},
     "instruments/session/record/trace.py": {"mmap.mmap": "over the descriptor that `opened` gave"},
@@ -140,7 +135,7 @@ def test_an_opening_is_found_however_it_is_written() -> None:
 
 def test_files_are_written_whole_by_one_function() -> None:
     """`write_whole` leaves nothing cut behind; these write to a folder or a record of their own."""
-    own = {"instruments/bench/play.py", "design/textures/report/gallery.py"}
+    own = {"instruments/bench/play.py"}
     writers = set()
     for path in SOURCE.rglob("*.py"):
         source = path.read_text(encoding="utf-8")

@@ -21,17 +21,16 @@ from squeezefilm.core.interrupts import hear_interrupts
 from squeezefilm.core.progress import about
 from squeezefilm.design.search.candidate import Evaluated
 from squeezefilm.design.search.criteria import CRITERIA, criterion_of
-from squeezefilm.design.search.found import DesignSearch
+from squeezefilm.design.search.found import DesignSearch, Glimpse
 from squeezefilm.design.search.reasons import corner_in_words, limit_in_words
 from squeezefilm.design.search.report.words import setting_words
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.run import Glimpse
 from squeezefilm.design.search.tolerance import Made
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare
 
 if TYPE_CHECKING:
-    from squeezefilm.design.search.run import Glimpse
+    from squeezefilm.design.search.found import Glimpse
 
 MOST_POINTS = 600
 """Of the screened front that are drawn; of a longer one as many, evenly."""

@@ -19,8 +19,8 @@ from squeezefilm.design.search.criteria import CRITERIA
 from squeezefilm.design.search.reasons import EmptyCorner, LimitReason
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.tolerance import Made
-from squeezefilm.design.search.worth_solving import objectives_of, worst_corner
-from squeezefilm.design.sweep.tradeoffs import dominates, hypervolume, knee_of
+from squeezefilm.design.search.worth_solving import Seen, objectives_of, worst_corner
+from squeezefilm.design.sweep.tradeoffs import dominates, front_of, hypervolume, knee_of
 from squeezefilm.physics.display import Display
 
 
@@ -208,6 +208,35 @@ class DesignSearch(Result):
 
     def _table(self) -> Any:
         return [_row(self.requirements, one) for one in self.front]
+
+
+@dataclass(frozen=True)
+class Glimpse:
+    """What a search has so far, for whoever watches: the stage in words, how many designs are
+    screened and how many plates solved, the objectives (SI) of the feasible screened designs that
+    none other beats, the front of the solved ones, and the display to compare with."""
+
+    stage: str
+    screened: int
+    solved: int
+    screened_front: tuple[tuple[float, ...], ...]
+    front: tuple[Evaluated, ...]
+    reference: Evaluated | None
+
+
+def glimpse_of(
+    requirements: Requirements,
+    stage: str,
+    seen: Seen,
+    front: tuple[Evaluated, ...],
+    reference: Evaluated | None,
+) -> Glimpse:
+    """The glimpse of a stage (in words) that whoever watches is shown of what was seen."""
+    feasible = [one for one in seen["screened"].values() if one.is_feasible]
+    rows = objectives_of(requirements, feasible)
+    screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows))
+    counts = len(seen["screened"]), len(plates_of(seen["solved"]))
+    return Glimpse(stage, *counts, screened, front, reference)
 
 
 def _plates(designs: Iterable[Evaluated]) -> int:

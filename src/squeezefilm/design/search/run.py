@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 
@@ -21,6 +20,7 @@ from squeezefilm.design.search.candidate import (
     Design,
     Evaluated,
     Level,
+    at_other_voltages,
     design_of,
     evaluate_all,
     plates_of,
@@ -28,10 +28,10 @@ from squeezefilm.design.search.candidate import (
 )
 from squeezefilm.design.search.correction import Correction, learned
 from squeezefilm.design.search.evolution import POPULATION, Proposals
-from squeezefilm.design.search.found import DesignSearch, FrontMember
+from squeezefilm.design.search.found import DesignSearch, FrontMember, Glimpse, glimpse_of
 from squeezefilm.design.search.reasons import empty_corners, limit_reasons
 from squeezefilm.design.search.requirements import NamedRequirements
-from squeezefilm.design.search.space import VOLTAGE, Space
+from squeezefilm.design.search.space import Space
 from squeezefilm.design.search.store import DesignStore, requirements_hash
 from squeezefilm.design.search.tolerance import Made, made_of
 from squeezefilm.design.search.worth_solving import Seen, objectives_of, worth_solving
@@ -41,9 +41,6 @@ from squeezefilm.design.sweep.workers import workers
 
 # Screened designs to a task: one takes some ten milliseconds.
 _TOGETHER = 8
-# Voltages, from the least to the most, at which a plate that was solved is judged beside its own: a
-# tenth of the time of solving another, but where an interval is asked of each.
-_VOLTAGES: Mapping[str, int] = {"nominal": 5, "95 %": 3}
 _BATCH = 16
 # The share of the plates to solve that the Bayesian sampler proposes, where there are enough for it
 # to learn from: of nine it learns nothing, and proposes plates anywhere.
@@ -51,20 +48,6 @@ _BY_SAMPLER, _ENOUGH_FOR_SAMPLER = 0.25, 40
 # Designs near each of so many of the front, and as many expected there, that are screened in each
 # of some generations before the next are solved.
 _NEAR, _FROM, _GENERATIONS = 8, 12, 3
-
-
-@dataclass(frozen=True)
-class Glimpse:
-    """What a search has so far, for whoever watches: the stage in words, how many designs are
-    screened and how many plates solved, the objectives (SI) of the feasible screened designs that
-    none other beats, the front of the solved ones, and the display to compare with."""
-
-    stage: str
-    screened: int
-    solved: int
-    screened_front: tuple[tuple[float, ...], ...]
-    front: tuple[Evaluated, ...]
-    reference: Evaluated | None
 
 
 @si.checked_numbers
@@ -157,7 +140,9 @@ class SearchRun:
         with workers(
             jobs=asked.jobs, scheduler=asked.scheduler, tell=self._tell, first=evaluate_all
         ) as pool:
-            self._compare()
+            if self.requirements.compare_with:
+                self._tell(f"{self.requirements.compare_with}, to compare with")
+                self._reference = reference_of(self.requirements)
             self._screen(pool)
             every = asked.solved
             if every >= _ENOUGH_FOR_SAMPLER:
@@ -171,12 +156,6 @@ class SearchRun:
                 self._seen["solved"].update((one.design, one) for one in others)
             self._make(pool)
         self._done = True
-
-    def _compare(self) -> None:
-        """The display of `compare_with`, by the same questions."""
-        if self.requirements.compare_with:
-            self._tell(f"{self.requirements.compare_with}, to compare with")
-            self._reference = reference_of(self.requirements)
 
     def _screen(self, pool: Workers) -> None:
         spaces = self.requirements.spaces
@@ -232,15 +211,10 @@ class SearchRun:
 
     def _solve(self, pool: Workers, designs: Iterable[Design]) -> Mapping[Design, Evaluated]:
         """Solve designs, and judge their plates at other voltages, too."""
-        asked = [each for one in designs for each in (one, *self._at_other_voltages(one))]
+        asked = list[Design]()
+        for design in designs:
+            asked += (design, *at_other_voltages(self.requirements, design))
         return self._evaluated(pool, asked, "solved")
-
-    def _at_other_voltages(self, design: Design) -> list[Design]:
-        volts = self.requirements.spaces[design.shape].variable(VOLTAGE)
-        if volts.is_fixed:
-            return []
-        shares = np.linspace(0, 1, _VOLTAGES[self.requirements.limits.confidence]).tolist()
-        return [design.at_voltage(float(volts.at(one, {}))) for one in shares]
 
     def _screen_beside_the_front(self, pool: Workers) -> None:
         """Look by the screening theory at what differs a little from the solved front, and from
@@ -353,8 +327,10 @@ class SearchRun:
                 missing[design] = None
             else:
                 found[design] = known
-        together = plates_of(missing).values() if level == "solved" else _parts(missing, _TOGETHER)
-        parts = list(together)
+        each = tuple(missing)
+        parts = [each[begin : begin + _TOGETHER] for begin in range(0, len(each), _TOGETHER)]
+        if level == "solved":
+            parts = list(plates_of(each).values())
         tasks = {number: (self.requirements, part, level) for number, part in enumerate(parts)}
         try:
             for number, answers in pool.answers(evaluate_all, tasks):
@@ -385,8 +361,7 @@ class SearchRun:
         return [feasible[k] for k in sorted(front_of(rows), key=lambda k: tuple(rows[k]))]
 
     def _show_meanwhile(self, level: Level, found: Mapping[Design, Evaluated]) -> None:
-        """Show what came in the middle of a batch, of which the order does not depend on it; so
-        seldom that it takes little of the time."""
+        """Show what came in the middle of a batch, so seldom that it takes little of the time."""
         now = time.monotonic()
         if self._asked.watch is None or now < self._shown_next:
             return
@@ -395,15 +370,12 @@ class SearchRun:
 
     def _show(self, seen: Seen | None = None) -> None:
         """Show what was seen, if anybody watches."""
-        if self._asked.watch is None:
-            return
-        seen = seen or self._seen
-        feasible = [one for one in seen["screened"].values() if one.is_feasible]
-        rows = objectives_of(self.requirements, feasible)
-        screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows))
-        counts = len(seen["screened"]), len(plates_of(seen["solved"]))
-        front = tuple(self._front(seen))
-        self._asked.watch(Glimpse(self._stage, *counts, screened, front, self._reference))
+        if self._asked.watch is not None:
+            seen = seen or self._seen
+            front = tuple(self._front(seen))
+            self._asked.watch(
+                glimpse_of(self.requirements, self._stage, seen, front, self._reference)
+            )
 
     def result(self) -> DesignSearch:
         """What was found until now."""
@@ -425,9 +397,3 @@ class SearchRun:
             provenance=stamp(requirements.base, self._asked.seed)
             | {"requirements_sha256": requirements_hash(requirements)},
         )
-
-
-def _parts(designs: Iterable[Design], size: int) -> Iterator[tuple[Design, ...]]:
-    each = iter(designs)
-    while part := tuple(itertools.islice(each, size)):
-        yield part

@@ -17,7 +17,7 @@ from squeezefilm.core.errors import ConfigError, InputError, WorkersError
 from squeezefilm.core.results import config_hash
 from squeezefilm.design.search import candidate
 from squeezefilm.design.search.candidate import Design, Evaluated, Level
-from squeezefilm.design.search.found import DesignSearch
+from squeezefilm.design.search.found import DesignSearch, Glimpse
 from squeezefilm.design.search.reasons import limit_in_words, margins
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.tolerance import Made
@@ -261,7 +261,7 @@ def test_what_comes_to_the_front_for_a_plate_of_a_low_yield_is_asked_for_its_own
 
 @pytest.mark.usefixtures("by_formula")
 def test_whoever_watches_sees_the_front_grow() -> None:
-    seen: list[run.Glimpse] = []
+    seen: list[Glimpse] = []
     found = run.search_designs(requirements(), **FEW, watch=seen.append)
     assert seen[-1].solved == found.plates_solved
     assert seen[0].screened_front

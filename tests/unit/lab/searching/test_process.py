@@ -14,7 +14,8 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.search import run
-from squeezefilm.design.search.run import Glimpse, SearchRequest
+from squeezefilm.design.search.found import Glimpse
+from squeezefilm.design.search.run import SearchRequest
 from squeezefilm.lab import search_process as process
 from squeezefilm.lab import search_process as shown
 from squeezefilm.lab import told_process

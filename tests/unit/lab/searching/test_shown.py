@@ -9,14 +9,13 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.design.search.found import DesignSearch, FrontMember
+from squeezefilm.design.search.found import DesignSearch, FrontMember, Glimpse
 from squeezefilm.design.search.reasons import (
     EmptyCorner,
     corner_in_words,
     empty_corners,
     limit_reasons,
 )
-from squeezefilm.design.search.run import Glimpse
 from squeezefilm.design.search.tolerance import Made
 from squeezefilm.lab import search_process as shown
 from squeezefilm.lab.wire import as_text

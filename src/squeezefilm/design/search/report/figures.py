@@ -1,4 +1,4 @@
-"""The figures of a design search: the front, what limits cost, the screening, what was chosen."""
+"""The figures of a design search: the front, the screening, what was chosen."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.page_style import FigureOf
-from squeezefilm.design.search.criteria import CRITERIA, criterion_of
+from squeezefilm.design.search.criteria import criterion_of
 from squeezefilm.design.search.report.words import (
     front_words,
     setting_words,
@@ -60,7 +60,7 @@ def front(found: DesignSearch) -> Figure:
     rows = _rows(found, _thinned([one for one in found.screened if one.is_feasible]))
     if not rows.size and not found.front:
         return style.message_figure(
-            "No design meets the requirements", "What each limit costs is in the next figure."
+            "No design meets the requirements", "What each limit costs is told on the page."
         )
     figure = style.new_figure(_front_title(found), _SOLVED, 5.2)
     # Two objectives have room for the whole cloud, and beside it for what matters of it.
@@ -179,43 +179,6 @@ def _rows(found: DesignSearch, designs: Sequence[Evaluated]) -> si.FloatArray:
 def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
     """Every so many designs where there are more than can be told apart."""
     return designs[:: -(-len(designs) // _MOST_POINTS) or 1]
-
-
-@style.drawn
-def limits(found: DesignSearch) -> Figure:
-    """How many screened designs break each limit, and how many of them no other."""
-    every, reasons = len(found.screened), found.limits[::-1]
-    if not every:
-        return style.message_figure(
-            "No design was screened", "The search was stopped before the first."
-        )
-    if not reasons:
-        return style.message_figure(
-            "No limit was asked for", "Every design that can be built keeps the requirements."
-        )
-    most, alone = found.limits[0], max(found.limits, key=lambda one: one.alone)
-    said = f"The limit broken most often is that on {CRITERIA[most.key].said}"
-    if alone.alone:
-        which = "it" if alone is most else f"the one on {CRITERIA[alone.key].said}"
-        said += f"; {which} alone stands in the way of {alone.alone}"
-    figure = style.new_figure(
-        said, "the screening theory: beams, strips with shear, rings as solved",
-        max(1.5 + 0.42 * len(reasons), 2.8),
-    )  # fmt: skip
-    axes = figure.subplots()
-    at = np.arange(len(reasons))
-    axes.barh(at, [one.broken for one in reasons], **style.BARS, label="break it")
-    axes.barh(
-        at, [one.alone for one in reasons], height=0.45, color=style.ORANGE, label="break it alone"
-    )
-    for row, one in enumerate(reasons):
-        alone_too = f", {one.alone} alone" if one.alone else ""
-        axes.text(one.broken, row, f" {one.broken}{alone_too}", va="center", fontsize=9)
-    axes.set_yticks(at, [CRITERIA[one.key].limit_said(one.limit) for one in reasons])
-    axes.set(xlabel=f"designs, of {every} screened", xlim=(0, 1.22 * max(most.broken, 1)))
-    axes.grid(visible=False, axis="y")
-    style.legend_below(axes, gap=0.9 / max(len(reasons), 3) + 0.1)
-    return figure
 
 
 @style.drawn
@@ -354,13 +317,6 @@ FIGURES = (
         "three dimensions; the blue points are beaten by no other. Point at one for its numbers, "
         "follow it to its row in the table.",
         has=lambda one: one.front or any(each.is_feasible for each in one.screened),
-    ),
-    FigureOf(
-        "limits",
-        "What each limit does",
-        limits,
-        "Grey: designs that break the limit, whatever else they break. Orange: those that would be "
-        "there without it.",
     ),
     FigureOf(
         "screening",

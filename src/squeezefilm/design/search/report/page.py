@@ -27,7 +27,7 @@ from squeezefilm.core.kit.page_style import (
     verdict_list,
 )
 from squeezefilm.design.search.candidate import Design, sourced_display_of
-from squeezefilm.design.search.criteria import CRITERIA, bounded, criterion_of
+from squeezefilm.design.search.criteria import CRITERIA, bounded
 from squeezefilm.design.search.found import DesignSearch, FrontMember
 from squeezefilm.design.search.reasons import margins
 from squeezefilm.design.search.report.figures import FIGURES, MARKED
@@ -97,8 +97,7 @@ def design_page(found: DesignSearch, *, fabrication: str = "") -> str:
         section("The plates of the front", _front_table(found)),
         *_chosen_sections(found, fabrication),
         *_reference_section(found),
-        drawn["limits"],
-        section("What each limit costs", bullets(limit_sentences(found))),
+        section("What each limit does and costs", bullets(limit_sentences(found))),
         section("Where nothing keeps the limits", _corners(found)),
         drawn["settings"],
         drawn["screening"],
@@ -137,31 +136,17 @@ def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
         made = made_sentences(requirements, chosen)[0]
         for sentence in chosen_sentences(found)[:1]:
             yield sure, f"The plate to build: {sentence} {made}"
-    if found.reference is not None and not found.reference.reason and found.front:
-        better = bool(found.beats_reference)
-        kind = "good" if better else "limit"
-        own = found.reference.objectives(requirements.objectives)
-        said = " and ".join(
-            f"{criterion_of(name).said} {criterion_of(name).shown(value)}"
-            for name, value in zip(requirements.objectives, own, strict=True)
-        )
-        yield (
-            kind,
-            f"{requirements.compare_with} has {said}; "
-            f"{found.plates_better or 'none'} of the front's plates "
-            f"{'are' if found.plates_better > 1 else 'is'} better in an objective and worse in "
-            "none.",
-        )
+    compared = reference_sentences(found)
+    if compared and found.front:
+        kind = "good" if found.beats_reference else "limit"
+        yield kind, " ".join(dict.fromkeys((compared[0], compared[-1])))
     if gain := limit_gain(found):
         yield "limit", gain
     if chosen is not None and chosen.made is not None and chosen.made.kept < 0.9:
-        worst = max(chosen.made.broken.items(), key=lambda one: one[1], default=None)
-        why = "" if worst is None else f", mostly for its {CRITERIA[worst[0]].said}"
         yield (
             "limit",
-            f"Of the plates made from its drawing {100 * (1 - chosen.made.kept):.0f} % break a "
-            f"limit{why}: a limit met exactly is met by half of what is made. least_yield among "
-            "the limits asks for more.",
+            "A limit met exactly is met by half of what is made; least_yield among the limits asks "
+            "for more.",
         )
     yield (
         "doubt",

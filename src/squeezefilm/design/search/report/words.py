@@ -310,21 +310,6 @@ def rank_sentences(found: DesignSearch) -> list[str]:
         f"Spearman's ρ = {value:.2f}."
         for name, value in found.ranks.items()
     ]
-    for space, one in zip(found.requirements.spaces, found.corrections, strict=True):
-        if one is None:
-            continue
-        told = ", ".join(
-            f"{criterion_of(name).said} {si.percent(one.raw[key], 1)} before and "
-            f"{si.percent(one.errors[key], 1)} after the correction"
-            for name in found.requirements.objectives
-            if (key := criterion_of(name).key) in one.errors
-        )
-        if told:
-            said.append(
-                f"Of {space.shape}, the screened number is off by (one standard deviation, "
-                f"{one.plates} plates, each left out of what its correction was learned from): "
-                f"{told}."
-            )
     return said or ["Too few plates were solved to say how good the screening was."]
 
 

@@ -1,1 +1,1 @@
-"""What `render` shows: page, figures, tables, and the gallery of textures."""
+"""What `render` shows: page, figures, tables."""

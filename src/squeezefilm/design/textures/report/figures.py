@@ -9,16 +9,27 @@ import numpy as np
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import M, N, S, V, shown
 from squeezefilm.core.kit.page_style import FigureOf
+from squeezefilm.physics.chain.played_texture import single_period
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.core.quantities import FloatArray
     from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
+    from squeezefilm.physics.texture_files.texture_file import TextureFile
 
 _MOST_POINTS = 3000
 _ZOOM = 0.16
 _MAP_POINTS = 260
+_SPEED = 0.06
+_WIDE = 0.05
+_HIGH = 0.6
+_PERIODS = 12
+_LABELS = {
+    "relative_friction": ("relative friction µ′/µ", 1.0),
+    "friction_reduction": ("friction taken away µ − µ′", 1.0),
+    "amplitude": ("vibration amplitude (µm)", 1e6),
+}
 
 
 def _thin(count: int) -> slice:
@@ -215,6 +226,30 @@ def ripple(result: RenderAnalysis) -> Figure:
     below.set(ylabel="µ′/µ", xlabel="x (mm)", ylim=(0, 1.05))
     for axes in (above, below):
         style.legend_beside(axes)
+    return figure
+
+
+@style.drawn
+def picture(texture: TextureFile) -> Figure:
+    """A texture from above, 50 mm or twelve periods wide, and along its middle line at 60 mm/s."""
+    period = single_period(texture.texture)
+    wide = _WIDE if period is None else min(_WIDE, _PERIODS * period)
+    high = _HIGH * wide
+    label, scale = _LABELS[texture.texture.quantity]
+    figure = style.new_figure(
+        texture.title, f"none; {label} as asked for at {1e3 * _SPEED:g} mm/s, towards +x", 3.6
+    )
+    left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.2])
+    x, y = np.linspace(0, wide, 501), np.linspace(0, high, 301)
+    values = scale * texture.texture(x[None, :], y[:, None], _SPEED, 0.0)
+    seen = style.seen_from_above(left, values, (0, 0), (wide, high))
+    figure.colorbar(seen, ax=left, orientation="horizontal", label=label)
+    left.axhline(500 * high, color=style.PAPER, lw=2.6)
+    left.axhline(500 * high, color=style.INK, lw=1.1, ls=(0, (4, 2)))
+    fine = np.linspace(0, wide, 4001)
+    along = scale * texture.texture(fine, 0.5 * high, _SPEED, 0.0)
+    right.plot(1e3 * fine, along, color=style.BLUE, lw=1.4)
+    right.set(xlabel="x (mm), along the dashed line", ylabel=label, xlim=(0, 1e3 * wide))
     return figure
 
 

@@ -6,7 +6,6 @@ from tests.unit.design.search.report.made_search import made_search
 from tests.unit.drawn import labelled, words
 
 from squeezefilm.core.kit.style import png
-from squeezefilm.design.search.criteria import CRITERIA
 from squeezefilm.design.search.found import DesignSearch
 from squeezefilm.design.search.report import figures
 
@@ -63,15 +62,6 @@ def test_three_objectives_are_drawn_in_pairs() -> None:
     names = [axes.get_xlabel() + axes.get_ylabel() for axes in figures.front(found).axes[:3]]
     assert len(set(names)) == 3
     assert sum("mass" in one for one in names) == 2
-
-
-def test_bars_are_as_long_as_limits_are_broken(found: DesignSearch) -> None:
-    axes = figures.limits(found).axes[0]
-    widths = [bar.get_width() for bar in axes.patches]
-    reasons = found.limits[::-1]
-    assert widths == [one.broken for one in reasons] + [one.alone for one in reasons]
-    labels = [text.get_text() for text in axes.get_yticklabels()]
-    assert labels == [CRITERIA[one.key].limit_said(one.limit) for one in reasons]
 
 
 def test_screened_and_solved_numbers_are_set_against_each_other(found: DesignSearch) -> None:

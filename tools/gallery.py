@@ -1,4 +1,4 @@
-"""Pictures of the preset textures for the documentation; run as a module, by `make gallery`.
+"""Pictures of the preset textures for the documentation; run by `make gallery`.
 
 Each texture seen from above at an exploring speed, and the friction along a line through it. Run
 without arguments in a checkout it rewrites docs/gallery.md and docs/gallery/*.png; with ``--check``
@@ -10,52 +10,14 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from squeezefilm.core import presets
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit import style
-from squeezefilm.physics.chain.played_texture import single_period
-from squeezefilm.physics.texture_files.texture_file import TextureFile, load_texture
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-_SPEED = 0.06
-_WIDE = 0.05
-_HIGH = 0.6
-_PERIODS = 12
-_LABELS = {
-    "relative_friction": ("relative friction µ′/µ", 1.0),
-    "friction_reduction": ("friction taken away µ − µ′", 1.0),
-    "amplitude": ("vibration amplitude (µm)", 1e6),
-}
-
-
-@style.drawn
-def picture(texture: TextureFile) -> Figure:
-    """A texture from above, 50 mm or twelve periods wide, and along its middle line at 60 mm/s."""
-    period = single_period(texture.texture)
-    wide = _WIDE if period is None else min(_WIDE, _PERIODS * period)
-    high = _HIGH * wide
-    label, scale = _LABELS[texture.texture.quantity]
-    figure = style.new_figure(
-        texture.title, f"none; {label} as asked for at {1e3 * _SPEED:g} mm/s, towards +x", 3.6
-    )
-    left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.2])
-    x, y = np.linspace(0, wide, 501), np.linspace(0, high, 301)
-    values = scale * texture.texture(x[None, :], y[:, None], _SPEED, 0.0)
-    seen = style.seen_from_above(left, values, (0, 0), (wide, high))
-    figure.colorbar(seen, ax=left, orientation="horizontal", label=label)
-    left.axhline(500 * high, color=style.PAPER, lw=2.6)
-    left.axhline(500 * high, color=style.INK, lw=1.1, ls=(0, (4, 2)))
-    fine = np.linspace(0, wide, 4001)
-    along = scale * texture.texture(fine, 0.5 * high, _SPEED, 0.0)
-    right.plot(1e3 * fine, along, color=style.BLUE, lw=1.4)
-    right.set(xlabel="x (mm), along the dashed line", ylabel=label, xlim=(0, 1e3 * wide))
-    return figure
+from squeezefilm.design.textures.report.figures import picture
+from squeezefilm.physics.texture_files.texture_file import load_texture
 
 
 def gallery_files() -> dict[str, bytes]:
@@ -83,9 +45,9 @@ def gallery_files() -> dict[str, bytes]:
 
 def main(arguments: list[str]) -> int:
     """Write the gallery into docs/ of the checkout, or with ``--check`` compare; the exit code."""
-    docs = Path(__file__).parents[5] / "docs"
+    docs = Path(__file__).parents[1] / "docs"
     if not docs.is_dir():
-        raise InputError("there is no docs folder beside the package; run this in a checkout")
+        raise InputError("there is no docs folder beside tools; run this in a checkout")
     stale = [
         name
         for name, data in gallery_files().items()

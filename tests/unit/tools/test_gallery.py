@@ -12,10 +12,10 @@ import pytest
 from matplotlib.colors import to_hex
 from PIL import Image
 
+import gallery
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.style import INK, PAPER
-from squeezefilm.design.textures.report import gallery
 
 
 class Wave:
@@ -87,7 +87,7 @@ NAMES = ("bumps", "waves")
 @pytest.fixture
 def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A checkout with two textures, whose pictures are made of their names."""
-    source = tmp_path / "src/squeezefilm/design/textures/report/gallery.py"
+    source = tmp_path / "tools/gallery.py"
     textures = tmp_path / "textures"
     textures.mkdir()
     for name in NAMES:
@@ -165,7 +165,7 @@ def test_a_gallery_is_written_and_then_it_is_current(
 def test_outside_a_checkout_there_is_no_gallery(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(gallery, "__file__", str(tmp_path / "a/b/c/d/gallery.py"))
+    monkeypatch.setattr(gallery, "__file__", str(tmp_path / "a/b/gallery.py"))
     with pytest.raises(InputError, match="no docs folder"):
         gallery.main([])
 
